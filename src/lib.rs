@@ -1,0 +1,14 @@
+//! Generates, simulates and proves the Verilog of a collision-detection accelerator.
+//!
+//! `ARCHITECTURE.md` is the map: which module does what and who may import whom.
+
+pub mod afu;
+#[cfg(feature = "cosim")]
+pub mod cosim;
+pub mod hdl;
+pub mod kernel;
+pub mod link;
+pub mod number;
+pub mod operator;
+pub mod pipeline;
+pub mod report;

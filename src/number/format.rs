@@ -1,0 +1,167 @@
+//! Floating-point formats: how wide, and how the ends of the range behave.
+
+use std::fmt;
+use std::str::FromStr;
+
+/// Smallest and largest exponent width, in bits, a [`Format`] can have.
+pub const EXPONENT_BITS: std::ops::RangeInclusive<u32> = 5..=15;
+/// Smallest and largest fraction width, in bits, a [`Format`] can have.
+pub const FRACTION_BITS: std::ops::RangeInclusive<u32> = 2..=52;
+
+/// What happens between zero and the smallest normal number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Subnormals {
+    /// Gradual underflow (IEEE 754-2019, clause 3.4).
+    Kept,
+    /// A subnormal operand reads as zero of its sign; a result that would round (to nearest, with an
+    /// unbounded exponent) to less than the smallest normal number is zero of its sign.
+    Flushed,
+}
+
+/// A binary floating-point format in the layout of IEEE 754-2019, clause 3.4: sign, biased exponent, fraction.
+///
+/// Rounding is to nearest, ties to even. The largest biased exponent encodes infinities and NaN; the only NaN
+/// ever produced is the canonical quiet one (sign 0, leading fraction bit 1, all others 0).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Format {
+    exponent_bits: u8,
+    fraction_bits: u8,
+    subnormals: Subnormals,
+}
+
+/// Why a format was refused.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum FormatError {
+    /// A width outside [`EXPONENT_BITS`] or [`FRACTION_BITS`].
+    #[error("format e{exponent}f{fraction} is out of range: exponent 5 to 15 bits, fraction 2 to 52 bits")]
+    Range {
+        /// The exponent bits asked for.
+        exponent: u32,
+        /// The fraction bits asked for.
+        fraction: u32,
+    },
+    /// Not a profile name and not eXfY.
+    #[error("unknown profile `{0}`: use paper, wide, half, bfloat or eXfY such as e8f15")]
+    Unknown(String),
+}
+
+impl Format {
+    /// IEEE binary32 with subnormals: the paper's arithmetic and the record format.
+    pub const BINARY32: Self = Self::fixed(8, 23, Subnormals::Kept);
+    /// IEEE binary64 with subnormals.
+    pub const BINARY64: Self = Self::fixed(11, 52, Subnormals::Kept);
+    /// The default arithmetic: binary32's significand under a 10-bit exponent, in which no finite binary32 pair
+    /// reaches either end of the range.
+    pub const WIDE: Self = Self::fixed(10, 23, Subnormals::Flushed);
+    /// IEEE binary16.
+    pub const HALF: Self = Self::fixed(5, 10, Subnormals::Kept);
+    /// bfloat16.
+    pub const BFLOAT: Self = Self::fixed(8, 7, Subnormals::Kept);
+
+    const fn fixed(exponent_bits: u8, fraction_bits: u8, subnormals: Subnormals) -> Self {
+        Self { exponent_bits, fraction_bits, subnormals }
+    }
+
+    /// A format of `exponent` (5 to 15) and `fraction` (2 to 52) bits.
+    ///
+    /// # Errors
+    /// [`FormatError::Range`] when a width is outside those.
+    pub fn new(exponent: u32, fraction: u32, subnormals: Subnormals) -> Result<Self, FormatError> {
+        if !EXPONENT_BITS.contains(&exponent) || !FRACTION_BITS.contains(&fraction) {
+            return Err(FormatError::Range { exponent, fraction });
+        }
+        Ok(Self { exponent_bits: exponent as u8, fraction_bits: fraction as u8, subnormals })
+    }
+
+    /// Bits of the biased exponent.
+    pub const fn exponent_bits(self) -> u32 {
+        self.exponent_bits as u32
+    }
+
+    /// Bits of the fraction: the significand without its leading bit.
+    pub const fn fraction_bits(self) -> u32 {
+        self.fraction_bits as u32
+    }
+
+    /// Bits of the significand, the leading bit included (IEEE 754's precision p).
+    pub const fn significand_bits(self) -> u32 {
+        self.fraction_bits() + 1
+    }
+
+    /// Bits of the whole word.
+    pub const fn width(self) -> u32 {
+        1 + self.exponent_bits() + self.fraction_bits()
+    }
+
+    /// Exponent bias, which is also the largest exponent of a finite number.
+    pub const fn bias(self) -> i32 {
+        (1 << (self.exponent_bits - 1)) - 1
+    }
+
+    /// Exponent of the smallest normal number.
+    pub const fn min_exponent(self) -> i32 {
+        1 - self.bias()
+    }
+
+    /// Whether gradual underflow is kept.
+    pub const fn keeps_subnormals(self) -> bool {
+        matches!(self.subnormals, Subnormals::Kept)
+    }
+
+    /// The biased exponent of infinities and NaN: all ones.
+    pub const fn special_exponent(self) -> u32 {
+        (1 << self.exponent_bits) - 1
+    }
+
+    /// The word of +infinity.
+    pub const fn infinity_bits(self) -> u128 {
+        (self.special_exponent() as u128) << self.fraction_bits
+    }
+
+    /// The word of the canonical NaN.
+    pub const fn nan_bits(self) -> u128 {
+        self.infinity_bits() | 1 << (self.fraction_bits - 1)
+    }
+
+    /// The mask of the sign bit.
+    pub const fn sign_mask(self) -> u128 {
+        1 << (self.width() - 1)
+    }
+
+    /// The mask of the fraction field.
+    pub const fn fraction_mask(self) -> u128 {
+        (1 << self.fraction_bits) - 1
+    }
+}
+
+impl fmt::Display for Format {
+    /// Writes `e8f23`, with `z` behind it where subnormals are flushed to zero.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let flush = if self.keeps_subnormals() { "" } else { "z" };
+        write!(f, "e{}f{}{flush}", self.exponent_bits, self.fraction_bits)
+    }
+}
+
+impl FromStr for Format {
+    type Err = FormatError;
+
+    /// Reads a profile name (`paper`, `wide`, `half`, `bfloat`) or `eXfY` (subnormals kept; `eXfYz`: flushed).
+    fn from_str(text: &str) -> Result<Self, FormatError> {
+        match text {
+            "paper" => return Ok(Self::BINARY32),
+            "wide" => return Ok(Self::WIDE),
+            "half" => return Ok(Self::HALF),
+            "bfloat" => return Ok(Self::BFLOAT),
+            _ => {}
+        }
+        let unknown = || FormatError::Unknown(text.to_owned());
+        let (digits, subnormals) = match text.strip_suffix('z') {
+            Some(rest) => (rest, Subnormals::Flushed),
+            None => (text, Subnormals::Kept),
+        };
+        let (exponent, fraction) =
+            digits.strip_prefix('e').and_then(|rest| rest.split_once('f')).ok_or_else(unknown)?;
+        let plain = |t: &str| t.bytes().all(|b| b.is_ascii_digit()).then(|| t.parse().ok()).flatten();
+        Self::new(plain(exponent).ok_or_else(unknown)?, plain(fraction).ok_or_else(unknown)?, subnormals)
+    }
+}

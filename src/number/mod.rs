@@ -1,0 +1,60 @@
+//! Numbers the kernel can be read with: `f32`, [`Soft`] (any format, exact integer arithmetic inside), and outside
+//! this module the netlist's wires. Imports nothing of ours.
+
+mod format;
+
+pub use format::{Format, FormatError, Subnormals};
+
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, DivAssign, Mul, MulAssign, Not, Sub, SubAssign};
+
+/// A truth value of a [`Number`]: `bool` in software, one wire in hardware.
+pub trait Truth: Copy + Debug + 'static + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {}
+
+impl Truth for bool {}
+
+/// A number that carries its own context (format, graph), so that one kernel serves software and hardware.
+///
+/// There is no Zero and no One: a constant is made from a neighbour. Every operation rounds once, to nearest,
+/// ties to even (IEEE 754-2019, clause 4.3.1). Mixing formats is a mistake of the kernel's author: `Soft` panics
+/// with both formats' names, a wire records an error in its graph.
+pub trait Number:
+    Copy
+    + Debug
+    + PartialEq
+    + 'static
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + AddAssign
+    + SubAssign
+    + MulAssign
+    + DivAssign
+{
+    /// What a comparison gives.
+    type Bool: Truth;
+
+    /// `value`, in this number's format. `value` must be representable there.
+    fn constant(self, value: f64) -> Self;
+    /// √self, correctly rounded (IEEE 754-2019, clause 5.4.1).
+    fn sqrt(self) -> Self;
+    /// 1/self, correctly rounded.
+    fn recip(self) -> Self;
+    /// self > other; false when either is NaN.
+    fn gt(self, other: Self) -> Self::Bool;
+    /// self ≤ other; false when either is NaN.
+    fn le(self, other: Self) -> Self::Bool;
+    /// Whether √self, correctly rounded, is greater than `bound` ≥ 0, decided without a root:
+    /// self > (bound + ½ulp(bound))², taken exactly.
+    fn root_exceeds(self, bound: Self) -> Self::Bool;
+    /// `yes` where `condition` holds, else `no`.
+    fn select(condition: Self::Bool, yes: Self, no: Self) -> Self;
+    /// This number in another format, rounded once.
+    fn to(self, format: Format) -> Self;
+    /// Gives the value a name in generated hardware; elsewhere nothing.
+    #[must_use]
+    fn named(self, _name: &str) -> Self {
+        self
+    }
+}
