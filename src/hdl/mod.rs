@@ -1,1 +1,20 @@
-//! (in the making)
+//! A small typed hardware language: graphs of bit operations, registers, memories and instances.
+//!
+//! A [`Graph`] is one module under construction; [`Signal`] is a copyable handle of one of its nodes. A bad
+//! operation records an [`Error`] with its place and yields a poisoned handle; [`Graph::finish`] returns all of
+//! them together or a [`Module`], from which nothing can be taken that its outputs do not need.
+
+mod error;
+mod finish;
+mod fold;
+mod graph;
+mod keywords;
+mod module;
+mod signal;
+mod state;
+
+pub use error::{Error, Errors};
+pub use graph::Graph;
+pub use module::{Instance, InstanceCount, Memory, Module, Node, NodeId, Op, Parameter, Port, Reset};
+pub use signal::Signal;
+pub use state::{Instantiated, MemoryHandle, Register};

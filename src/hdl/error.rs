@@ -1,0 +1,37 @@
+//! What went wrong while a graph was built, with names and the place in the generator's source.
+
+use std::fmt;
+use std::panic::Location;
+
+/// One bad operation.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Error {
+    /// The module under construction.
+    pub module: String,
+    /// What is wrong and with which signals.
+    pub message: String,
+    /// Where the operation stands in the generator's source.
+    pub place: &'static Location<'static>,
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {} ({}:{})", self.module, self.message, self.place.file(), self.place.line())
+    }
+}
+
+/// Every bad operation of a graph, in the order they were made.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub struct Errors(pub Vec<Error>);
+
+impl fmt::Display for Errors {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, error) in self.0.iter().enumerate() {
+            if index > 0 {
+                f.write_str("\n")?;
+            }
+            error.fmt(f)?;
+        }
+        Ok(())
+    }
+}

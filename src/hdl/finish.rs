@@ -1,0 +1,226 @@
+//! From a graph under construction to a module: errors together, dead logic gone, operands before users, no loops.
+
+use std::collections::{BTreeSet, HashMap};
+
+use super::error::{Error, Errors};
+use super::graph::{Inner, Paths};
+use super::module::{Instance, Memory, Module, Node, NodeId, Op};
+
+pub(super) fn finish(mut inner: Inner) -> Result<Module, Errors> {
+    check_connected(&mut inner);
+    if !inner.errors.is_empty() {
+        return Err(Errors(inner.errors));
+    }
+    let order = match Walk::new(&inner).order() {
+        Ok(order) => order,
+        Err(looped) => {
+            let node = &inner.nodes[looped.index()];
+            let name = node.name.clone().unwrap_or_else(|| format!("{:?}", node.op));
+            let message = format!("combinational loop through `{name}`");
+            return Err(Errors(vec![Error { module: inner.name, message, place: inner.places[looped.index()] }]));
+        }
+    };
+    Ok(renumber(inner, &order))
+}
+
+fn check_connected(inner: &mut Inner) {
+    let mut missing = Vec::new();
+    for (node, place) in inner.nodes.iter().zip(&inner.places) {
+        if node.operands.is_empty() && matches!(node.op, Op::Wire | Op::Register { .. }) {
+            let name = node.name.as_deref().unwrap_or("(unnamed)");
+            missing.push((format!("`{name}` is never driven"), *place));
+        }
+    }
+    for (message, place) in missing {
+        let module = inner.name.clone();
+        inner.errors.push(Error { module, message, place });
+    }
+}
+
+/// Depth-first from the outputs. Registers, delays, memory reads and instances without a combinational path cut it:
+/// what feeds those is visited later, so that operands come first wherever a value passes through in one cycle.
+struct Walk<'a> {
+    inner: &'a Inner,
+    order: Vec<NodeId>,
+    state: Vec<State>,
+    later: Vec<NodeId>,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum State {
+    New,
+    Open,
+    Done,
+}
+
+impl<'a> Walk<'a> {
+    fn new(inner: &'a Inner) -> Self {
+        Self { inner, order: Vec::new(), state: vec![State::New; inner.nodes.len()], later: Vec::new() }
+    }
+
+    fn order(mut self) -> Result<Vec<NodeId>, NodeId> {
+        let outputs: Vec<_> = self.inner.ports.iter().filter(|p| p.output).filter_map(|p| p.node).collect();
+        for output in outputs {
+            self.visit(output)?;
+            while let Some(id) = self.later.pop() {
+                self.visit(id)?;
+            }
+        }
+        Ok(self.order)
+    }
+
+    /// Iterative, since a digit recurrence is deeper than a thread's stack should be trusted with.
+    fn visit(&mut self, root: NodeId) -> Result<(), NodeId> {
+        let mut stack = vec![(root, false)];
+        while let Some((id, leaving)) = stack.pop() {
+            if leaving {
+                self.state[id.index()] = State::Done;
+                self.order.push(id);
+                continue;
+            }
+            match self.state[id.index()] {
+                State::Done => continue,
+                State::Open => return Err(id),
+                State::New => self.state[id.index()] = State::Open,
+            }
+            stack.push((id, true));
+            let (now, later) = dependencies(self.inner, id);
+            self.later.extend(later.into_iter().rev());
+            for &operand in now.iter().rev() {
+                match self.state[operand.index()] {
+                    State::Done => {}
+                    State::New => stack.push((operand, false)),
+                    State::Open if self.is_ancestor(&stack, operand) => return Err(operand),
+                    State::Open => {}
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn is_ancestor(&self, stack: &[(NodeId, bool)], id: NodeId) -> bool {
+        stack.iter().any(|&(other, leaving)| leaving && other == id)
+    }
+}
+
+/// What `id` needs in the same cycle, and what it needs before the next one.
+fn dependencies(inner: &Inner, id: NodeId) -> (Vec<NodeId>, Vec<NodeId>) {
+    let node = &inner.nodes[id.index()];
+    match node.op {
+        Op::Delay { .. } | Op::Register { .. } => (vec![], node.operands.clone()),
+        Op::MemoryRead { memory } => {
+            let write = inner.memories[memory].write.iter().flatten().copied();
+            (vec![], node.operands.iter().copied().chain(write).collect())
+        }
+        Op::InstanceOutput { instance, port } => {
+            let instance = &inner.instances[instance];
+            let through = &instance.module.paths[port];
+            let (mut now, mut later) = (Vec::new(), Vec::new());
+            for (index, input) in instance.inputs.iter().enumerate() {
+                if let Some(input) = *input {
+                    if through.contains(&index) { now.push(input) } else { later.push(input) }
+                }
+            }
+            (now, later)
+        }
+        _ => (node.operands.clone(), vec![]),
+    }
+}
+
+fn renumber(inner: Inner, order: &[NodeId]) -> Module {
+    let new: HashMap<NodeId, NodeId> = order.iter().zip(0..).map(|(&old, index)| (old, NodeId(index))).collect();
+    let at = |id: &NodeId| new[id];
+
+    let mut memory_index = HashMap::new();
+    let mut instance_index = HashMap::new();
+    for id in order {
+        match inner.nodes[id.index()].op {
+            Op::MemoryRead { memory } => {
+                let next = memory_index.len();
+                memory_index.entry(memory).or_insert(next);
+            }
+            Op::InstanceOutput { instance, .. } => {
+                let next = instance_index.len();
+                instance_index.entry(instance).or_insert(next);
+            }
+            _ => {}
+        }
+    }
+    let nodes: Vec<Node> = order
+        .iter()
+        .map(|id| {
+            let mut node = inner.nodes[id.index()].clone();
+            node.operands = node.operands.iter().map(at).collect();
+            match &mut node.op {
+                Op::MemoryRead { memory } => *memory = memory_index[memory],
+                Op::InstanceOutput { instance, .. } => *instance = instance_index[instance],
+                _ => {}
+            }
+            node
+        })
+        .collect();
+
+    let mut memories: Vec<(usize, Memory)> = Vec::new();
+    for (old, index) in &memory_index {
+        let mut memory = inner.memories[*old].clone();
+        memory.write = memory.write.map(|write| write.map(|id| at(&id)));
+        memories.push((*index, memory));
+    }
+    memories.sort_by_key(|(index, _)| *index);
+    let mut instances: Vec<(usize, Instance)> = Vec::new();
+    for (old, index) in &instance_index {
+        let mut instance = inner.instances[*old].clone();
+        instance.inputs = instance.inputs.iter().map(|input| input.as_ref().map(at)).collect();
+        instances.push((*index, instance));
+    }
+    instances.sort_by_key(|(index, _)| *index);
+
+    let mut ports = inner.ports;
+    for port in &mut ports {
+        port.node = port.node.and_then(|id| new.get(&id).copied());
+    }
+    let mut module = Module {
+        name: inner.name,
+        about: inner.about,
+        ports,
+        parameters: inner.parameters,
+        nodes,
+        memories: memories.into_iter().map(|(_, memory)| memory).collect(),
+        instances: instances.into_iter().map(|(_, instance)| instance).collect(),
+        paths: Vec::new(),
+        latency: 0,
+    };
+    module.paths = paths(&module);
+    module
+}
+
+/// For each output, the inputs it depends on within one cycle.
+pub(super) fn paths(module: &Module) -> Paths {
+    let mut reach: Vec<BTreeSet<usize>> = vec![BTreeSet::new(); module.nodes.len()];
+    let input_of: HashMap<NodeId, usize> = module
+        .ports
+        .iter()
+        .enumerate()
+        .filter(|(_, port)| !port.output)
+        .filter_map(|(index, port)| port.node.map(|node| (node, index)))
+        .collect();
+    for id in module.ids() {
+        let node = module.node(id);
+        let from: Vec<NodeId> = match node.op {
+            Op::Delay { .. } | Op::Register { .. } | Op::MemoryRead { .. } => vec![],
+            Op::InstanceOutput { instance, port } => {
+                let instance = &module.instances[instance];
+                instance.module.paths[port].iter().filter_map(|&index| instance.inputs[index]).collect()
+            }
+            _ => node.operands.clone(),
+        };
+        let mut all: BTreeSet<usize> = from.iter().flat_map(|id| reach[id.index()].iter().copied()).collect();
+        all.extend(input_of.get(&id));
+        reach[id.index()] = all;
+    }
+    let of = |port: &super::module::Port| match port.node {
+        Some(node) if port.output => reach[node.index()].clone(),
+        _ => BTreeSet::new(),
+    };
+    module.ports.iter().map(of).collect()
+}

@@ -1,0 +1,242 @@
+//! A finished module: checked, with every node reached by an output, in an order in which operands come first.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+/// A node's index in [`Module::nodes`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct NodeId(pub(super) u32);
+
+impl NodeId {
+    /// The index into [`Module::nodes`].
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// What a node computes. Operand widths equal the node's width unless said.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum Op {
+    /// An input port.
+    Input,
+    /// The value of a Verilog parameter of this module: index into [`Module::parameters`].
+    Parameter(usize),
+    /// A constant; bits above 127 are zero.
+    Constant(u128),
+    /// Bitwise complement.
+    Not,
+    /// Bitwise and.
+    And,
+    /// Bitwise or.
+    Or,
+    /// Bitwise exclusive or.
+    Xor,
+    /// Sum modulo 2^width.
+    Add,
+    /// Difference modulo 2^width.
+    Sub,
+    /// Unsigned product: as wide as both operands together.
+    Mul,
+    /// One bit: operands (of equal width) are equal.
+    Equal,
+    /// One bit: first operand < second (of equal width), unsigned.
+    Less,
+    /// Operands: condition (1 bit), value if set, value if clear.
+    Mux,
+    /// Operands from the most significant down, of any widths.
+    Concat,
+    /// `width` bits of the operand from bit `low` on.
+    Slice {
+        /// The lowest bit taken.
+        low: u32,
+    },
+    /// One bit: some bit of the operand is set.
+    Any,
+    /// One bit: every bit of the operand is set.
+    All,
+    /// The operand `cycles` ≥ 1 clock cycles ago. Never reset, never stalled.
+    Delay {
+        /// How many cycles.
+        cycles: u32,
+    },
+    /// A register. Operands: next value, then an enable (1 bit) if it has one.
+    Register {
+        /// The value on reset; without one it is not reset.
+        reset: Option<u128>,
+    },
+    /// The word read from a memory one cycle ago. Operand: address.
+    MemoryRead {
+        /// Index into [`Module::memories`].
+        memory: usize,
+    },
+    /// An output of an instance.
+    InstanceOutput {
+        /// Index into [`Module::instances`].
+        instance: usize,
+        /// Index into the ports of the instantiated module.
+        port: usize,
+    },
+    /// A name for a value that was declared before it was driven. Operand: the value.
+    Wire,
+}
+
+/// One node of a module.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Node {
+    /// What it computes.
+    pub op: Op,
+    /// Its width in bits, at least 1.
+    pub width: u32,
+    /// Its operands.
+    pub operands: Vec<NodeId>,
+    /// The name it was given.
+    pub name: Option<String>,
+    /// The pipeline stage it stands in, where a scheduler has placed it.
+    pub stage: Option<u32>,
+}
+
+/// A port of a module.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Port {
+    /// Its name.
+    pub name: String,
+    /// Its width in bits.
+    pub width: u32,
+    /// Whether it is an output; then `node` is the value driven.
+    pub output: bool,
+    /// The input's own node, or the output's value. Absent where an input is not used by anything.
+    pub node: Option<NodeId>,
+}
+
+/// An integer parameter of the Verilog module.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Parameter {
+    /// Its name.
+    pub name: String,
+    /// The value it has when nobody overrides it.
+    pub default: u32,
+    /// Smallest allowed value, checked at elaboration.
+    pub min: u32,
+    /// Largest allowed value, checked at elaboration.
+    pub max: u32,
+}
+
+/// A memory with one write port and any number of registered read ports.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Memory {
+    /// Its name.
+    pub name: String,
+    /// Words.
+    pub depth: u32,
+    /// Bits a word.
+    pub width: u32,
+    /// Write port: enable, address, data.
+    pub write: Option<[NodeId; 3]>,
+}
+
+/// How many copies of a module an instance stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum InstanceCount {
+    /// One.
+    One,
+    /// As many as the parameter with this index says. Inputs are shared by all copies, but for an input named
+    /// `index`, which is each copy's number; outputs are the bitwise or over all copies.
+    Parameter(usize),
+}
+
+/// An instance, or an array of instances, of another module.
+#[derive(Clone, Debug)]
+pub struct Instance {
+    /// Its name.
+    pub name: String,
+    /// What it is an instance of.
+    pub module: Arc<Module>,
+    /// How many copies.
+    pub count: InstanceCount,
+    /// The value of each input port, by port index; `None` for outputs and for `index` of an array.
+    pub inputs: Vec<Option<NodeId>>,
+}
+
+/// How generated registers are reset.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct Reset {
+    /// Reset acts without a clock edge.
+    pub asynchronous: bool,
+    /// Reset is active when low; the port is then `rst_n`.
+    pub active_low: bool,
+}
+
+/// A checked module.
+#[derive(Clone, Debug)]
+pub struct Module {
+    /// Its name, as in Verilog.
+    pub name: String,
+    /// What it is, for its header: lines of text.
+    pub about: Vec<String>,
+    /// Ports in the order they were declared, without clock and reset.
+    pub ports: Vec<Port>,
+    /// Parameters.
+    pub parameters: Vec<Parameter>,
+    /// Nodes, operands before users but for registers' next values and instance inputs.
+    pub nodes: Vec<Node>,
+    /// Memories.
+    pub memories: Vec<Memory>,
+    /// Instances.
+    pub instances: Vec<Instance>,
+    /// For each port: the inputs (port indices) an output depends on without a register between.
+    pub paths: Vec<BTreeSet<usize>>,
+    /// Register ranks between inputs and outputs, for a pipeline.
+    pub latency: u32,
+}
+
+/// A longer delay than this many cycles is a memory with a pointer, not a row of registers.
+pub const LONGEST_REGISTER_DELAY: u32 = 3;
+
+impl Module {
+    /// The node behind an id.
+    pub fn node(&self, id: NodeId) -> &Node {
+        &self.nodes[id.index()]
+    }
+
+    /// The port of that name and its index.
+    pub fn port(&self, name: &str) -> Option<(usize, &Port)> {
+        self.ports.iter().enumerate().find(|(_, port)| port.name == name)
+    }
+
+    /// Ids of all nodes, operands first.
+    pub fn ids(&self) -> impl Iterator<Item = NodeId> + use<> {
+        (0..self.nodes.len() as u32).map(NodeId)
+    }
+
+    /// Whether anything inside is clocked.
+    pub fn is_clocked(&self) -> bool {
+        !self.memories.is_empty()
+            || self.nodes.iter().any(|n| matches!(n.op, Op::Delay { .. } | Op::Register { .. } | Op::MemoryRead { .. }))
+            || self.instances.iter().any(|i| i.module.is_clocked())
+    }
+
+    /// Whether anything inside is reset.
+    pub fn is_reset(&self) -> bool {
+        self.nodes.iter().any(|n| match n.op {
+            Op::Delay { cycles } => cycles > LONGEST_REGISTER_DELAY,
+            Op::Register { reset } => reset.is_some(),
+            _ => false,
+        }) || self.instances.iter().any(|i| i.module.is_reset())
+    }
+
+    /// This module and all modules below it, each once, instantiated ones first.
+    pub fn hierarchy(self: &Arc<Self>) -> Vec<Arc<Module>> {
+        fn visit(module: &Arc<Module>, found: &mut Vec<Arc<Module>>) {
+            if found.iter().any(|m| m.name == module.name) {
+                return;
+            }
+            for instance in &module.instances {
+                visit(&instance.module, found);
+            }
+            found.push(module.clone());
+        }
+        let mut found = Vec::new();
+        visit(self, &mut found);
+        found
+    }
+}

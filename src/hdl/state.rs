@@ -1,0 +1,260 @@
+//! What remembers: registers and memories; and instances of other modules.
+
+use std::ops::Deref;
+use std::panic::Location;
+use std::sync::Arc;
+
+use super::graph::{Graph, is_identifier};
+use super::module::{Instance, InstanceCount, Memory, Module, Op};
+use super::signal::Signal;
+
+/// A register under construction; reads as its present value.
+#[derive(Clone, Copy, Debug)]
+pub struct Register<'g>(Signal<'g>);
+
+impl<'g> Deref for Register<'g> {
+    type Target = Signal<'g>;
+
+    fn deref(&self) -> &Signal<'g> {
+        &self.0
+    }
+}
+
+impl<'g> Register<'g> {
+    /// The present value.
+    pub fn value(self) -> Signal<'g> {
+        self.0
+    }
+
+    /// Takes `next` at every clock edge.
+    #[track_caller]
+    pub fn next(self, next: Signal<'g>) {
+        self.connect(&[next], Location::caller());
+    }
+
+    /// Takes `next` at the clock edges at which `enable` is set.
+    #[track_caller]
+    pub fn next_if(self, enable: Signal<'g>, next: Signal<'g>) {
+        if enable.width() > 1 {
+            let message = format!("enable of register `{}` has {} bits, not 1", self.0.describe(), enable.width());
+            self.0.graph().error(message, Location::caller());
+        }
+        self.connect(&[next, enable], Location::caller());
+    }
+
+    fn connect(self, inputs: &[Signal<'g>], place: &'static Location<'static>) {
+        let graph = self.0.graph();
+        let Some(id) = self.0.id() else { return };
+        let Some(ids) = graph.own("register", inputs, place) else { return };
+        if inputs[0].width() != self.0.width() {
+            let message = format!(
+                "register `{}` has {} bits, its next value `{}` has {}",
+                self.0.describe(),
+                self.0.width(),
+                inputs[0].describe(),
+                inputs[0].width()
+            );
+            return graph.error(message, place);
+        }
+        if !graph.node(id).operands.is_empty() {
+            return graph.error(format!("register `{}` is connected twice", self.0.describe()), place);
+        }
+        graph.inner.borrow_mut().nodes[id.index()].operands = ids;
+    }
+}
+
+/// A memory under construction.
+#[derive(Clone, Copy)]
+pub struct MemoryHandle<'g> {
+    graph: &'g Graph,
+    index: usize,
+    width: u32,
+    address_width: u32,
+}
+
+impl<'g> MemoryHandle<'g> {
+    /// Writes `data` to `address` at the clock edges at which `enable` is set. Once a memory.
+    #[track_caller]
+    pub fn write(self, enable: Signal<'g>, address: Signal<'g>, data: Signal<'g>) {
+        let place = Location::caller();
+        let Some(ids) = self.graph.own("memory write", &[enable, address, data], place) else { return };
+        let mut wrong = Vec::new();
+        for (what, got, wanted) in [
+            ("enable", enable.width(), 1),
+            ("address", address.width(), self.address_width),
+            ("data", data.width(), self.width),
+        ] {
+            if got != wanted {
+                wrong.push(format!("{what} has {got} bits, not {wanted}"));
+            }
+        }
+        let name = self.graph.inner.borrow().memories[self.index].name.clone();
+        if !wrong.is_empty() {
+            return self.graph.error(format!("memory `{name}`: {}", wrong.join(", ")), place);
+        }
+        if self.graph.inner.borrow().memories[self.index].write.is_some() {
+            return self.graph.error(format!("memory `{name}` is written twice"), place);
+        }
+        self.graph.inner.borrow_mut().memories[self.index].write = Some([ids[0], ids[1], ids[2]]);
+    }
+
+    /// The word that stood at `address` before the last clock edge: a registered read. A read of the address being
+    /// written gives the old word in simulation and must not be relied on.
+    #[track_caller]
+    pub fn read(self, address: Signal<'g>) -> Signal<'g> {
+        let place = Location::caller();
+        let Some(ids) = self.graph.own("memory read", &[address], place) else { return Signal::poison(self.graph) };
+        if address.width() != self.address_width {
+            let name = self.graph.inner.borrow().memories[self.index].name.clone();
+            let message =
+                format!("memory `{name}`: read address has {} bits, not {}", address.width(), self.address_width);
+            self.graph.error(message, place);
+            return Signal::poison(self.graph);
+        }
+        self.graph.shared(Op::MemoryRead { memory: self.index }, self.width, ids, place)
+    }
+}
+
+/// The outputs of an instance.
+#[derive(Clone, Debug)]
+pub struct Instantiated<'g> {
+    graph: &'g Graph,
+    name: String,
+    outputs: Vec<(String, Signal<'g>)>,
+}
+
+impl std::fmt::Debug for Graph {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Graph({})", self.inner.borrow().name)
+    }
+}
+
+impl<'g> Instantiated<'g> {
+    /// The output port of that name.
+    #[track_caller]
+    pub fn output(&self, port: &str) -> Signal<'g> {
+        if let Some((_, signal)) = self.outputs.iter().find(|(name, _)| name == port) {
+            return *signal;
+        }
+        self.graph.error(format!("instance `{}` has no output `{port}`", self.name), Location::caller());
+        Signal::poison(self.graph)
+    }
+}
+
+impl Graph {
+    /// A register that takes `reset` on reset.
+    #[track_caller]
+    pub fn register(&self, name: &str, width: u32, reset: u128) -> Register<'_> {
+        let place = Location::caller();
+        if width < 128 && reset >> width != 0 {
+            self.error(format!("register `{name}`: reset value {reset} does not fit {width} bits"), place);
+        }
+        Register(self.fresh(Op::Register { reset: Some(reset) }, width, vec![], place).named(name))
+    }
+
+    /// A register for data, which is not reset.
+    #[track_caller]
+    pub fn data_register(&self, name: &str, width: u32) -> Register<'_> {
+        Register(self.fresh(Op::Register { reset: None }, width, vec![], Location::caller()).named(name))
+    }
+
+    /// A memory of `depth` ≥ 2 words of `width` bits; its addresses have ⌈log2 depth⌉ bits. Never reset.
+    #[track_caller]
+    pub fn memory(&self, name: &str, depth: u32, width: u32) -> MemoryHandle<'_> {
+        if depth < 2 || width == 0 || !is_identifier(name) {
+            self.error(format!("memory `{name}` of {depth} words of {width} bits"), Location::caller());
+        }
+        let mut inner = self.inner.borrow_mut();
+        inner.memories.push(Memory { name: name.to_owned(), depth, width, write: None });
+        MemoryHandle { graph: self, index: inner.memories.len() - 1, width, address_width: address_width(depth) }
+    }
+
+    /// An instance of `module`; `inputs` names each of its input ports once.
+    #[track_caller]
+    pub fn instance<'g>(&'g self, name: &str, module: &Arc<Module>, inputs: &[(&str, Signal<'g>)]) -> Instantiated<'g> {
+        self.instantiate(name, module, InstanceCount::One, inputs, Location::caller())
+    }
+
+    /// As many instances of `module` as the [`Graph::parameter`] `count` says, sharing their inputs, their outputs
+    /// or-ed together bit by bit. An input port of the module named `index` gets each copy's number.
+    #[track_caller]
+    pub fn array<'g>(
+        &'g self,
+        name: &str,
+        module: &Arc<Module>,
+        count: Signal<'g>,
+        inputs: &[(&str, Signal<'g>)],
+    ) -> Instantiated<'g> {
+        let place = Location::caller();
+        let parameter = count.id().map(|id| self.node(id).op);
+        let count = match parameter {
+            Some(Op::Parameter(index)) => InstanceCount::Parameter(index),
+            _ => {
+                self.error(format!("array `{name}`: `{}` is not a parameter", count.describe()), place);
+                InstanceCount::One
+            }
+        };
+        self.instantiate(name, module, count, inputs, place)
+    }
+
+    fn instantiate<'g>(
+        &'g self,
+        name: &str,
+        module: &Arc<Module>,
+        count: InstanceCount,
+        inputs: &[(&str, Signal<'g>)],
+        place: &'static Location<'static>,
+    ) -> Instantiated<'g> {
+        let signals: Vec<_> = inputs.iter().map(|(_, signal)| *signal).collect();
+        let ids = self.own("instance", &signals, place);
+        let mut connected = vec![None; module.ports.len()];
+        for (position, (port_name, signal)) in inputs.iter().enumerate() {
+            let found = module.port(port_name).filter(|(_, port)| !port.output);
+            let Some((index, port)) = found else {
+                self.error(format!("instance `{name}`: `{}` has no input `{port_name}`", module.name), place);
+                continue;
+            };
+            if signal.width() != 0 && signal.width() != port.width {
+                let message = format!(
+                    "instance `{name}`: input `{port_name}` of `{}` has {} bits, `{}` has {}",
+                    module.name,
+                    port.width,
+                    signal.describe(),
+                    signal.width()
+                );
+                self.error(message, place);
+            }
+            if connected[index].is_some() {
+                self.error(format!("instance `{name}`: input `{port_name}` is connected twice"), place);
+            }
+            connected[index] = ids.as_ref().map(|ids| ids[position]);
+        }
+        for (index, port) in module.ports.iter().enumerate() {
+            let given = inputs.iter().any(|(given, _)| *given == port.name);
+            let implied = count != InstanceCount::One && port.name == "index";
+            if !port.output && !given && !implied {
+                self.error(format!("instance `{name}`: input `{}` is not connected", port.name), place);
+            }
+            debug_assert!(index < connected.len());
+        }
+        if !is_identifier(name) {
+            self.error(format!("instance `{name}` is not a Verilog identifier"), place);
+        }
+        let mut inner = self.inner.borrow_mut();
+        let instance = inner.instances.len();
+        inner.instances.push(Instance { name: name.to_owned(), module: module.clone(), count, inputs: connected });
+        drop(inner);
+        let outputs = module.ports.iter().enumerate().filter(|(_, port)| port.output);
+        let outputs = outputs.map(|(index, port)| {
+            let op = Op::InstanceOutput { instance, port: index };
+            let signal = if ids.is_some() { self.fresh(op, port.width, vec![], place) } else { Signal::poison(self) };
+            (port.name.clone(), signal)
+        });
+        Instantiated { graph: self, name: name.to_owned(), outputs: outputs.collect() }
+    }
+}
+
+/// Bits of an address of `depth` words, at least 1.
+pub(super) fn address_width(depth: u32) -> u32 {
+    depth.saturating_sub(1).checked_ilog2().map_or(1, |log| log + 1)
+}
