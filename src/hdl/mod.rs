@@ -12,6 +12,7 @@ mod keywords;
 mod module;
 mod signal;
 mod state;
+pub mod verilog;
 
 pub use error::{Error, Errors};
 pub use graph::Graph;

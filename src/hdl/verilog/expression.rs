@@ -1,0 +1,119 @@
+//! Expressions. Every operand is as wide as its context wants, so nothing is ever extended or cut silently.
+
+use super::super::module::{Module, Node, NodeId, Op};
+use super::names::Names;
+
+/// Makes the text of values.
+pub(super) struct Expressions<'a> {
+    pub module: &'a Module,
+    pub names: &'a Names,
+}
+
+impl Expressions<'_> {
+    /// A value as it is used: its name, or its expression in place.
+    pub fn value(&self, id: NodeId) -> String {
+        match &self.names.declared[id.index()] {
+            Some(name) => name.clone(),
+            None => self.definition(id),
+        }
+    }
+
+    /// A value as an operand: in parentheses unless it is a single term.
+    fn term(&self, id: NodeId) -> String {
+        let text = self.value(id);
+        let single = self.names.declared[id.index()].is_some()
+            || !matches!(
+                self.module.node(id).op,
+                Op::And | Op::Or | Op::Xor | Op::Add | Op::Sub | Op::Mul | Op::Equal | Op::Less | Op::Mux
+            );
+        if single { text } else { format!("({text})") }
+    }
+
+    /// What a node computes, in terms of its operands.
+    pub fn definition(&self, id: NodeId) -> String {
+        let node = self.module.node(id);
+        let term = |position: usize| self.term(node.operands[position]);
+        let infix = |operator: &str| format!("{} {operator} {}", term(0), term(1));
+        match &node.op {
+            Op::Constant(value) => constant(node.width, *value),
+            Op::Parameter(index) => {
+                let name = &self.module.parameters[*index].name;
+                if node.width == 32 { name.clone() } else { format!("{name}[{}:0]", node.width - 1) }
+            }
+            Op::Not => format!("~{}", term(0)),
+            Op::And => self.gated(node).unwrap_or_else(|| infix("&")),
+            Op::Or => infix("|"),
+            Op::Xor => infix("^"),
+            Op::Add => infix("+"),
+            Op::Sub => infix("-"),
+            Op::Mul => self.product(node),
+            Op::Equal => infix("=="),
+            Op::Less => infix("<"),
+            Op::Mux => format!("{} ? {} : {}", term(0), term(1), term(2)),
+            Op::Concat => self.concatenation(node),
+            Op::Slice { low } => self.slice(node, *low),
+            Op::Any => format!("|{}", term(0)),
+            Op::All => format!("&{}", term(0)),
+            Op::Wire => self.value(node.operands[0]),
+            // State and instance outputs are declared, never written in place.
+            Op::Input | Op::Delay { .. } | Op::Register { .. } | Op::MemoryRead { .. } | Op::InstanceOutput { .. } => {
+                String::new()
+            }
+        }
+    }
+
+    /// `x & {8{c}}` reads better as a choice.
+    fn gated(&self, node: &Node) -> Option<String> {
+        let [value, mask] = node.operands[..] else { return None };
+        let mask_node = self.module.node(mask);
+        let repeated = mask_node.op == Op::Concat
+            && self.names.declared[mask.index()].is_none()
+            && mask_node.operands.iter().all(|o| *o == mask_node.operands[0])
+            && self.module.node(mask_node.operands[0]).width == 1;
+        let condition = mask_node.operands.first().filter(|_| repeated)?;
+        Some(format!("{} ? {} : {}", self.term(*condition), self.term(value), constant(node.width, 0)))
+    }
+
+    fn product(&self, node: &Node) -> String {
+        let [left, right] = [0, 1].map(|position| {
+            let id = node.operands[position];
+            let missing = node.width - self.module.node(id).width;
+            format!("{{{}, {}}}", constant(missing, 0), self.value(id))
+        });
+        format!("{left} * {right}")
+    }
+
+    fn concatenation(&self, node: &Node) -> String {
+        let mut parts = Vec::new();
+        let mut rest = &node.operands[..];
+        while let [first, ..] = rest {
+            let run = rest.iter().take_while(|id| *id == first).count();
+            let text = self.value(*first);
+            parts.push(if run > 1 { format!("{{{run}{{{text}}}}}") } else { text });
+            rest = &rest[run..];
+        }
+        match &parts[..] {
+            [only] if only.starts_with('{') => only.clone(),
+            _ => format!("{{{}}}", parts.join(", ")),
+        }
+    }
+
+    fn slice(&self, node: &Node, low: u32) -> String {
+        let base = self.value(node.operands[0]);
+        if node.width == 1 { format!("{base}[{low}]") } else { format!("{base}[{}:{low}]", low + node.width - 1) }
+    }
+}
+
+/// A sized literal: decimal where that is short, else hexadecimal.
+pub(super) fn constant(width: u32, value: u128) -> String {
+    match width {
+        1 => format!("1'b{value}"),
+        _ if value < 1024 => format!("{width}'d{value}"),
+        _ => format!("{width}'h{value:x}"),
+    }
+}
+
+/// `[7:0] `, or nothing for one bit.
+pub(super) fn range(width: u32) -> String {
+    if width == 1 { String::new() } else { format!("[{}:0] ", width - 1) }
+}

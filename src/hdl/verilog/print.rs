@@ -1,0 +1,109 @@
+//! A module's file from top to bottom: header, ports, logic (by stage where there are stages), state, instances.
+
+use super::super::module::{Module, NodeId, Op};
+use super::Style;
+use super::expression::{Expressions, range};
+use super::names::Names;
+use super::sections::Sections;
+use super::unused::unused;
+
+pub(super) fn print(module: &Module, style: &Style) -> String {
+    let names = Names::of(module, &["clk", style.reset_port()]);
+    let expressions = Expressions { module, names: &names };
+    let mut out = header(module, style);
+    out += &interface(module, style, &names);
+    out += &range_checks(module);
+    let mut sections = Sections::new(module, style, &expressions);
+    out += &sections.body();
+    out += &assignments(module, &names, &expressions);
+    out += &unused(module, &names);
+    out += "\nendmodule\n\n`default_nettype wire\n";
+    out
+}
+
+fn header(module: &Module, style: &Style) -> String {
+    let mut out = String::from("// SPDX-License-Identifier: MIT OR Apache-2.0\n");
+    out += &format!("// {}\n", module.name);
+    for line in &module.about {
+        out += &format!("// {line}\n");
+    }
+    if !style.header.is_empty() {
+        out += "//\n";
+    }
+    for line in &style.header {
+        out += &format!("// {line}\n");
+    }
+    out += "`default_nettype none\n\n";
+    out
+}
+
+fn interface(module: &Module, style: &Style, names: &Names) -> String {
+    let mut out = format!("module {}", module.name);
+    if !module.parameters.is_empty() {
+        let parameters: Vec<_> = module
+            .parameters
+            .iter()
+            .map(|p| format!("  parameter [31:0] {} = 32'd{} // {} to {}", p.name, p.default, p.min, p.max))
+            .collect();
+        out += &format!(" #(\n{}\n)", parameters.join(",\n"));
+    }
+    let mut ports = Vec::new();
+    if module.is_clocked() {
+        ports.push("input  wire clk".to_owned());
+    }
+    if module.is_reset() {
+        ports.push(format!("input  wire {}", style.reset_port()));
+    }
+    for port in &module.ports {
+        let direction = if port.output { "output" } else { "input " };
+        let kind = match port.node {
+            Some(id)
+                if port.output
+                    && names.is_port[id.index()]
+                    && is_register(module, id)
+                    && is_own(names, id, &port.name) =>
+            {
+                "reg "
+            }
+            _ => "wire",
+        };
+        ports.push(format!("{direction} {kind} {}{}", range(port.width), port.name));
+    }
+    out += &format!(" (\n  {}\n);\n", ports.join(",\n  "));
+    out
+}
+
+fn is_own(names: &Names, id: NodeId, port: &str) -> bool {
+    names.declared[id.index()].as_deref() == Some(port)
+}
+
+/// Whether a node is a Verilog `reg`.
+pub(super) fn is_register(module: &Module, id: NodeId) -> bool {
+    matches!(module.node(id).op, Op::Delay { .. } | Op::Register { .. } | Op::MemoryRead { .. })
+        || matches!(module.node(id).op, Op::InstanceOutput { instance, .. }
+            if module.instances[instance].count != super::super::module::InstanceCount::One)
+}
+
+/// A replication by zero is illegal in every tool, so a parameter out of range stops elaboration.
+fn range_checks(module: &Module) -> String {
+    let check = |p: &super::super::module::Parameter| {
+        let name = &p.name;
+        format!(
+            "\n  // Elaboration stops here when {name} is out of range.\n  localparam [0:0] unused_{name}_in_range = \
+             {{(({name} >= 32'd{}) && ({name} <= 32'd{})){{1'b1}}}};\n",
+            p.min, p.max
+        )
+    };
+    module.parameters.iter().map(check).collect()
+}
+
+fn assignments(module: &Module, names: &Names, expressions: &Expressions<'_>) -> String {
+    let mut out = String::new();
+    for port in module.ports.iter().filter(|port| port.output) {
+        let Some(id) = port.node else { continue };
+        if !is_own(names, id, &port.name) {
+            out += &format!("  assign {} = {};\n", port.name, expressions.value(id));
+        }
+    }
+    if out.is_empty() { out } else { format!("\n{out}") }
+}

@@ -1,0 +1,400 @@
+//! The body of a module: logic, registers, memories, delay lines and instances, by stage where there are stages.
+
+use std::collections::BTreeSet;
+
+use super::super::module::{Instance, InstanceCount, LONGEST_REGISTER_DELAY, Memory, Module, NodeId, Op};
+use super::super::state::address_width;
+use super::Style;
+use super::expression::{Expressions, constant, range};
+use super::names::stage;
+use super::print::is_register;
+use super::unused::unconnected;
+
+/// Up to this depth a memory goes to look-up tables, above it to block RAM.
+const DEEPEST_DISTRIBUTED: u32 = 64;
+
+pub(super) struct Sections<'a> {
+    module: &'a Module,
+    style: &'a Style,
+    text: &'a Expressions<'a>,
+}
+
+impl<'a> Sections<'a> {
+    pub fn new(module: &'a Module, style: &'a Style, text: &'a Expressions<'a>) -> Self {
+        Self { module, style, text }
+    }
+
+    pub fn body(&mut self) -> String {
+        let staged = self.module.nodes.iter().any(|node| node.stage.is_some());
+        let pointers = self.delay_pointers();
+        let body = if staged && self.is_feed_forward() { self.by_stage() } else { self.by_kind() };
+        pointers + &body
+    }
+
+    fn is_feed_forward(&self) -> bool {
+        self.module.instances.is_empty()
+            && self.module.memories.is_empty()
+            && !self.module.nodes.iter().any(|node| matches!(node.op, Op::Register { .. }))
+    }
+
+    /// A pipeline: each stage's logic, then the registers that end it.
+    fn by_stage(&self) -> String {
+        let mut out = String::new();
+        let last = self.module.ids().filter_map(|id| stage(self.module, id)).max().unwrap_or(0);
+        for number in 0..=last {
+            let here = |id: &NodeId| stage(self.module, *id) == Some(number);
+            let arriving: Vec<_> = self.module.ids().filter(here).filter(|id| is_register(self.module, *id)).collect();
+            let logic = self.logic(self.module.ids().filter(here));
+            if arriving.is_empty() && logic.is_empty() {
+                continue;
+            }
+            out += &if number == last && logic.is_empty() {
+                "\n  // ---- registered outputs ----\n".to_owned()
+            } else {
+                format!("\n  // ---- stage {number} ----\n")
+            };
+            out += &self.registers(&arriving);
+            out += &logic;
+        }
+        out
+    }
+
+    /// State first, since logic may use it before what feeds it is known; then logic, clocked blocks, instances.
+    fn by_kind(&self) -> String {
+        let state: Vec<_> =
+            self.module.ids().filter(|id| is_register(self.module, *id) && !self.is_array_output(*id)).collect();
+        let mut out = String::new();
+        let memories: String = self.module.memories.iter().map(memory_declaration).collect();
+        if !memories.is_empty() {
+            out += &format!("\n  // ---- memories ----\n{memories}");
+        }
+        let declared: String = state.iter().map(|id| self.declaration(*id)).collect();
+        if !declared.is_empty() {
+            out += &format!("\n  // ---- state ----\n{declared}");
+        }
+        let instances: String = (0..self.module.instances.len()).map(|index| self.instance_outputs(index)).collect();
+        if !instances.is_empty() {
+            out += &format!("\n  // ---- outputs of instances ----\n{instances}");
+        }
+        let logic = self.logic(self.module.ids());
+        if !logic.is_empty() {
+            out += &format!("\n  // ---- logic ----\n{logic}");
+        }
+        let clocked = self.clocked(&state);
+        if !clocked.is_empty() {
+            out += &format!("\n  // ---- at the clock edge ----\n{clocked}");
+        }
+        for instance in &self.module.instances {
+            out += &self.instance(instance);
+        }
+        out
+    }
+
+    fn is_array_output(&self, id: NodeId) -> bool {
+        matches!(self.module.node(id).op, Op::InstanceOutput { .. })
+    }
+
+    /// Declarations and clocked block of the registers that begin a stage.
+    fn registers(&self, ids: &[NodeId]) -> String {
+        let declared: String = ids.iter().map(|id| self.declaration(*id)).collect();
+        declared + &self.clocked(ids)
+    }
+
+    fn declaration(&self, id: NodeId) -> String {
+        let node = self.module.node(id);
+        let Some(name) = &self.text.names.declared[id.index()] else { return String::new() };
+        let mut out = String::new();
+        if let Some(depth) = delay_line(&node.op) {
+            out += &ram(&format!("{name}_line"), depth, node.width);
+        }
+        if !self.text.names.is_port[id.index()] {
+            out += &format!("  reg {}{name};\n", range(node.width));
+        }
+        out
+    }
+
+    fn logic(&self, ids: impl Iterator<Item = NodeId>) -> String {
+        let mut out = String::new();
+        for id in ids {
+            let node = self.module.node(id);
+            let Some(name) = &self.text.names.declared[id.index()] else { continue };
+            if matches!(node.op, Op::Input | Op::InstanceOutput { .. }) || is_register(self.module, id) {
+                continue;
+            }
+            let value = self.text.definition(id);
+            out += &if self.text.names.is_port[id.index()] {
+                format!("  assign {name} = {value};\n")
+            } else {
+                format!("  wire {}{name} = {value};\n", range(node.width))
+            };
+        }
+        out
+    }
+
+    /// Clocked blocks: one for data, one for what is reset.
+    fn clocked(&self, ids: &[NodeId]) -> String {
+        let (mut data, mut reset, mut running) = (String::new(), String::new(), String::new());
+        for id in ids {
+            let node = self.module.node(*id);
+            let Some(name) = &self.text.names.declared[id.index()] else { continue };
+            let operand = |position: usize| self.text.value(node.operands[position]);
+            match &node.op {
+                Op::Delay { .. } => match delay_line(&node.op) {
+                    Some(depth) => {
+                        data += &format!("    {name}_line[delay_{depth}] <= {};\n", operand(0));
+                        data += &format!("    {name} <= {name}_line[delay_{depth}_next];\n");
+                    }
+                    None => data += &self.short_delay(*id, name),
+                },
+                Op::MemoryRead { memory } => {
+                    data += &format!("    {name} <= {}[{}];\n", self.module.memories[*memory].name, operand(0));
+                }
+                Op::Register { reset: value } => {
+                    let enable = node.operands.get(1).map(|id| format!("if ({}) ", self.text.value(*id)));
+                    let line = format!("{}{name} <= {};\n", enable.unwrap_or_default(), operand(0));
+                    match value {
+                        Some(value) => {
+                            reset += &format!("      {name} <= {};\n", constant(node.width, *value));
+                            running += &format!("      {line}");
+                        }
+                        None => data += &format!("    {line}"),
+                    }
+                }
+                _ => {}
+            }
+        }
+        for memory in &self.module.memories {
+            if let Some([enable, address, word]) = memory.write {
+                data += &format!(
+                    "    if ({}) {}[{}] <= {};\n",
+                    self.text.value(enable),
+                    memory.name,
+                    self.text.value(address),
+                    self.text.value(word)
+                );
+            }
+        }
+        let mut out = String::new();
+        if !data.is_empty() {
+            out += &format!("  always @(posedge clk) begin\n{data}  end\n");
+        }
+        if !reset.is_empty() {
+            out += &self.reset_block(&reset, &running);
+        }
+        out
+    }
+
+    /// A delay of a few cycles: a row of registers, the last one under the value's name.
+    fn short_delay(&self, id: NodeId, name: &str) -> String {
+        let node = self.module.node(id);
+        let Op::Delay { cycles } = node.op else { return String::new() };
+        let source = self.text.value(node.operands[0]);
+        if cycles == 1 {
+            return format!("    {name} <= {source};\n");
+        }
+        // The row is one vector, shifted by a word.
+        let width = node.width;
+        let held = (cycles - 1) * width;
+        let shifted = if cycles == 2 { source } else { format!("{{{name}_row[{}:0], {source}}}", held - width - 1) };
+        let oldest = if width == 1 && held == 1 {
+            format!("{name}_row")
+        } else {
+            format!("{name}_row[{}:{}]", held - 1, held - width)
+        };
+        format!("    {name}_row <= {shifted};\n    {name} <= {oldest};\n")
+    }
+
+    fn reset_block(&self, reset: &str, running: &str) -> String {
+        let port = self.style.reset_port();
+        let (edge, test) = if self.style.reset.active_low {
+            (format!("negedge {port}"), format!("!{port}"))
+        } else {
+            (format!("posedge {port}"), port.to_owned())
+        };
+        let sensitivity =
+            if self.style.reset.asynchronous { format!("posedge clk or {edge}") } else { "posedge clk".to_owned() };
+        format!(
+            "  always @({sensitivity}) begin\n    if ({test}) begin\n{reset}    end else begin\n{running}    end\n  end\n"
+        )
+    }
+
+    /// One pointer for all delay lines of a depth: the oldest word is read one place ahead of where the newest goes.
+    fn delay_pointers(&self) -> String {
+        let depths: BTreeSet<u32> = self.module.nodes.iter().filter_map(|node| delay_line(&node.op)).collect();
+        let mut out = String::new();
+        for depth in depths {
+            let width = address_width(depth);
+            let (name, last) = (format!("delay_{depth}"), constant(width, u128::from(depth - 1)));
+            let (zero, one) = (constant(width, 0), constant(width, 1));
+            out += &format!("\n  // Place of the newest word in the delay lines of {depth} cycles.\n");
+            out += &format!("  reg {}{name};\n", range(width));
+            out += &format!("  wire {}{name}_next = ({name} == {last}) ? {zero} : ({name} + {one});\n", range(width));
+            out += &self.reset_block(&format!("      {name} <= {zero};\n"), &format!("      {name} <= {name}_next;\n"));
+        }
+        out
+    }
+
+    fn instance_outputs(&self, index: usize) -> String {
+        let instance = &self.module.instances[index];
+        let mut out = String::new();
+        for (port, name) in unconnected(self.module, index) {
+            let width = instance.module.ports[port].width;
+            match instance.count {
+                InstanceCount::One => out += &format!("  wire {}{name};\n", range(width)),
+                InstanceCount::Parameter(parameter) => {
+                    let count = &self.module.parameters[parameter].name;
+                    out += &format!("  wire [{count}*{width}-1:0] {name}_all;\n");
+                }
+            }
+        }
+        for (port, id) in self.outputs_of(index) {
+            let Some(name) = &self.text.names.declared[id.index()] else { continue };
+            let width = instance.module.ports[port].width;
+            let is_port = self.text.names.is_port[id.index()];
+            match instance.count {
+                InstanceCount::One if !is_port => out += &format!("  wire {}{name};\n", range(width)),
+                InstanceCount::One => {}
+                InstanceCount::Parameter(parameter) => {
+                    let count = &self.module.parameters[parameter].name;
+                    out += &format!("  wire [{count}*{width}-1:0] {name}_all;\n");
+                    if !is_port {
+                        out += &format!("  reg {}{name};\n", range(width));
+                    }
+                }
+            }
+        }
+        out
+    }
+
+    /// The outputs of an instance that something uses: port index and node.
+    fn outputs_of(&self, index: usize) -> Vec<(usize, NodeId)> {
+        let of = |id: NodeId| match self.module.node(id).op {
+            Op::InstanceOutput { instance, port } if instance == index => Some((port, id)),
+            _ => None,
+        };
+        let mut found: Vec<_> = self.module.ids().filter_map(of).collect();
+        found.sort_unstable();
+        found
+    }
+
+    fn connections(&self, instance: &Instance, output: impl Fn(&str, u32) -> String) -> String {
+        let position = self.module.instances.iter().position(|i| std::ptr::eq(i, instance)).unwrap_or(0);
+        let outputs = self.outputs_of(position);
+        let mut list = Vec::new();
+        if instance.module.is_clocked() {
+            list.push((String::from("clk"), String::from("clk")));
+        }
+        if instance.module.is_reset() {
+            list.push((self.style.reset_port().to_owned(), self.style.reset_port().to_owned()));
+        }
+        for (index, port) in instance.module.ports.iter().enumerate() {
+            let value = if port.output {
+                let used = outputs.iter().find(|(number, _)| *number == index);
+                let name = used.and_then(|(_, id)| self.text.names.declared[id.index()].clone());
+                let name = name.unwrap_or_else(|| format!("{}_{}_unused", instance.name, port.name));
+                output(&name, port.width)
+            } else {
+                match instance.inputs[index] {
+                    Some(id) => self.text.value(id),
+                    None => format!("NUMBER[{}:0]", port.width - 1),
+                }
+            };
+            list.push((port.name.clone(), value));
+        }
+        let widest = list.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
+        let lines: Vec<_> = list.iter().map(|(name, value)| format!(".{name:<widest$} ({value})")).collect();
+        lines.join(",\n")
+    }
+
+    fn instance(&self, instance: &Instance) -> String {
+        let (name, module) = (&instance.name, &instance.module.name);
+        let indent = |text: &str, spaces: usize| text.replace('\n', &format!("\n{}", " ".repeat(spaces)));
+        match instance.count {
+            InstanceCount::One => {
+                let list = self.connections(instance, |name, _| name.to_owned());
+                format!("\n  {module} {name} (\n    {}\n  );\n", indent(&list, 4))
+            }
+            InstanceCount::Parameter(parameter) => {
+                let count = &self.module.parameters[parameter].name;
+                let list =
+                    self.connections(instance, |name, width| format!("{name}_all[{name}_copy*{width} +: {width}]"));
+                let copy = format!("{name}_number");
+                let list = replace_copies(&list, &copy);
+                let mut out =
+                    format!("\n  // {count} copies of {module}: the same inputs to all, outputs or-ed together.\n");
+                out += &format!(
+                    "  genvar {copy};\n  generate\n    for ({copy} = 0; {copy} < {count}; {copy} = {copy} + 1) begin : {name}\n"
+                );
+                if instance
+                    .inputs
+                    .iter()
+                    .zip(&instance.module.ports)
+                    .any(|(input, port)| input.is_none() && !port.output)
+                {
+                    out += &format!("      localparam [31:0] NUMBER = {copy};\n");
+                }
+                out +=
+                    &format!("      {module} unit (\n        {}\n      );\n    end\n  endgenerate\n", indent(&list, 8));
+                out + &self.array_or(instance, count)
+            }
+        }
+    }
+
+    fn array_or(&self, instance: &Instance, count: &str) -> String {
+        let position = self.module.instances.iter().position(|i| std::ptr::eq(i, instance)).unwrap_or(0);
+        let outputs: Vec<_> = self
+            .outputs_of(position)
+            .into_iter()
+            .filter_map(|(port, id)| {
+                Some((self.text.names.declared[id.index()].clone()?, instance.module.ports[port].width))
+            })
+            .collect();
+        let place = format!("{}_place", instance.name);
+        let mut out = format!("\n  integer {place};\n  always @* begin\n");
+        for (name, width) in &outputs {
+            out += &format!("    {name} = {};\n", constant(*width, 0));
+        }
+        out += &format!("    for ({place} = 0; {place} < {count}; {place} = {place} + 1) begin\n");
+        for (name, width) in &outputs {
+            out += &format!("      {name} = {name} | {name}_all[{place}*{width} +: {width}];\n");
+        }
+        out + "    end\n  end\n"
+    }
+}
+
+/// Output connections of an array are written with a placeholder for the copy's number.
+fn replace_copies(list: &str, copy: &str) -> String {
+    let mut out = String::new();
+    for line in list.split_inclusive('\n') {
+        match (line.find("_all["), line.find("_copy*")) {
+            (Some(start), Some(end)) => {
+                out += &line[..start + "_all[".len()];
+                out += copy;
+                out += &line[end + "_copy".len()..];
+            }
+            _ => out += line,
+        }
+    }
+    out
+}
+
+/// The depth of the memory behind a delay, where it is one.
+fn delay_line(op: &Op) -> Option<u32> {
+    match op {
+        Op::Delay { cycles } if *cycles > LONGEST_REGISTER_DELAY => Some(*cycles),
+        _ => None,
+    }
+}
+
+fn memory_declaration(memory: &Memory) -> String {
+    ram(&memory.name, memory.depth, memory.width)
+}
+
+fn ram(name: &str, depth: u32, width: u32) -> String {
+    let (vivado, quartus) = if depth <= DEEPEST_DISTRIBUTED { ("distributed", "MLAB") } else { ("block", "M20K") };
+    format!(
+        "  (* ram_style = \"{vivado}\", ramstyle = \"{quartus}, no_rw_check\" *)\n  reg {}{name} [0:{}];\n",
+        range(width),
+        depth - 1
+    )
+}

@@ -1,0 +1,91 @@
+//! Bits that nothing reads, gathered in one wire whose name says so: linters then know it is meant.
+
+use super::super::module::{InstanceCount, Module, NodeId, Op};
+use super::names::Names;
+
+/// The text that names every declared bit nothing reads; empty if there is none.
+pub(super) fn unused(module: &Module, names: &Names) -> String {
+    let used = used_bits(module, names);
+    let mut parts = Vec::new();
+    for port in module.ports.iter().filter(|port| !port.output && port.node.is_none()) {
+        parts.push(port.name.clone());
+    }
+    for id in module.ids() {
+        let Some(name) = &names.declared[id.index()] else { continue };
+        let bits = &used[id.index()];
+        if bits.iter().all(|used| !used) {
+            parts.push(name.clone());
+            continue;
+        }
+        let mut low = 0;
+        while low < bits.len() {
+            if bits[low] {
+                low += 1;
+                continue;
+            }
+            let width = bits[low..].iter().take_while(|used| !**used).count();
+            parts.push(if width == 1 {
+                format!("{name}[{low}]")
+            } else {
+                format!("{name}[{}:{low}]", low + width - 1)
+            });
+            low += width;
+        }
+    }
+    for instance in 0..module.instances.len() {
+        let all = if module.instances[instance].count == InstanceCount::One { "" } else { "_all" };
+        parts.extend(unconnected(module, instance).into_iter().map(|(_, name)| format!("{name}{all}")));
+    }
+    if parts.is_empty() {
+        return String::new();
+    }
+    let mut lines = vec![String::from("\n  // Bits that nothing needs.\n  wire unused = &{1'b0")];
+    for part in parts {
+        let line = lines.last_mut().map(|line| line.rsplit('\n').next().unwrap_or("").len()).unwrap_or(0);
+        let separator = if line + part.len() > 100 { ",\n    " } else { ", " };
+        if let Some(last) = lines.last_mut() {
+            *last += separator;
+            *last += &part;
+        }
+    }
+    lines.concat() + "};\n"
+}
+
+/// Output ports of an instance that nothing uses, with the name of the wire that takes each.
+pub(super) fn unconnected(module: &Module, instance: usize) -> Vec<(usize, String)> {
+    let used = |port: usize| module.nodes.iter().any(|node| node.op == Op::InstanceOutput { instance, port });
+    let of = &module.instances[instance];
+    let ports = of.module.ports.iter().enumerate().filter(|(index, port)| port.output && !used(*index));
+    ports.map(|(index, port)| (index, format!("{}_{}_unused", of.name, port.name))).collect()
+}
+
+/// Which bits of each declared node are read by anything. What is written in place passes on what is read of it.
+fn used_bits(module: &Module, names: &Names) -> Vec<Vec<bool>> {
+    let mut used: Vec<Vec<bool>> = module.nodes.iter().map(|node| vec![false; node.width as usize]).collect();
+    let outputs = module.ports.iter().filter(|port| port.output).filter_map(|port| port.node);
+    let memories = module.memories.iter().filter_map(|memory| memory.write).flatten();
+    let inputs = module.instances.iter().flat_map(|instance| instance.inputs.iter().flatten().copied());
+    let roots: Vec<NodeId> = outputs.chain(memories).chain(inputs).collect();
+    for root in roots {
+        used[root.index()].fill(true);
+    }
+    for id in module.ids() {
+        let node = module.node(id);
+        for operand in &node.operands {
+            match node.op {
+                Op::Slice { low } => used[operand.index()][low as usize..(low + node.width) as usize].fill(true),
+                _ => used[operand.index()].fill(true),
+            }
+        }
+    }
+    // An array's outputs are read through the or over all copies.
+    for id in module.ids() {
+        if let Op::InstanceOutput { instance, .. } = module.node(id).op
+            && module.instances[instance].count != InstanceCount::One
+            && names.is_port[id.index()]
+        {
+            used[id.index()].fill(true);
+        }
+    }
+    used
+}

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// top
+// a counter, a delay line, a memory and an array
+//
+// contact-afu test
+`default_nettype none
+
+module top #(
+  parameter [31:0] SCPUS = 32'd10 // 1 to 64
+) (
+  input  wire clk,
+  input  wire rst,
+  input  wire enable,
+  input  wire [11:0] data,
+  output reg  [11:0] stored,
+  output reg  [11:0] late,
+  output reg  [11:0] later,
+  output reg  [6:0] result,
+  output wire last
+);
+
+  // Elaboration stops here when SCPUS is out of range.
+  localparam [0:0] unused_SCPUS_in_range = {((SCPUS >= 32'd1) && (SCPUS <= 32'd64)){1'b1}};
+
+  // Place of the newest word in the delay lines of 9 cycles.
+  reg [3:0] delay_9;
+  wire [3:0] delay_9_next = (delay_9 == 4'd8) ? 4'd0 : (delay_9 + 4'd1);
+  always @(posedge clk) begin
+    if (rst) begin
+      delay_9 <= 4'd0;
+    end else begin
+      delay_9 <= delay_9_next;
+    end
+  end
+
+  // Place of the newest word in the delay lines of 70 cycles.
+  reg [6:0] delay_70;
+  wire [6:0] delay_70_next = (delay_70 == 7'd69) ? 7'd0 : (delay_70 + 7'd1);
+  always @(posedge clk) begin
+    if (rst) begin
+      delay_70 <= 7'd0;
+    end else begin
+      delay_70 <= delay_70_next;
+    end
+  end
+
+  // ---- memories ----
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [11:0] store [0:11];
+
+  // ---- state ----
+  reg [3:0] position;
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [11:0] late_line [0:8];
+  (* ram_style = "block", ramstyle = "M20K, no_rw_check" *)
+  reg [11:0] later_line [0:69];
+
+  // ---- outputs of instances ----
+  wire [SCPUS*7-1:0] result_all;
+
+  // ---- logic ----
+  wire wrapped = position == 4'd11;
+  assign last = SCPUS[6:0] == data[6:0];
+
+  // ---- at the clock edge ----
+  always @(posedge clk) begin
+    stored <= store[position];
+    late_line[delay_9] <= data;
+    late <= late_line[delay_9_next];
+    later_line[delay_70] <= data;
+    later <= later_line[delay_70_next];
+    if (enable) store[position] <= data;
+  end
+  always @(posedge clk) begin
+    if (rst) begin
+      position <= 4'd0;
+    end else begin
+      if (enable) position <= wrapped ? 4'd0 : (position + 4'd1);
+    end
+  end
+
+  // SCPUS copies of slot: the same inputs to all, outputs or-ed together.
+  genvar slots_number;
+  generate
+    for (slots_number = 0; slots_number < SCPUS; slots_number = slots_number + 1) begin : slots
+      localparam [31:0] NUMBER = slots_number;
+      slot unit (
+        .clk    (clk),
+        .index  (NUMBER[6:0]),
+        .chosen (data[6:0]),
+        .value  (data[11:5]),
+        .result (result_all[slots_number*7 +: 7])
+      );
+    end
+  endgenerate
+
+  integer slots_place;
+  always @* begin
+    result = 7'd0;
+    for (slots_place = 0; slots_place < SCPUS; slots_place = slots_place + 1) begin
+      result = result | result_all[slots_place*7 +: 7];
+    end
+  end
+
+endmodule
+
+`default_nettype wire
