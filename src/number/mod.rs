@@ -2,8 +2,11 @@
 //! this module the netlist's wires. Imports nothing of ours.
 
 mod format;
+mod native;
+mod soft;
 
 pub use format::{Format, FormatError, Subnormals};
+pub use soft::Soft;
 
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, DivAssign, Mul, MulAssign, Not, Sub, SubAssign};

@@ -1,0 +1,117 @@
+//! A word taken apart, and a result put together: the only place that rounds.
+
+use crate::number::Format;
+
+/// What kind of value a number is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Class {
+    Zero,
+    /// Neither zero nor special: exponent and significand count.
+    Finite,
+    Infinity,
+    Nan,
+}
+
+/// A value without a format: ±significand · 2^(exponent − 63).
+///
+/// The significand of a finite value has its leading bit at bit 63. Those of words have at most 53 bits, so the
+/// low eleven are zero. Those of results are exact down to bit 1; bit 0 says whether anything was lost below it
+/// ("sticky"), which is all that rounding needs to know.
+#[derive(Clone, Copy, Debug)]
+pub struct Parts {
+    pub class: Class,
+    pub negative: bool,
+    pub exponent: i32,
+    pub significand: u64,
+}
+
+impl Parts {
+    pub const ONE: Self = Self::finite(false, 0, 1 << 63);
+    pub const NAN: Self = Self { class: Class::Nan, negative: false, exponent: 0, significand: 0 };
+
+    pub const fn zero(negative: bool) -> Self {
+        Self { class: Class::Zero, negative, exponent: 0, significand: 0 }
+    }
+
+    pub const fn infinity(negative: bool) -> Self {
+        Self { class: Class::Infinity, negative, exponent: 0, significand: 0 }
+    }
+
+    pub const fn finite(negative: bool, exponent: i32, significand: u64) -> Self {
+        Self { class: Class::Finite, negative, exponent, significand }
+    }
+
+    pub const fn negated(self) -> Self {
+        Self { negative: !self.negative, ..self }
+    }
+}
+
+/// Reads a word. A subnormal reads as zero where the format flushes them.
+#[inline]
+pub fn unpack(format: Format, bits: u128) -> Parts {
+    // A word is at most 68 bits, but its fraction fits 64.
+    let fraction = bits as u64 & format.fraction_mask() as u64;
+    let head = (bits >> format.fraction_bits()) as u32;
+    let biased = head & format.special_exponent();
+    let negative = head > format.special_exponent();
+    if biased == format.special_exponent() {
+        return if fraction == 0 { Parts::infinity(negative) } else { Parts::NAN };
+    }
+    // The fraction's leading bit goes to bit 62, right below the hidden one.
+    let aligned = fraction << (63 - format.fraction_bits());
+    if biased > 0 {
+        return Parts::finite(negative, biased as i32 - format.bias(), 1 << 63 | aligned);
+    }
+    if fraction == 0 || !format.keeps_subnormals() {
+        return Parts::zero(negative);
+    }
+    let shift = aligned.leading_zeros();
+    Parts::finite(negative, format.min_exponent() - shift as i32, aligned << shift)
+}
+
+/// Rounds a value to nearest, ties to even, and writes its word.
+#[inline]
+pub fn pack(format: Format, value: Parts) -> u128 {
+    let sign = if value.negative { format.sign_mask() } else { 0 };
+    match value.class {
+        Class::Nan => format.nan_bits(),
+        Class::Infinity => sign | format.infinity_bits(),
+        Class::Zero => sign,
+        Class::Finite => sign | pack_magnitude(format, value.exponent, value.significand),
+    }
+}
+
+fn pack_magnitude(format: Format, exponent: i32, significand: u64) -> u128 {
+    let below = format.min_exponent() - exponent;
+    let dropped = 64 - format.significand_bits();
+    if below > 0 && format.keeps_subnormals() {
+        // Gradual underflow: more bits are dropped. A carry out of the fraction lands in the exponent field,
+        // which then says "smallest normal", as it should.
+        return u128::from(round_shift(significand, dropped.saturating_add(below as u32)));
+    }
+    let mut rounded = round_shift(significand, dropped);
+    let mut exponent = exponent;
+    if rounded >> format.significand_bits() != 0 {
+        rounded >>= 1;
+        exponent += 1;
+    }
+    if exponent < format.min_exponent() {
+        return 0;
+    }
+    if exponent > format.bias() {
+        return format.infinity_bits();
+    }
+    let biased = (exponent + format.bias()) as u128;
+    biased << format.fraction_bits() | u128::from(rounded) & format.fraction_mask()
+}
+
+/// `value` / 2^`shift`, to the nearest integer, ties to even. `shift` is at least 1; bit 0 of `value` may be sticky.
+fn round_shift(value: u64, shift: u32) -> u64 {
+    if shift > 64 {
+        return 0; // less than a half
+    }
+    let half = 1_u64 << (shift - 1);
+    let rest = value & (half | (half - 1));
+    let kept = value.checked_shr(shift).unwrap_or(0);
+    kept + u64::from(rest > half || rest == half && kept & 1 == 1)
+}
