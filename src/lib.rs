@@ -3,6 +3,7 @@
 //! `ARCHITECTURE.md` is the map: which module does what and who may import whom.
 
 pub mod afu;
+pub mod config;
 #[cfg(feature = "cosim")]
 pub mod cosim;
 pub mod hdl;

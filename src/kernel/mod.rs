@@ -1,1 +1,5 @@
-//! (in the making)
+//! The contact mathematics, written once. Imports `number` only.
+
+mod fields;
+
+pub use fields::{Fields, FieldsError};

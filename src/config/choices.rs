@@ -1,0 +1,92 @@
+//! The options that are one of a few words.
+
+use std::fmt;
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
+
+/// Not one of an option's words.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("unknown {what} `{given}`: use {words}")]
+pub struct ChoiceError {
+    what: &'static str,
+    given: String,
+    words: String,
+}
+
+macro_rules! choice {
+    ($(#[$about:meta])* $name:ident, $what:literal, default $default:ident, $($(#[$note:meta])* $variant:ident = $word:literal),+) => {
+        $(#[$about])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+        #[serde(rename_all = "lowercase")]
+        pub enum $name {
+            $($(#[$note])* $variant),+
+        }
+
+        impl Default for $name {
+            fn default() -> Self {
+                Self::$default
+            }
+        }
+
+        impl fmt::Display for $name {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(match self { $(Self::$variant => $word),+ })
+            }
+        }
+
+        impl FromStr for $name {
+            type Err = ChoiceError;
+
+            fn from_str(text: &str) -> Result<Self, ChoiceError> {
+                match text {
+                    $($word => Ok(Self::$variant),)+
+                    _ => Err(ChoiceError { what: $what, given: text.to_owned(), words: [$($word),+].join(", ") }),
+                }
+            }
+        }
+    };
+}
+
+choice!(
+    /// How pairs are given to the AFU.
+    Input, "input", default Direct,
+    /// Both spheres of every pair, whole.
+    Direct = "direct",
+    /// A table of spheres, then pairs of 16-bit indices.
+    Indexed = "indexed",
+    /// A table of spheres, of which every pair is tried.
+    All = "all"
+);
+
+choice!(
+    /// Which pairs come back.
+    Results, "results", default All,
+    /// A record for every pair, in order.
+    All = "all",
+    /// Only contacts, each with its pair's number.
+    Hits = "hits"
+);
+
+choice!(
+    /// What stands around the line port.
+    Shell, "shell", default Line,
+    /// Nothing: the line port is the top.
+    Line = "line",
+    /// Intel HARP v1, as in the paper.
+    Spl2 = "spl2",
+    /// An AXI4 master and an AXI4-Lite slave.
+    Axi = "axi"
+);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wrong_word_lists_the_right_ones() {
+        assert_eq!("spl2".parse(), Ok(Shell::Spl2));
+        let error = "pcie".parse::<Shell>().expect_err("no such shell").to_string();
+        assert_eq!(error, "unknown shell `pcie`: use line, spl2, axi");
+    }
+}

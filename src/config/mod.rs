@@ -1,0 +1,182 @@
+//! What an AFU is asked to be: one value, read from flags or a file, that generator, simulation and reports share.
+
+mod choices;
+mod profile;
+
+pub use choices::{Input, Results, Shell};
+pub use profile::Profile;
+
+use serde::{Deserialize, Serialize};
+
+use crate::kernel::Fields;
+
+/// The numbers of SCPUs an AFU can have.
+pub const SCPUS: std::ops::RangeInclusive<u32> = 1..=64;
+
+/// The configuration of an AFU. [`Config::default`] is the AFU whose Verilog lies in `rtl/`.
+///
+/// In JSON it is the object `config` of a manifest; a key left out has its default, an unknown key is refused.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Config {
+    /// Sphere Collision Processing Units. A Verilog parameter: it changes no other file than the top's default.
+    pub scpus: u32,
+    /// Initiation interval: cycles from one pair to the next in one SCPU.
+    pub interval: u32,
+    /// The arithmetic.
+    pub profile: Profile,
+    /// Which results come back.
+    #[serde(with = "text")]
+    pub contact: Fields,
+    /// How pairs are given.
+    pub input: Input,
+    /// Which pairs come back.
+    pub results: Results,
+    /// The shell around the line port.
+    pub shell: Shell,
+    /// The clock that stages are cut for, in MHz; simulated time is told in it.
+    pub clock_mhz: f64,
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        Self {
+            scpus: 10,
+            interval: 1,
+            profile: Profile::WIDE,
+            contact: Fields::ALL,
+            input: Input::Direct,
+            results: Results::All,
+            shell: Shell::Line,
+            clock_mhz: 200.0,
+        }
+    }
+}
+
+/// Why a configuration is refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Error {
+    /// Outside [`SCPUS`].
+    #[error("{0} SCPUs: an AFU has 1 to 64")]
+    Scpus(u32),
+    /// Not a frequency one can cut stages for.
+    #[error("clock {0} MHz: give a frequency from 1 to 2000 MHz")]
+    Clock(f64),
+    /// Known to the design, not built yet.
+    #[error("{option} {value}: not built yet; {instead}")]
+    NotYet {
+        /// The option.
+        option: &'static str,
+        /// What was asked of it.
+        value: String,
+        /// What there is.
+        instead: &'static str,
+    },
+}
+
+impl Config {
+    /// Whether such an AFU can be generated.
+    ///
+    /// # Errors
+    /// What is out of range, or not built yet.
+    pub fn check(&self) -> Result<(), Error> {
+        if !SCPUS.contains(&self.scpus) {
+            return Err(Error::Scpus(self.scpus));
+        }
+        if !(1.0..=2000.0).contains(&self.clock_mhz) {
+            return Err(Error::Clock(self.clock_mhz));
+        }
+        let not_yet = |option, value: String, instead| Err(Error::NotYet { option, value, instead });
+        if self.interval != 1 {
+            return not_yet("interval", self.interval.to_string(), "an SCPU takes a pair every cycle (1)");
+        }
+        if self.input != Input::Direct {
+            return not_yet("input", self.input.to_string(), "pairs are given whole (direct)");
+        }
+        if self.results != Results::All {
+            return not_yet("results", self.results.to_string(), "a record comes back for every pair (all)");
+        }
+        if self.shell != Shell::Line {
+            return not_yet("shell", self.shell.to_string(), "the top is the line port itself (line)");
+        }
+        Ok(())
+    }
+
+    /// One clock cycle, in nanoseconds.
+    pub fn cycle_ns(&self) -> f64 {
+        1000.0 / self.clock_mhz
+    }
+
+    /// The options that give this configuration, those of the default left out.
+    pub fn flags(&self) -> Vec<String> {
+        let default = Self::default();
+        let pairs = [
+            ("--scpus", self.scpus.to_string(), default.scpus.to_string()),
+            ("--interval", self.interval.to_string(), default.interval.to_string()),
+            ("--profile", self.profile.to_string(), default.profile.to_string()),
+            ("--contact", self.contact.to_string(), default.contact.to_string()),
+            ("--input", self.input.to_string(), default.input.to_string()),
+            ("--results", self.results.to_string(), default.results.to_string()),
+            ("--shell", self.shell.to_string(), default.shell.to_string()),
+            ("--clock", self.clock_mhz.to_string(), default.clock_mhz.to_string()),
+        ];
+        let differing = pairs.into_iter().filter(|(_, mine, default)| mine != default);
+        differing.flat_map(|(flag, mine, _)| [flag.to_owned(), mine]).collect()
+    }
+}
+
+/// Values that are a line of text in JSON.
+mod text {
+    use std::fmt::Display;
+    use std::str::FromStr;
+
+    use serde::{Deserialize, Deserializer, Serializer, de::Error};
+
+    pub(super) fn serialize<T: Display, S: Serializer>(value: &T, to: S) -> Result<S::Ok, S::Error> {
+        to.collect_str(value)
+    }
+
+    pub(super) fn deserialize<'de, T: FromStr<Err: Display>, D: Deserializer<'de>>(from: D) -> Result<T, D::Error> {
+        String::deserialize(from)?.parse().map_err(D::Error::custom)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn json_keeps_a_configuration() {
+        let config = Config { scpus: 3, contact: Fields::HIT, clock_mhz: 312.5, ..Config::default() };
+        let json = serde_json::to_string(&config).expect("plain values");
+        assert_eq!(serde_json::from_str::<Config>(&json).expect("as written"), config);
+        assert_eq!(serde_json::from_str::<Config>("{}").expect("all defaults"), Config::default());
+        let unknown = serde_json::from_str::<Config>(r#"{"scpu": 3}"#).expect_err("no such key");
+        assert!(unknown.to_string().contains("scpu"), "{unknown}");
+    }
+
+    #[test]
+    fn flags_name_only_what_differs() {
+        assert!(Config::default().flags().is_empty());
+        let config = Config { scpus: 3, profile: "paper".parse().expect("a profile"), ..Config::default() };
+        assert_eq!(config.flags(), ["--scpus", "3", "--profile", "paper"]);
+    }
+
+    #[test]
+    fn what_is_not_built_is_refused() {
+        assert_eq!(Config::default().check(), Ok(()));
+        let bad = [
+            (Config { scpus: 0, ..Config::default() }, "0 SCPUs"),
+            (Config { scpus: 65, ..Config::default() }, "65 SCPUs"),
+            (Config { clock_mhz: f64::NAN, ..Config::default() }, "clock NaN"),
+            (Config { interval: 2, ..Config::default() }, "interval 2"),
+            (Config { input: Input::Indexed, ..Config::default() }, "input indexed"),
+            (Config { results: Results::Hits, ..Config::default() }, "results hits"),
+            (Config { shell: Shell::Axi, ..Config::default() }, "shell axi"),
+        ];
+        for (config, begins) in bad {
+            let error = config.check().expect_err(begins).to_string();
+            assert!(error.starts_with(begins), "{error}");
+        }
+    }
+}

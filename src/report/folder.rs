@@ -1,0 +1,204 @@
+//! A folder of results, written aside and renamed into place: it is there whole, or not at all.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use tempfile::TempDir;
+
+use super::manifest;
+
+/// Why a folder of results could not be written.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// Something is there that this program did not write.
+    #[error("{}: not written by afu (no manifest.json of ours in it); choose another folder, or give --force to replace it", .0.display())]
+    Foreign(PathBuf),
+    /// The path names something other than a folder.
+    #[error("{}: is not a folder", .0.display())]
+    NotAFolder(PathBuf),
+    /// A file inside would leave the folder.
+    #[error("{0}: a file of a result folder has a plain relative path")]
+    Path(String),
+    /// The file system refused.
+    #[error("{}: {error}", path.display())]
+    Io {
+        /// What was being written.
+        path: PathBuf,
+        /// What the file system said.
+        error: io::Error,
+    },
+}
+
+/// A folder in the making, next to where it will stand.
+///
+/// Dropped before [`Folder::commit`], it leaves nothing behind.
+pub struct Folder {
+    aside: TempDir,
+    target: PathBuf,
+}
+
+impl Folder {
+    /// Begins a folder that will stand at `target`.
+    ///
+    /// # Errors
+    /// When `target` exists and neither is empty nor carries a manifest of ours, unless `force`.
+    pub fn begin(target: &Path, force: bool) -> Result<Self, Error> {
+        check(target, force)?;
+        let parent = match target.parent() {
+            Some(parent) if !parent.as_os_str().is_empty() => parent,
+            _ => Path::new("."),
+        };
+        fs::create_dir_all(parent).map_err(at(parent))?;
+        let aside = tempfile::Builder::new().prefix(".afu-").tempdir_in(parent).map_err(at(parent))?;
+        Ok(Self { aside, target: target.to_owned() })
+    }
+
+    /// Adds a file; `path` is relative and may name folders.
+    ///
+    /// # Errors
+    /// When the path is not plain, or the file system refuses.
+    pub fn write(&self, path: &str, bytes: &[u8]) -> Result<(), Error> {
+        let plain = |c: std::path::Component<'_>| matches!(c, std::path::Component::Normal(_));
+        if path.is_empty() || !Path::new(path).components().all(plain) {
+            return Err(Error::Path(path.to_owned()));
+        }
+        let file = self.aside.path().join(path);
+        if let Some(folder) = file.parent() {
+            fs::create_dir_all(folder).map_err(at(folder))?;
+        }
+        fs::write(&file, bytes).map_err(at(&file))
+    }
+
+    /// Puts the folder in its place, instead of what stood there.
+    ///
+    /// # Errors
+    /// When the file system refuses; what stood there then stands there still.
+    pub fn commit(self) -> Result<(), Error> {
+        let Self { aside, target } = self;
+        share(aside.path()).map_err(at(aside.path()))?;
+        // The old folder is moved aside too, so that a failing rename can be undone.
+        let old = if target.exists() {
+            let parent = aside.path().parent().unwrap_or(Path::new("."));
+            let old = tempfile::Builder::new().prefix(".afu-old-").tempdir_in(parent).map_err(at(parent))?;
+            fs::rename(&target, old.path().join("old")).map_err(at(&target))?;
+            Some(old)
+        } else {
+            None
+        };
+        let aside = aside.keep();
+        if let Err(error) = fs::rename(&aside, &target) {
+            if let Some(old) = &old {
+                let _ = fs::rename(old.path().join("old"), &target);
+            }
+            let _ = fs::remove_dir_all(&aside);
+            return Err(Error::Io { path: target, error });
+        }
+        Ok(())
+    }
+}
+
+/// Whether results may be put at `target`: nothing there, an empty folder, or one of ours.
+///
+/// # Errors
+/// [`Error::Foreign`] or [`Error::NotAFolder`] when they may not.
+pub fn check(target: &Path, force: bool) -> Result<(), Error> {
+    match fs::read_dir(target) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
+        Err(error) if error.kind() == io::ErrorKind::NotADirectory => Err(Error::NotAFolder(target.to_owned())),
+        Err(error) => Err(Error::Io { path: target.to_owned(), error }),
+        Ok(mut entries) => {
+            if force || entries.next().is_none() || manifest::is_ours(target) {
+                Ok(())
+            } else {
+                Err(Error::Foreign(target.to_owned()))
+            }
+        }
+    }
+}
+
+/// Replaces one file whole: written aside, then renamed over the old one.
+///
+/// # Errors
+/// When the file system refuses; the old file is then as it was.
+pub fn replace_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+    let parent = match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    let aside = tempfile::Builder::new().prefix(".afu-").tempfile_in(parent).map_err(at(path))?;
+    fs::write(aside.path(), bytes).map_err(at(path))?;
+    readable(aside.path(), 0o644).map_err(at(path))?;
+    aside.persist(path).map_err(|failed| Error::Io { path: path.to_owned(), error: failed.error })?;
+    Ok(())
+}
+
+fn at(path: &Path) -> impl FnOnce(io::Error) -> Error + use<> {
+    let path = path.to_owned();
+    move |error| Error::Io { path, error }
+}
+
+/// Temporary folders are private to their maker; a result is for everybody.
+fn share(folder: &Path) -> io::Result<()> {
+    readable(folder, 0o755)
+}
+
+#[cfg(unix)]
+fn readable(path: &Path, mode: u32) -> io::Result<()> {
+    use std::os::unix::fs::PermissionsExt;
+    fs::set_permissions(path, fs::Permissions::from_mode(mode))
+}
+
+#[cfg(not(unix))]
+fn readable(_path: &Path, _mode: u32) -> io::Result<()> {
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_folder_appears_whole_and_replaces_only_ours() {
+        let room = tempfile::tempdir().expect("a temporary folder");
+        let target = room.path().join("deep/out");
+        let begun = Folder::begin(&target, false).expect("nothing there");
+        begun.write("a/b.txt", b"one").expect("written");
+        begun.write("manifest.json", br#"{"schema": "contact-afu/manifest/1"}"#).expect("written");
+        assert!(!target.exists());
+        begun.commit().expect("renamed");
+        assert_eq!(fs::read(target.join("a/b.txt")).expect("there"), b"one");
+
+        let again = Folder::begin(&target, false).expect("ours may be replaced");
+        again.write("manifest.json", br#"{"schema": "contact-afu/manifest/1"}"#).expect("written");
+        again.commit().expect("renamed");
+        assert!(!target.join("a").exists(), "what stood there is gone");
+
+        fs::remove_file(target.join("manifest.json")).expect("removed");
+        fs::write(target.join("thesis.txt"), "years").expect("written");
+        assert!(matches!(Folder::begin(&target, false), Err(Error::Foreign(_))));
+        drop(Folder::begin(&target, true).expect("forced"));
+        assert!(target.join("thesis.txt").exists(), "an abandoned folder changes nothing");
+        let left: Vec<_> = fs::read_dir(room.path().join("deep")).expect("there").collect();
+        assert_eq!(left.len(), 1, "nothing is left aside: {left:?}");
+    }
+
+    #[test]
+    fn a_file_stays_inside_its_folder() {
+        let room = tempfile::tempdir().expect("a temporary folder");
+        let begun = Folder::begin(&room.path().join("out"), false).expect("nothing there");
+        for path in ["../x", "/x", "a/../../x", ""] {
+            assert!(matches!(begun.write(path, b""), Err(Error::Path(_))), "{path}");
+        }
+    }
+
+    #[test]
+    fn a_file_is_no_folder() {
+        let room = tempfile::tempdir().expect("a temporary folder");
+        let file = room.path().join("f");
+        replace_file(&file, b"old").expect("written");
+        replace_file(&file, b"new").expect("written");
+        assert_eq!(fs::read(&file).expect("there"), b"new");
+        assert!(matches!(check(&file, true), Err(Error::NotAFolder(_))));
+    }
+}
