@@ -5,6 +5,7 @@
 //! them together or a [`Module`], from which nothing can be taken that its outputs do not need.
 
 mod error;
+mod evaluate;
 mod finish;
 mod fold;
 mod graph;
@@ -15,6 +16,7 @@ mod state;
 pub mod verilog;
 
 pub use error::{Error, Errors};
+pub use evaluate::{EvaluateError, Evaluator, Pin};
 pub use graph::Graph;
 pub use module::{Instance, InstanceCount, Memory, Module, Node, NodeId, Op, Parameter, Port, Reset};
 pub use signal::Signal;
