@@ -20,6 +20,11 @@ impl Fields {
     pub const ALL: Self = Self { depth: true, normal: true, position: true };
     /// Contact or not, nothing else.
     pub const HIT: Self = Self { depth: false, normal: false, position: false };
+
+    /// Whether the distance itself is needed, and so a square root. Which pairs touch is decided without one.
+    pub const fn need_distance(self) -> bool {
+        self.depth || self.normal || self.position
+    }
 }
 
 impl Default for Fields {

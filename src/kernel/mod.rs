@@ -1,5 +1,12 @@
-//! The contact mathematics, written once. Imports `number` only.
+//! The contact of two spheres, written once for every [`Number`](crate::number::Number): the reference kernel, its
+//! exact twins and the netlist are readings of [`contact`]. Records are what memory holds.
 
+mod contact;
 mod fields;
+mod record;
+mod reference;
 
+pub use contact::{Contact, Pair, contact};
 pub use fields::{Fields, FieldsError};
+pub use record::{ContactRecord, Flow, PAIR_FIELDS, PairRecord};
+pub use reference::Reference;

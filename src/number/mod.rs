@@ -53,7 +53,7 @@ pub trait Number:
     fn root_exceeds(self, bound: Self) -> Self::Bool;
     /// `yes` where `condition` holds, else `no`.
     fn select(condition: Self::Bool, yes: Self, no: Self) -> Self;
-    /// This number in another format, rounded once.
+    /// This number in another format, rounded once; in its own format it stays as it is.
     fn to(self, format: Format) -> Self;
     /// Gives the value a name in generated hardware; elsewhere nothing.
     #[must_use]

@@ -21,7 +21,7 @@ impl Words {
     fn fraction(&mut self, chance: u64) -> u64 {
         let mask = (1 << self.fraction_bits) - 1;
         let raw = self.random.random::<u64>();
-        let one = 1 << (raw >> 32) % u64::from(self.fraction_bits);
+        let one = 1 << ((raw >> 32) % u64::from(self.fraction_bits));
         mask & match chance & 7 {
             0 => one,
             1 => !one,
