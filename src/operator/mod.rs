@@ -1,1 +1,148 @@
-//! (in the making)
+//! Floating-point hardware for any [`Format`]: one file an operator, each a graph of bit operations that rounds once,
+//! to nearest, ties to even, and equals its twin in [`crate::number::Soft`] bit for bit.
+//!
+//! Operators are made combinational ([`build`]) and cut into stages for a clock afterwards.
+
+mod add;
+mod compare;
+mod convert;
+mod div;
+mod halve;
+mod mul;
+mod parts;
+mod recip;
+mod root_exceeds;
+mod sqrt;
+mod twin;
+
+use std::sync::Arc;
+
+use crate::hdl::{Errors, Graph, Module};
+use crate::number::Format;
+
+/// What an operator computes, of operands `a` and `b` in one format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Operator {
+    /// a + b.
+    Add,
+    /// a − b.
+    Sub,
+    /// a · b.
+    Mul,
+    /// a / b.
+    Div,
+    /// 1 / a.
+    Recip,
+    /// √a.
+    Sqrt,
+    /// a · ½.
+    Halve,
+    /// a > b; one bit.
+    Greater,
+    /// a ≤ b; one bit.
+    AtMost,
+    /// Whether √a, rounded, is greater than b; one bit.
+    RootExceeds,
+    /// a in another format.
+    Convert {
+        /// The format of the result.
+        to: Format,
+    },
+}
+
+impl Operator {
+    /// How many operands it has: 1 or 2.
+    pub const fn operands(self) -> usize {
+        match self {
+            Self::Recip | Self::Sqrt | Self::Halve | Self::Convert { .. } => 1,
+            _ => 2,
+        }
+    }
+
+    /// The width of its result, in bits.
+    pub const fn result_bits(self, format: Format) -> u32 {
+        match self {
+            Self::Greater | Self::AtMost | Self::RootExceeds => 1,
+            Self::Convert { to } => to.width(),
+            _ => format.width(),
+        }
+    }
+
+    /// A short name in lower case, as in `add`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Add => "add",
+            Self::Sub => "sub",
+            Self::Mul => "mul",
+            Self::Div => "div",
+            Self::Recip => "recip",
+            Self::Sqrt => "sqrt",
+            Self::Halve => "halve",
+            Self::Greater => "greater",
+            Self::AtMost => "at_most",
+            Self::RootExceeds => "root_exceeds",
+            Self::Convert { .. } => "convert",
+        }
+    }
+
+    /// The name of its module, as in `fp_add_e8f23`.
+    pub fn module_name(self, format: Format) -> String {
+        match self {
+            Self::Convert { to } => format!("fp_convert_{format}_to_{to}"),
+            _ => format!("fp_{}_{format}", self.name()),
+        }
+    }
+
+    fn about(self) -> String {
+        match self {
+            Self::Add => "result = a + b, rounded once".to_owned(),
+            Self::Sub => "result = a - b, rounded once".to_owned(),
+            Self::Mul => "result = a * b, rounded once".to_owned(),
+            Self::Div => "result = a / b, rounded once".to_owned(),
+            Self::Recip => "result = 1 / a, rounded once".to_owned(),
+            Self::Sqrt => "result = square root of a, rounded once".to_owned(),
+            Self::Halve => "result = a / 2, rounded once".to_owned(),
+            Self::Greater => "result = a > b; clear when either is a NaN".to_owned(),
+            Self::AtMost => "result = a <= b; clear when either is a NaN".to_owned(),
+            Self::RootExceeds => "result = (square root of a, rounded) > b, decided without the root".to_owned(),
+            Self::Convert { to } => format!("result = a in {to}, rounded once"),
+        }
+    }
+}
+
+/// The operator as a combinational module: inputs `a` and, of two operands, `b`; output `result`.
+///
+/// # Errors
+/// What the graph recorded.
+pub fn build(operator: Operator, format: Format) -> Result<Arc<Module>, Errors> {
+    let graph = Graph::new(operator.module_name(format));
+    graph.about(operator.about());
+    graph.about(about_format(format));
+    let a = graph.input("a", format.width());
+    let b = if operator.operands() == 2 { graph.input("b", format.width()) } else { a };
+    let result = match operator {
+        Operator::Add => add::add(a, b, format, false),
+        Operator::Sub => add::add(a, b, format, true),
+        Operator::Mul => mul::mul(a, b, format),
+        Operator::Div => div::div(a, b, format),
+        Operator::Recip => recip::recip(a, format),
+        Operator::Sqrt => sqrt::sqrt(a, format),
+        Operator::Halve => halve::halve(a, format),
+        Operator::Greater => compare::greater(a, b, format),
+        Operator::AtMost => compare::at_most(a, b, format),
+        Operator::RootExceeds => root_exceeds::root_exceeds(a, b, format),
+        Operator::Convert { to } => convert::convert(a, format, to),
+    };
+    graph.output("result", result);
+    graph.finish()
+}
+
+fn about_format(format: Format) -> String {
+    format!(
+        "{format}: sign, {} exponent bits (bias {}), {} fraction bits; subnormals {}; nearest, ties to even",
+        format.exponent_bits(),
+        format.bias(),
+        format.fraction_bits(),
+        if format.keeps_subnormals() { "kept" } else { "flushed to zero" }
+    )
+}

@@ -1,0 +1,15 @@
+//! What operators are put together from: operands taken apart, shifters, counters, products, rounding.
+
+mod leading_zeros;
+mod operand;
+mod product;
+mod round;
+mod shift;
+mod signed;
+
+pub use leading_zeros::leading_zeros;
+pub use operand::Operand;
+pub use product::{product, square};
+pub use round::{Rounded, Special, Unrounded, nearest_even, pack, round};
+pub use shift::{shift_left, shift_right_sticky};
+pub use signed::Signed;

@@ -1,0 +1,112 @@
+//! An operand taken apart: sign, exponent, significand and what kind of value it is.
+
+use super::{Signed, leading_zeros, shift_left};
+use crate::hdl::Signal;
+use crate::number::Format;
+
+/// The fields of a floating-point word, with names that begin with the operand's.
+#[derive(Clone, Copy)]
+pub struct Operand<'g> {
+    prefix: &'static str,
+    format: Format,
+    /// The sign bit.
+    pub sign: Signal<'g>,
+    /// The biased exponent as it stands in the word.
+    pub exponent: Signal<'g>,
+    /// The fraction as it stands in the word.
+    pub fraction: Signal<'g>,
+    /// The leading bit of the significand: clear for zeros and subnormals.
+    pub hidden: Signal<'g>,
+}
+
+impl<'g> Operand<'g> {
+    /// Takes `word`, which is in `format`, apart.
+    #[track_caller]
+    pub fn unpack(word: Signal<'g>, format: Format, prefix: &'static str) -> Self {
+        let fraction_bits = format.fraction_bits();
+        let exponent = word.slice(fraction_bits, format.exponent_bits()).named(&format!("{prefix}_exponent"));
+        Self {
+            prefix,
+            format,
+            sign: word.msb().named(&format!("{prefix}_sign")),
+            exponent,
+            fraction: word.low(fraction_bits).named(&format!("{prefix}_fraction")),
+            hidden: exponent.any().named(&format!("{prefix}_hidden")),
+        }
+    }
+
+    fn name(&self, signal: Signal<'g>, what: &str) -> Signal<'g> {
+        signal.named(&format!("{}_{what}", self.prefix))
+    }
+
+    /// Exponent and fraction together, in which larger magnitudes are larger integers.
+    #[track_caller]
+    pub fn magnitude(&self) -> Signal<'g> {
+        self.name(self.exponent.concat(self.fraction), "magnitude")
+    }
+
+    /// One bit: reads as zero. Where subnormals are flushed they do.
+    #[track_caller]
+    pub fn is_zero(&self) -> Signal<'g> {
+        let zero = if self.format.keeps_subnormals() { !self.hidden & self.fraction.is_zero() } else { !self.hidden };
+        self.name(zero, "is_zero")
+    }
+
+    /// One bit: an infinity.
+    #[track_caller]
+    pub fn is_infinity(&self) -> Signal<'g> {
+        self.name(self.is_special() & self.fraction.is_zero(), "is_infinity")
+    }
+
+    /// One bit: a NaN.
+    #[track_caller]
+    pub fn is_nan(&self) -> Signal<'g> {
+        self.name(self.is_special() & self.fraction.any(), "is_nan")
+    }
+
+    /// One bit: an infinity or a NaN.
+    #[track_caller]
+    pub fn is_special(&self) -> Signal<'g> {
+        self.name(self.exponent.all(), "is_special")
+    }
+
+    /// Hidden bit and fraction; all clear for what reads as zero.
+    #[track_caller]
+    pub fn significand(&self) -> Signal<'g> {
+        let kept = self.format.keeps_subnormals();
+        let fraction = if kept { self.fraction } else { self.fraction.gate(self.hidden) };
+        self.name(self.hidden.concat(fraction), "significand")
+    }
+
+    /// The biased exponent that goes with [`Operand::significand`]: that of subnormals is 1.
+    #[track_caller]
+    pub fn effective_exponent(&self) -> Signal<'g> {
+        if !self.format.keeps_subnormals() {
+            return self.exponent;
+        }
+        let low = self.exponent.bit(0) | !self.hidden;
+        self.name(self.exponent.drop_low(1).concat(low), "effective_exponent")
+    }
+
+    /// Biased exponent and significand with the leading bit set, as if the exponent had no lower end. Only for what
+    /// is neither zero nor special.
+    #[track_caller]
+    pub fn normalised(&self) -> (Signed<'g>, Signal<'g>) {
+        let graph = self.fraction.graph();
+        let largest = i64::from(self.format.special_exponent()) - 1;
+        if !self.format.keeps_subnormals() {
+            let significand = self.name(graph.constant(1, 1).concat(self.fraction), "significand");
+            return (Signed::unsigned(self.exponent, 1, largest), significand);
+        }
+        let unshifted = self.significand();
+        let (zeros, _) = leading_zeros(unshifted, &format!("{}_significand", self.prefix));
+        let zeros = self.name(zeros, "leading_zeros");
+        let significand = self.name(shift_left(unshifted, zeros, &format!("{}_normalise", self.prefix)), "normalised");
+        let most = i64::from(self.format.fraction_bits());
+        let exponent = Signed::unsigned(self.effective_exponent(), 1, largest)
+            .minus(Signed::unsigned(zeros, 0, most))
+            .with_range(1 - most, largest)
+            .named(&format!("{}_normalised_exponent", self.prefix));
+        (exponent, significand)
+    }
+}

@@ -1,0 +1,86 @@
+//! Wide products from tiles that fit a DSP block.
+
+use crate::hdl::Signal;
+
+/// The widest unsigned factor of one tile: multipliers of 18 × 18 bits are common to FPGA families.
+const TILE: u32 = 18;
+
+/// The whole product of two factors of equal width.
+///
+/// Both are cut into equal digits. Tiles of digits with the same distance lie side by side without overlap, so
+/// they make one row; the rows are summed in a tree.
+#[track_caller]
+pub fn product<'g>(a: Signal<'g>, b: Signal<'g>) -> Signal<'g> {
+    let width = a.width();
+    let (a, b, digit) = (digits(a), digits(b), digit_width(width));
+    let mut rows = vec![Row { offset: 0, bits: row(&a, &b, 0) }];
+    for distance in 1..a.len() {
+        let offset = distance as u32 * digit;
+        rows.push(Row { offset, bits: row(&a, &b, distance) });
+        rows.push(Row { offset, bits: row(&b, &a, distance) });
+    }
+    total(rows, 2 * width)
+}
+
+/// The whole square: as the product, with each pair of mirrored tiles made once and doubled.
+#[track_caller]
+pub fn square(a: Signal<'_>) -> Signal<'_> {
+    let width = a.width();
+    let (a, digit) = (digits(a), digit_width(width));
+    let mut rows = vec![Row { offset: 0, bits: row(&a, &a, 0) }];
+    for distance in 1..a.len() {
+        rows.push(Row { offset: distance as u32 * digit + 1, bits: row(&a, &a, distance) });
+    }
+    total(rows, 2 * width)
+}
+
+/// A term of the sum: bits · 2^offset.
+#[derive(Clone, Copy)]
+struct Row<'g> {
+    offset: u32,
+    bits: Signal<'g>,
+}
+
+fn digit_width(width: u32) -> u32 {
+    width.div_ceil(width.div_ceil(TILE).max(1))
+}
+
+/// Least significant digit first; the last one may be narrower.
+fn digits(value: Signal<'_>) -> Vec<Signal<'_>> {
+    let (width, digit) = (value.width(), digit_width(value.width()));
+    (0..width).step_by(digit.max(1) as usize).map(|low| value.slice(low, digit.min(width - low))).collect()
+}
+
+/// The products of digits of which `a`'s is `distance` places higher than `b`'s, side by side.
+fn row<'g>(a: &[Signal<'g>], b: &[Signal<'g>], distance: usize) -> Signal<'g> {
+    let tiles: Vec<_> = a[distance..].iter().zip(b).map(|(&a, &b)| (a * b).named("tile")).rev().collect();
+    Signal::join(&tiles).named("tiles")
+}
+
+/// Sum of the rows: neighbours first, so that the tree is as deep as the logarithm of their number.
+fn total<'g>(mut rows: Vec<Row<'g>>, width: u32) -> Signal<'g> {
+    rows.sort_by_key(|row| row.offset);
+    while rows.len() > 1 {
+        rows = rows.chunks(2).map(|pair| if let [a, b] = *pair { sum(a, b, width) } else { pair[0] }).collect();
+    }
+    let Row { offset, bits } = rows[0];
+    bits.append_zeros(offset).extend(width)
+}
+
+/// a + b, where b's offset is not the smaller one. The bits of `a` below `b` pass by the adder.
+fn sum<'g>(a: Row<'g>, b: Row<'g>, width: u32) -> Row<'g> {
+    let skipped = b.offset - a.offset;
+    let end = (a.offset + a.bits.width()).max(b.offset + b.bits.width());
+    // One more bit for the carry, but never more than the whole product has.
+    let adder = (end + 1).min(width) - b.offset;
+    let upper = if skipped < a.bits.width() { Some(a.bits.drop_low(skipped)) } else { None };
+    let high = match upper {
+        Some(upper) => (upper.extend(adder) + b.bits.extend(adder)).named("tiles_sum"),
+        None => b.bits.extend(adder),
+    };
+    let bits = match skipped {
+        0 => high,
+        _ => high.concat(a.bits.extend(a.bits.width().max(skipped)).low(skipped)),
+    };
+    Row { offset: a.offset, bits }
+}

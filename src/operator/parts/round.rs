@@ -1,0 +1,106 @@
+//! Rounding to nearest, ties to even, the ends of the range, and the result put together.
+
+use super::{Signed, shift_right_sticky};
+use crate::hdl::Signal;
+use crate::number::Format;
+
+/// A result before rounding: significand.guard sticky · 2^exponent, with the leading bit of the significand set.
+#[derive(Clone, Copy)]
+pub struct Unrounded<'g> {
+    /// The biased exponent, as if it had no ends.
+    pub exponent: Signed<'g>,
+    /// As many bits as the format's significand.
+    pub significand: Signal<'g>,
+    /// The next bit.
+    pub guard: Signal<'g>,
+    /// Whether anything is set below that one.
+    pub sticky: Signal<'g>,
+}
+
+/// A magnitude after rounding.
+#[derive(Clone, Copy)]
+pub struct Rounded<'g> {
+    /// Exponent and fraction fields.
+    pub magnitude: Signal<'g>,
+    /// One bit: too large for the format.
+    pub overflow: Signal<'g>,
+    /// One bit: to be flushed to zero.
+    pub underflow: Signal<'g>,
+}
+
+/// Which special value the operands call for. At most one of `infinity` and `zero` is set; `nan` beats both.
+#[derive(Clone, Copy)]
+pub struct Special<'g> {
+    /// The canonical NaN.
+    pub nan: Signal<'g>,
+    /// Infinity of the result's sign.
+    pub infinity: Signal<'g>,
+    /// Zero of the result's sign.
+    pub zero: Signal<'g>,
+}
+
+/// {exponent, fraction}, one more where that is nearer. A carry out of the fraction makes the exponent one more,
+/// which is right; out of the largest finite number it makes infinity.
+#[track_caller]
+pub fn nearest_even<'g>(
+    exponent: Signal<'g>,
+    fraction: Signal<'g>,
+    guard: Signal<'g>,
+    sticky: Signal<'g>,
+) -> Signal<'g> {
+    let round_up = (guard & (sticky | fraction.bit(0))).named("round_up");
+    let truncated = exponent.concat(fraction).named("truncated");
+    (truncated + round_up.extend(truncated.width())).named("rounded")
+}
+
+/// Rounds, with gradual underflow or flushing as the format has it. What the exponent's range excludes costs nothing.
+#[track_caller]
+pub fn round<'g>(format: Format, value: Unrounded<'g>) -> Rounded<'g> {
+    let never = value.guard.graph().constant(1, 0);
+    let special = i64::from(format.special_exponent());
+    let overflow = value.exponent.at_least(special).named("overflow");
+    let field = value.exponent.bits(format.exponent_bits());
+    let fraction = value.significand.low(format.fraction_bits());
+    if value.exponent.min() > 0 {
+        let magnitude = nearest_even(field, fraction, value.guard, value.sticky);
+        return Rounded { magnitude, overflow, underflow: never };
+    }
+    if format.keeps_subnormals() {
+        let (field, fraction, guard, sticky) = denormalise(format, value);
+        return Rounded { magnitude: nearest_even(field, fraction, guard, sticky), overflow, underflow: never };
+    }
+    // An exponent field of zero can still be rounded up to the smallest normal number.
+    let magnitude = nearest_even(field, fraction, value.guard, value.sticky);
+    let rounded_exponent = magnitude.high(format.exponent_bits()).named("rounded_exponent");
+    let underflow = (value.exponent.is_negative() | rounded_exponent.is_zero()).named("underflow");
+    Rounded { magnitude, overflow, underflow }
+}
+
+/// Moves a significand whose exponent is below the smallest normal one to the right. Gives exponent field, fraction,
+/// guard and sticky.
+fn denormalise<'g>(format: Format, value: Unrounded<'g>) -> (Signal<'g>, Signal<'g>, Signal<'g>, Signal<'g>) {
+    let is_subnormal = (!value.exponent.at_least(1)).named("is_subnormal");
+    let missing = value.exponent.subtracted_from(1).named("missing_exponent");
+    let distance_bits = 64 - (1 - value.exponent.min()).leading_zeros();
+    let distance = missing.bits(distance_bits).gate(is_subnormal).named("denormalise_distance");
+    let (shifted, lost) = shift_right_sticky(value.significand.concat(value.guard), distance, "denormalise");
+    let shifted = shifted.named("denormalised");
+    let field = value.exponent.bits(format.exponent_bits()).gate(!is_subnormal);
+    let fraction = shifted.slice(1, format.fraction_bits());
+    (field, fraction, shifted.bit(0).named("guard"), (lost | value.sticky).named("sticky"))
+}
+
+/// The result's word: special values over what was rounded.
+#[track_caller]
+pub fn pack<'g>(format: Format, sign: Signal<'g>, rounded: Rounded<'g>, special: Special<'g>) -> Signal<'g> {
+    let nan = special.nan.named("is_nan");
+    // A zero operand leaves nonsense in the exponent, which may look like an overflow.
+    let infinity = (special.infinity | (rounded.overflow & !special.zero)).named("is_infinity");
+    let zero = (special.zero | rounded.underflow).named("is_zero");
+    let special_exponent = (nan | infinity).repeat(format.exponent_bits());
+    let special_fraction = nan.append_zeros(format.fraction_bits() - 1);
+    let special_magnitude = special_exponent.concat(special_fraction).named("special_magnitude");
+    let is_special = (nan | infinity | zero).named("is_special");
+    let magnitude = is_special.select(special_magnitude, rounded.magnitude).named("magnitude");
+    (sign & !nan).named("sign").concat(magnitude)
+}

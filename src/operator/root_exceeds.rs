@@ -1,0 +1,79 @@
+//! Whether the rounded root of one number is greater than another, without the root.
+//!
+//! RN(√a) > b exactly when a > (b + ½ulp(b))², or equal and b odd: the middle between b and the next number has one
+//! bit more than b, and its square is taken whole.
+
+use super::parts::{Operand, Signed, leading_zeros, shift_left, square};
+use crate::hdl::Signal;
+use crate::number::Format;
+
+/// RN(√a) > b; false with a NaN or where a has no root, true where b is negative and a has one.
+pub fn root_exceeds<'g>(a: Signal<'g>, b: Signal<'g>, format: Format) -> Signal<'g> {
+    let (a, b) = (Operand::unpack(a, format, "a"), Operand::unpack(b, format, "b"));
+    let a_exceeds = finite_exceeds(&a, &b, format).named("finite_exceeds");
+
+    let no_root = (a.is_nan() | (a.sign & !a.is_zero())).named("no_root");
+    let b_is_negative = (b.sign & !b.is_zero()).named("b_is_negative");
+    let among_positive = !a.is_zero() & !b.is_infinity() & (a.is_infinity() | a_exceeds);
+    (b_is_negative | among_positive) & !no_root & !b.is_nan()
+}
+
+/// The decision for finite positive a and finite b ≥ 0.
+fn finite_exceeds<'g>(a: &Operand<'g>, b: &Operand<'g>, format: Format) -> Signal<'g> {
+    let (a_exponent, a_significand) = a.normalised();
+    let Middle { exponent, significand: middle, certain } = Middle::above(b, format);
+    let square = square(middle).named("square");
+    let at_least_two = square.msb().named("square_at_least_two");
+    let normalised = at_least_two.select(square, square.low(square.width() - 1).append_zeros(1));
+    let precision = format.significand_bits();
+    let high = normalised.high(precision).named("square_high");
+
+    // How far a's exponent is above that of a square below 2.
+    let lead = a_exponent.minus(exponent.twice()).offset(i64::from(format.bias())).named("exponent_lead");
+    let above = at_least_two.select(lead.at_least(2), lead.at_least(1)).named("exponent_is_above");
+    let level = at_least_two.select(lead.is(1), lead.is(0)).named("exponent_is_level");
+    let mut significand_above = a_significand.greater_than(high).named("significand_is_above");
+    if !subnormal_squares_vanish(format) {
+        // The square of an odd number is odd, so a tie needs a middle that ends in zeros: that of a subnormal.
+        let rest = normalised.low(normalised.width() - precision);
+        let tie = a_significand.equals(high) & rest.is_zero();
+        significand_above = significand_above | (tie & b.fraction.bit(0)).named("tie_above_odd");
+    }
+    certain | above | (level & significand_above)
+}
+
+/// Whether the square of every middle below the smallest normal number is less than the smallest positive number.
+fn subnormal_squares_vanish(format: Format) -> bool {
+    !format.keeps_subnormals() || format.min_exponent() <= -(format.fraction_bits() as i32)
+}
+
+/// The middle between a number and the next one up: biased exponent, and significand with its leading bit set.
+struct Middle<'g> {
+    exponent: Signed<'g>,
+    significand: Signal<'g>,
+    /// The middle is so small that its square is below any positive number.
+    certain: Signal<'g>,
+}
+
+impl<'g> Middle<'g> {
+    fn above(b: &Operand<'g>, format: Format) -> Self {
+        let one = b.fraction.graph().constant(1, 1);
+        let largest = i64::from(format.special_exponent()) - 1;
+        if subnormal_squares_vanish(format) {
+            let significand = Signal::join(&[one, b.fraction, one]).named("middle");
+            let exponent = Signed::unsigned(b.exponent, 1, largest);
+            return Self { exponent, significand, certain: (!b.hidden).named("b_is_tiny") };
+        }
+        let unshifted = b.significand().concat(one).named("middle_unshifted");
+        let (zeros, _) = leading_zeros(unshifted, "middle");
+        let zeros = zeros.named("middle_leading_zeros");
+        let exponent = Signed::unsigned(b.effective_exponent(), 1, largest)
+            .minus(Signed::unsigned(zeros, 0, i64::from(format.significand_bits())))
+            .named("middle_exponent");
+        Self {
+            exponent,
+            significand: shift_left(unshifted, zeros, "middle_normalise").named("middle"),
+            certain: b.is_zero(),
+        }
+    }
+}

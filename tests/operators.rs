@@ -1,0 +1,199 @@
+//! Every operator's graph against its exact twin: every pair of words of an 8-bit format, a million random words and
+//! corners of the formats in use, and fewer of the widest.
+
+mod support;
+
+use contact_afu::hdl::{Evaluator, Module, Op};
+use contact_afu::number::{Format, Subnormals};
+use contact_afu::operator::{Operator, build};
+use std::sync::Arc;
+use support::Words;
+
+const ARITHMETIC: [Operator; 10] = [
+    Operator::Add,
+    Operator::Sub,
+    Operator::Mul,
+    Operator::Div,
+    Operator::Recip,
+    Operator::Sqrt,
+    Operator::Halve,
+    Operator::Greater,
+    Operator::AtMost,
+    Operator::RootExceeds,
+];
+
+fn format(text: &str) -> Format {
+    text.parse().unwrap()
+}
+
+/// A combinational operator, run on words.
+struct Bench {
+    operator: Operator,
+    format: Format,
+    evaluator: Evaluator,
+}
+
+impl Bench {
+    fn new(operator: Operator, format: Format) -> Self {
+        Self::of(operator, format, &build(operator, format).unwrap())
+    }
+
+    fn of(operator: Operator, format: Format, module: &Arc<Module>) -> Self {
+        Self { operator, format, evaluator: Evaluator::new(module, &[]).unwrap() }
+    }
+
+    /// What the hardware gives, and what it should.
+    fn both(&mut self, a: u128, b: u128) -> (u128, u128) {
+        self.evaluator.set("a", a);
+        if self.operator.operands() == 2 {
+            self.evaluator.set("b", b);
+        }
+        (self.evaluator.get("result"), self.operator.twin(self.format, a, b))
+    }
+
+    #[track_caller]
+    fn check(&mut self, a: u128, b: u128) {
+        let (got, wanted) = self.both(a, b);
+        assert!(
+            got == wanted,
+            "{} of {a:#x}, {b:#x}: {got:#x}, not {wanted:#x}",
+            self.operator.module_name(self.format)
+        );
+    }
+}
+
+/// Every word, and for two operands every pair of words.
+fn exhaust(operator: Operator, format: Format) {
+    let mut bench = Bench::new(operator, format);
+    let words = 1 << format.width();
+    for a in 0..words {
+        for b in 0..if operator.operands() == 2 { words } else { 1 } {
+            bench.check(a, b);
+        }
+    }
+}
+
+/// Two operands at a corner of this operator: near cancellation, near a tie, near the border of a decision.
+fn corner(operator: Operator, format: Format, words: &mut Words, count: u64) -> (u128, u128) {
+    let (a, b) = words.two();
+    let mask = format.sign_mask() | (format.sign_mask() - 1);
+    let near = |word: u128| (word + u128::from(count >> 2 & 7)).wrapping_sub(3) & mask;
+    match (count & 3, operator) {
+        (0, Operator::Add) => (a, near(a ^ format.sign_mask())),
+        (0, Operator::Sub | Operator::Greater | Operator::AtMost) => (a, near(a)),
+        (0 | 1, Operator::RootExceeds) => (near(Operator::Mul.twin(format, b, b)), b & !format.sign_mask()),
+        (0, Operator::Div) => (near(Operator::Mul.twin(format, a, b)), b),
+        (0, Operator::Sqrt) => (near(Operator::Mul.twin(format, a, a)), b),
+        _ => (a, b),
+    }
+}
+
+fn randomly(operator: Operator, format: Format, count: u64) {
+    support::halves(count, |part| {
+        let mut bench = Bench::new(operator, format);
+        let mut words = Words::new(format.exponent_bits(), format.fraction_bits(), part.start + 1);
+        for number in part {
+            let (a, b) = corner(operator, format, &mut words, number);
+            bench.check(a, b);
+        }
+    });
+}
+
+#[test]
+fn every_pair_of_an_8_bit_format() {
+    for subnormals in [Subnormals::Kept, Subnormals::Flushed] {
+        for operator in ARITHMETIC {
+            exhaust(operator, Format::new(5, 2, subnormals).unwrap());
+        }
+    }
+}
+
+#[test]
+fn every_word_of_small_formats_converted() {
+    let formats = ["e5f2", "e5f2z", "e5f6", "e5f6z", "e6f3", "e6f3z", "e7f2", "e7f9z", "half", "paper", "wide"];
+    for from in formats.map(format).into_iter().filter(|from| from.width() <= 16) {
+        for to in formats.map(format).into_iter().filter(|to| *to != from) {
+            exhaust(Operator::Convert { to }, from);
+        }
+    }
+}
+
+/// With five exponent bits and many fraction bits the squares and roots of subnormals are in range.
+#[test]
+fn short_exponents_under_long_fractions() {
+    for text in ["e5f14", "e5f15", "e5f24", "e5f24z", "e5f52", "e6f40"] {
+        for operator in ARITHMETIC {
+            randomly(operator, format(text), 20_000);
+        }
+    }
+}
+
+#[test]
+fn a_million_of_binary32() {
+    for operator in ARITHMETIC {
+        randomly(operator, Format::BINARY32, 1_000_000);
+    }
+    randomly(Operator::Convert { to: Format::WIDE }, Format::BINARY32, 1_000_000);
+}
+
+#[test]
+fn a_million_of_wide() {
+    for operator in ARITHMETIC {
+        randomly(operator, Format::WIDE, 1_000_000);
+    }
+    randomly(Operator::Convert { to: Format::BINARY32 }, Format::WIDE, 1_000_000);
+}
+
+#[test]
+fn other_formats() {
+    for (text, count) in [("half", 100_000), ("bfloat", 100_000), ("e11f52", 20_000), ("e15f52", 20_000)] {
+        let format = format(text);
+        for operator in ARITHMETIC {
+            randomly(operator, format, count);
+        }
+        for to in [Format::BINARY32, Format::WIDE] {
+            randomly(Operator::Convert { to }, format, count);
+            randomly(Operator::Convert { to: format }, to, count);
+        }
+    }
+}
+
+/// The module with one gate in place of another.
+fn with_fault(module: &Module, node: usize) -> Option<Module> {
+    let mut faulty = module.clone();
+    faulty.nodes[node].op = match faulty.nodes[node].op {
+        Op::And => Op::Or,
+        Op::Or => Op::And,
+        Op::Xor => Op::And,
+        Op::Add => Op::Sub,
+        Op::Sub => Op::Add,
+        Op::Any => Op::All,
+        Op::All => Op::Any,
+        Op::Less => Op::Equal,
+        Op::Equal => Op::Less,
+        _ => return None,
+    };
+    Some(faulty)
+}
+
+/// The comparison is able to fail: nearly every wrong gate in an operator is found by the words of the 8-bit format.
+/// The few that are not make no difference there, such as a sum with a zero that became a difference.
+#[test]
+fn planted_faults_are_found() {
+    let format = format("e5f2");
+    for operator in ARITHMETIC {
+        let module = build(operator, format).unwrap();
+        let faults: Vec<_> = (0..module.nodes.len()).filter_map(|node| with_fault(&module, node)).collect();
+        let is_found = |fault: &&Module| {
+            let mut bench = Bench::of(operator, format, &Arc::new((*fault).clone()));
+            (0..1_u128 << 16).any(|pair| {
+                let (got, wanted) = bench.both(pair >> 8, pair & 0xFF);
+                got != wanted
+            })
+        };
+        let found = faults.iter().filter(is_found).count();
+        let name = operator.module_name(format);
+        println!("{name}: {found} of {} found", faults.len());
+        assert!(faults.len() >= 8 && found * 10 >= faults.len() * 9, "{name}: {found} of {} found", faults.len());
+    }
+}
