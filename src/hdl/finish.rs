@@ -11,7 +11,8 @@ pub(super) fn finish(mut inner: Inner) -> Result<Module, Errors> {
     if !inner.errors.is_empty() {
         return Err(Errors(inner.errors));
     }
-    let order = match Walk::new(&inner).order() {
+    let looped = resolve_wires(&mut inner);
+    let order = match looped.map_or_else(|| Walk::new(&inner).order(), Err) {
         Ok(order) => order,
         Err(looped) => {
             let node = &inner.nodes[looped.index()];
@@ -35,6 +36,37 @@ fn check_connected(inner: &mut Inner) {
         let module = inner.name.clone();
         inner.errors.push(Error { module, message, place });
     }
+}
+
+/// Puts what drives a wire in its place; an unnamed driver takes the wire's name. Gives a wire that drives itself.
+fn resolve_wires(inner: &mut Inner) -> Option<NodeId> {
+    let mut target: Vec<NodeId> = (0..inner.nodes.len() as u32).map(NodeId).collect();
+    for index in 0..inner.nodes.len() {
+        let wire = NodeId(index as u32);
+        let mut end = wire;
+        while inner.nodes[end.index()].op == Op::Wire {
+            end = inner.nodes[end.index()].operands[0];
+            if end == wire {
+                return Some(wire);
+            }
+        }
+        target[index] = end;
+        if end != wire {
+            let name = inner.nodes[index].name.clone();
+            let driver = &mut inner.nodes[end.index()];
+            if driver.name.is_none() && !matches!(driver.op, Op::Constant(_) | Op::Parameter(_)) {
+                driver.name = name;
+            }
+        }
+    }
+    let operands = inner.nodes.iter_mut().flat_map(|node| node.operands.iter_mut());
+    let ports = inner.ports.iter_mut().filter_map(|port| port.node.as_mut());
+    let memories = inner.memories.iter_mut().filter_map(|memory| memory.write.as_mut()).flatten();
+    let instances = inner.instances.iter_mut().flat_map(|instance| instance.inputs.iter_mut().flatten());
+    for id in operands.chain(ports).chain(memories).chain(instances) {
+        *id = target[id.index()];
+    }
+    None
 }
 
 /// Depth-first from the outputs. Registers, delays, memory reads and instances without a combinational path cut it:

@@ -15,6 +15,7 @@ mod signal;
 mod state;
 pub mod verilog;
 
+#[derive(Clone, Copy, Default)]
 pub use error::{Error, Errors};
 pub use evaluate::{EvaluateError, Evaluator, Pin};
 pub use graph::Graph;

@@ -50,6 +50,8 @@ pub enum Op {
         /// The lowest bit taken.
         low: u32,
     },
+    /// 2^n bits, of which the one whose index is the operand (of n bits) is set.
+    OneHot,
     /// One bit: some bit of the operand is set.
     Any,
     /// One bit: every bit of the operand is set.
@@ -76,7 +78,7 @@ pub enum Op {
         /// Index into the ports of the instantiated module.
         port: usize,
     },
-    /// A name for a value that was declared before it was driven. Operand: the value.
+    /// Stands for a value that is driven later. Operand: the value. Not in a finished module.
     Wire,
 }
 

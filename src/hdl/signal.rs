@@ -198,6 +198,18 @@ impl<'g> Signal<'g> {
         if self.width() == 1 { self } else { self.unary("all", Op::All, 1, Location::caller()) }
     }
 
+    /// 2^width bits, of which the one whose index this value is is set. Up to 7 bits wide.
+    #[track_caller]
+    pub fn one_hot(self) -> Self {
+        let width = self.width();
+        if width > 7 {
+            let message = format!("one hot: `{}` has {width} bits, more than 7", self.describe());
+            self.graph.error(message, Location::caller());
+            return Self::poison(self.graph);
+        }
+        self.unary("one hot", Op::OneHot, 1 << width, Location::caller())
+    }
+
     /// `yes` where this bit is set, else `no`.
     #[track_caller]
     pub fn select(self, yes: Self, no: Self) -> Self {
@@ -377,6 +389,7 @@ impl<'g> Mul for Signal<'g> {
     fn mul(self, other: Self) -> Self {
         let place = Location::caller();
         let Some(ids) = self.graph.own("product", &[self, other], place) else { return Self::poison(self.graph) };
-        self.graph.shared(Op::Mul, self.width() + other.width(), ids, place)
+        let width = [self, other].iter().map(|factor| factor.width()).sum();
+        self.graph.shared(Op::Mul, width, ids, place)
     }
 }

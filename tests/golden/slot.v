@@ -4,7 +4,7 @@
 `default_nettype none
 
 module slot (
-  input  wire clk,
+  input  wire       clk,
   input  wire [6:0] index,
   input  wire [6:0] chosen,
   input  wire [6:0] value,

@@ -8,15 +8,15 @@
 module top #(
   parameter [31:0] SCPUS = 32'd10 // 1 to 64
 ) (
-  input  wire clk,
-  input  wire rst,
-  input  wire enable,
+  input  wire        clk,
+  input  wire        rst,
+  input  wire        enable,
   input  wire [11:0] data,
   output reg  [11:0] stored,
   output reg  [11:0] late,
   output reg  [11:0] later,
-  output reg  [6:0] result,
-  output wire last
+  output reg  [6:0]  result,
+  output wire        last
 );
 
   // Elaboration stops here when SCPUS is out of range.

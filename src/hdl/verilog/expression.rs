@@ -21,11 +21,25 @@ impl Expressions<'_> {
     /// A value as an operand: in parentheses unless it is a single term.
     fn term(&self, id: NodeId) -> String {
         let text = self.value(id);
+        let node = self.module.node(id);
+        let compares = |id: NodeId| {
+            self.names.declared[id.index()].is_none() && matches!(self.module.node(id).op, Op::Less | Op::Equal)
+        };
         let single = self.names.declared[id.index()].is_some()
-            || !matches!(
-                self.module.node(id).op,
-                Op::And | Op::Or | Op::Xor | Op::Add | Op::Sub | Op::Mul | Op::Equal | Op::Less | Op::Mux
-            );
+            || !(node.op == Op::Not && compares(node.operands[0]))
+                && !matches!(
+                    node.op,
+                    Op::And
+                        | Op::Or
+                        | Op::Xor
+                        | Op::Add
+                        | Op::Sub
+                        | Op::Mul
+                        | Op::Equal
+                        | Op::Less
+                        | Op::Mux
+                        | Op::OneHot
+                );
         if single { text } else { format!("({text})") }
     }
 
@@ -40,10 +54,10 @@ impl Expressions<'_> {
                 let name = &self.module.parameters[*index].name;
                 if node.width == 32 { name.clone() } else { format!("{name}[{}:0]", node.width - 1) }
             }
-            Op::Not => format!("~{}", term(0)),
-            Op::And => self.gated(node).unwrap_or_else(|| infix("&")),
-            Op::Or => infix("|"),
-            Op::Xor => infix("^"),
+            Op::Not => self.negation(node.operands[0]),
+            Op::And => self.gated(node).unwrap_or_else(|| self.chain(node, "&")),
+            Op::Or => self.chain(node, "|"),
+            Op::Xor => self.chain(node, "^"),
             Op::Add => infix("+"),
             Op::Sub => infix("-"),
             Op::Mul => self.product(node),
@@ -52,6 +66,7 @@ impl Expressions<'_> {
             Op::Mux => format!("{} ? {} : {}", term(0), term(1), term(2)),
             Op::Concat => self.concatenation(node),
             Op::Slice { low } => self.slice(node, *low),
+            Op::OneHot => format!("{} << {}", constant(node.width, 1), term(0)),
             Op::Any => format!("|{}", term(0)),
             Op::All => format!("&{}", term(0)),
             Op::Wire => self.value(node.operands[0]),
@@ -59,6 +74,28 @@ impl Expressions<'_> {
             Op::Input | Op::Delay { .. } | Op::Register { .. } | Op::MemoryRead { .. } | Op::InstanceOutput { .. } => {
                 String::new()
             }
+        }
+    }
+
+    /// `a & b & c`: the first operand needs no parentheses where it is the same operation.
+    fn chain(&self, node: &Node, operator: &str) -> String {
+        let [left, right] = node.operands[..] else { return String::new() };
+        let same = self.names.declared[left.index()].is_none()
+            && self.module.node(left).op == node.op
+            && self.gated(self.module.node(left)).is_none();
+        let first = if same { self.definition(left) } else { self.term(left) };
+        format!("{first} {operator} {}", self.term(right))
+    }
+
+    /// Not less is at least; not equal has a sign of its own; otherwise the complement.
+    fn negation(&self, operand: NodeId) -> String {
+        let node = self.module.node(operand);
+        let pair =
+            |operator: &str| format!("{} {operator} {}", self.term(node.operands[0]), self.term(node.operands[1]));
+        match node.op {
+            Op::Less if self.names.declared[operand.index()].is_none() => pair(">="),
+            Op::Equal if self.names.declared[operand.index()].is_none() => pair("!="),
+            _ => format!("~{}", self.term(operand)),
         }
     }
 

@@ -1,6 +1,6 @@
 //! Which nodes are declared under a name of their own, and which name that is.
 
-use std::collections::{BTreeSet, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 use super::super::keywords::KEYWORDS;
 use super::super::module::{Module, Node, NodeId, Op};
@@ -27,13 +27,15 @@ impl Names {
         let mut names = Self { declared: vec![None; module.nodes.len()], is_port: vec![false; module.nodes.len()] };
         names.take_port_names(module);
         let uses = Uses::count(module);
+        let next_of = next_values(module);
         for id in module.ids() {
             let index = id.index();
             let node = module.node(id);
             if names.declared[index].is_some() || !uses.needs_name(module, id) {
                 continue;
             }
-            let wanted = node.name.clone().unwrap_or_else(|| names.derive(module, id));
+            let next = next_of.get(&id).map(|register| format!("{register}_next"));
+            let wanted = node.name.clone().or(next).unwrap_or_else(|| names.derive(module, id));
             let name = unique(&taken, wanted);
             taken.insert(name.clone());
             names.declared[index] = Some(name);
@@ -77,8 +79,12 @@ impl Names {
             Op::Mul => two("times"),
             Op::Equal => two("equals"),
             Op::Less => two("below"),
-            Op::Mux => join(&part(1), "if", &part(0)),
+            Op::Mux => match module.node(node.operands[1]).op {
+                Op::Constant(_) => join(&part(2), "unless", &part(0)),
+                _ => join(&part(1), "if", &part(0)),
+            },
             Op::Slice { low } => format!("{}_{}_{low}", part(0), low + node.width - 1),
+            Op::OneHot => format!("{}_one_hot", part(0)),
             Op::Any => format!("{}_any", part(0)),
             Op::All => format!("{}_all", part(0)),
             Op::Concat => {
@@ -120,6 +126,12 @@ impl Names {
             _ => self.derive(module, id),
         }
     }
+}
+
+/// Values that are computed for a named register alone.
+fn next_values(module: &Module) -> HashMap<NodeId, &str> {
+    let registers = module.nodes.iter().filter(|node| matches!(node.op, Op::Register { .. }));
+    registers.filter_map(|node| Some((node.operands[0], node.name.as_deref()?))).collect()
 }
 
 /// The stage a value is available in: a register rank takes it on by one.

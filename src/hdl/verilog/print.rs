@@ -47,12 +47,13 @@ fn interface(module: &Module, style: &Style, names: &Names) -> String {
             .collect();
         out += &format!(" #(\n{}\n)", parameters.join(",\n"));
     }
+    let ranges = module.ports.iter().map(|port| range(port.width).len()).max().unwrap_or(0);
     let mut ports = Vec::new();
     if module.is_clocked() {
-        ports.push("input  wire clk".to_owned());
+        ports.push(format!("input  wire {:ranges$}clk", ""));
     }
     if module.is_reset() {
-        ports.push(format!("input  wire {}", style.reset_port()));
+        ports.push(format!("input  wire {:ranges$}{}", "", style.reset_port()));
     }
     for port in &module.ports {
         let direction = if port.output { "output" } else { "input " };
@@ -67,7 +68,7 @@ fn interface(module: &Module, style: &Style, names: &Names) -> String {
             }
             _ => "wire",
         };
-        ports.push(format!("{direction} {kind} {}{}", range(port.width), port.name));
+        ports.push(format!("{direction} {kind} {:<ranges$}{}", range(port.width), port.name));
     }
     out += &format!(" (\n  {}\n);\n", ports.join(",\n  "));
     out

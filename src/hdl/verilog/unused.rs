@@ -39,16 +39,13 @@ pub(super) fn unused(module: &Module, names: &Names) -> String {
     if parts.is_empty() {
         return String::new();
     }
-    let mut lines = vec![String::from("\n  // Bits that nothing needs.\n  wire unused = &{1'b0")];
+    let mut text = String::from("\n  // Bits that nothing needs.\n  wire unused = &{1'b0");
     for part in parts {
-        let line = lines.last_mut().map(|line| line.rsplit('\n').next().unwrap_or("").len()).unwrap_or(0);
-        let separator = if line + part.len() > 100 { ",\n    " } else { ", " };
-        if let Some(last) = lines.last_mut() {
-            *last += separator;
-            *last += &part;
-        }
+        let line = text.len() - text.rfind('\n').unwrap_or(0);
+        text += if line + part.len() > 100 { ",\n    " } else { ", " };
+        text += &part;
     }
-    lines.concat() + "};\n"
+    text + "};\n"
 }
 
 /// Output ports of an instance that nothing uses, with the name of the wire that takes each.
