@@ -188,6 +188,7 @@ impl Lowered {
             }
             Op::Concat => self.concat(node, operands, widths),
             Op::Slice { low } => (0..count).map(|i| self.slice(&operands[0], widths[0], low, bits(i), i)).collect(),
+            Op::OneHot => (0..count).map(|i| self.step(Kind::OneHot, [operands[0][0]; 3], i as u32)).collect(),
             Op::Any => {
                 let any = self.reduce(Kind::Or, &operands[0]);
                 vec![self.step(Kind::Any, [any; 3], 0)]

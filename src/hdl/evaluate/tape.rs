@@ -44,10 +44,12 @@ pub(super) enum Kind {
     Any,
     /// All of `a`'s bits are set, immediate = bits.
     All,
+    /// Word `immediate` of the value whose bit `a` alone is set.
+    OneHot,
 }
 
 /// How many kinds there are.
-pub(super) const KINDS: usize = Kind::All as usize + 1;
+pub(super) const KINDS: usize = Kind::OneHot as usize + 1;
 
 /// The immediate of a bit field: shift right by `low` (0 to 63), keep `bits` (1 to 64).
 pub(super) fn field(low: u32, bits: u32) -> u32 {
@@ -129,6 +131,10 @@ impl Tape {
                 Kind::Spread => each(words, first, steps, |w, s| at(w, s.a).wrapping_neg() & mask(s.immediate)),
                 Kind::Any => each(words, first, steps, |w, s| u64::from(at(w, s.a) != 0)),
                 Kind::All => each(words, first, steps, |w, s| u64::from(at(w, s.a) == mask(s.immediate))),
+                Kind::OneHot => each(words, first, steps, |w, s| {
+                    let index = at(w, s.a);
+                    u64::from(index >> 6 == u64::from(s.immediate)) << (index & 63)
+                }),
             }
         }
     }
