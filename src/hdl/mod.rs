@@ -15,7 +15,6 @@ mod signal;
 mod state;
 pub mod verilog;
 
-#[derive(Clone, Copy, Default)]
 pub use error::{Error, Errors};
 pub use evaluate::{EvaluateError, Evaluator, Pin};
 pub use graph::Graph;
