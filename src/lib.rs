@@ -13,3 +13,4 @@ pub mod number;
 pub mod operator;
 pub mod pipeline;
 pub mod report;
+pub mod tools;

@@ -1,9 +1,11 @@
 //! What an AFU is asked to be: one value, read from flags or a file, that generator, simulation and reports share.
 
 mod choices;
+mod file;
 mod profile;
 
 pub use choices::{Input, Results, Shell};
+pub use file::{MANIFEST_SCHEMA, ReadError, read};
 pub use profile::Profile;
 
 use serde::{Deserialize, Serialize};

@@ -1,0 +1,65 @@
+//! How the program ends: one line on standard error and an exit code that scripts can tell apart.
+
+use std::process::ExitCode;
+
+/// What kind of end it was. The numbers are part of the command line's contract.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A mismatch, an unmet check, or a job that does not finish.
+    Unmet = 1,
+    /// Bad usage or bad input.
+    Usage = 2,
+    /// A tool that this needs is missing.
+    Tool = 3,
+    /// Anything else.
+    Other = 4,
+}
+
+/// An error and what kind of end it makes.
+#[derive(Debug)]
+pub struct Failure {
+    kind: Kind,
+    error: anyhow::Error,
+}
+
+impl Failure {
+    /// Of a kind, with a message.
+    pub fn new(kind: Kind, message: impl std::fmt::Display) -> Self {
+        Self { kind, error: anyhow::anyhow!("{message}") }
+    }
+
+    /// Says it on standard error, and gives the exit code.
+    pub fn report(&self) -> ExitCode {
+        eprintln!("afu: {:#}", self.error);
+        ExitCode::from(self.kind as u8)
+    }
+}
+
+/// Gives the error of a result its kind, at the edge where that is known.
+pub trait Classify<T> {
+    /// The same, with the error being of this kind.
+    fn ends(self, kind: Kind) -> Result<T, Failure>;
+}
+
+impl<T, E: Into<anyhow::Error>> Classify<T> for Result<T, E> {
+    fn ends(self, kind: Kind) -> Result<T, Failure> {
+        self.map_err(|error| Failure { kind, error: error.into() })
+    }
+}
+
+impl From<contact_afu::config::Error> for Failure {
+    fn from(error: contact_afu::config::Error) -> Self {
+        Self { kind: Kind::Usage, error: error.into() }
+    }
+}
+
+impl From<contact_afu::report::folder::Error> for Failure {
+    fn from(error: contact_afu::report::folder::Error) -> Self {
+        use contact_afu::report::folder::Error::{Foreign, Io, NotAFolder, Path};
+        let kind = match error {
+            Foreign(_) | NotAFolder(_) => Kind::Usage,
+            Path(_) | Io { .. } => Kind::Other,
+        };
+        Self { kind, error: error.into() }
+    }
+}

@@ -1,0 +1,46 @@
+//! The command line: a file a subcommand, which reads options, calls the library and writes what it gives.
+
+mod completions;
+mod doctor;
+mod failure;
+mod output;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use failure::Failure;
+
+/// Generates, simulates and proves the Verilog of a collision-detection accelerator.
+///
+/// Exit status: 0 pass; 1 a mismatch, an unmet check or a job that does not finish; 2 bad usage or input; 3 a missing
+/// tool; 4 anything else. Results go to standard output or files, progress and messages to standard error.
+#[derive(Parser, Debug)]
+#[command(name = "afu", version, max_term_width = 110)]
+pub struct Program {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand, Debug)]
+enum Command {
+    /// Say which tools are there, what needs them, and what installs the missing ones
+    Doctor(doctor::Doctor),
+    /// Print a shell's completion script
+    Completions(completions::Completions),
+}
+
+/// Runs the program.
+pub fn main() -> ExitCode {
+    match run(&Program::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.report(),
+    }
+}
+
+fn run(program: &Program) -> Result<(), Failure> {
+    match &program.command {
+        Command::Doctor(options) => doctor::run(options),
+        Command::Completions(options) => completions::run(options),
+    }
+}

@@ -1,0 +1,255 @@
+//! The report of `afu cosim`: JSON for programs, one table for people.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::table::{figure, grouped, table};
+use super::tally::{Flows, Tally};
+use crate::config::Config;
+
+/// The JSON's schema. Within a number keys are only added.
+pub const SCHEMA: &str = "contact-afu/cosim/1";
+
+/// One job: what was sent, and what it came to.
+#[derive(Clone, Debug)]
+pub struct Job {
+    /// The pairs: a set's name, or a file.
+    pub name: String,
+    /// The counts.
+    pub tally: Tally,
+}
+
+/// Everything about a run of one or more jobs through one AFU.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// The AFU.
+    pub config: Config,
+    /// Seed of random pairs and of the link.
+    pub seed: u64,
+    /// The command that does all of it again.
+    pub replay: String,
+    /// Tools and what they say of themselves.
+    pub tools: BTreeMap<String, String>,
+    /// SHA-256 of the Verilog, in hex.
+    pub rtl_sha256: String,
+    /// The link model.
+    pub link: String,
+    /// Cycles from a pair at an SCPU to its contact.
+    pub latency_cycles: u32,
+    /// The jobs, in the order they ran.
+    pub jobs: Vec<Job>,
+}
+
+#[derive(Serialize)]
+struct Document<'a> {
+    schema: &'static str,
+    version: &'static str,
+    seed: u64,
+    replay: &'a str,
+    tools: &'a BTreeMap<String, String>,
+    rtl_sha256: &'a str,
+    config: &'a Config,
+    latency_cycles: u32,
+    clock_mhz: f64,
+    #[serde(flatten)]
+    all: Figures<'a>,
+    jobs: Vec<JobFigures<'a>>,
+}
+
+#[derive(Serialize)]
+struct JobFigures<'a> {
+    name: &'a str,
+    #[serde(flatten)]
+    figures: Figures<'a>,
+}
+
+#[derive(Serialize)]
+struct Figures<'a> {
+    pairs: u64,
+    contacts: u64,
+    flows: Flows,
+    mismatches: u64,
+    cycles: u64,
+    cycles_per_pair: Option<f64>,
+    ns_per_pair: Option<f64>,
+    link: LinkFigures<'a>,
+    host_seconds: f64,
+}
+
+#[derive(Serialize)]
+struct LinkFigures<'a> {
+    name: &'a str,
+    bytes_read: u64,
+    bytes_written: u64,
+    limit_ns_per_pair: Option<f64>,
+    efficiency: Option<f64>,
+}
+
+impl Run {
+    /// All jobs together.
+    pub fn total(&self) -> Tally {
+        self.jobs.iter().fold(Tally::default(), |sum, job| sum.plus(&job.tally))
+    }
+
+    /// The report for programs. The figures at the top are those of all jobs together; `jobs` has each.
+    pub fn json(&self) -> impl Serialize {
+        Document {
+            schema: SCHEMA,
+            version: env!("CARGO_PKG_VERSION"),
+            seed: self.seed,
+            replay: &self.replay,
+            tools: &self.tools,
+            rtl_sha256: &self.rtl_sha256,
+            config: &self.config,
+            latency_cycles: self.latency_cycles,
+            clock_mhz: self.config.clock_mhz,
+            all: self.figures(&self.total()),
+            jobs: self.jobs.iter().map(|j| JobFigures { name: &j.name, figures: self.figures(&j.tally) }).collect(),
+        }
+    }
+
+    fn figures(&self, tally: &Tally) -> Figures<'_> {
+        let ns = |cycles: Option<f64>| cycles.map(|cycles| cycles * self.config.cycle_ns());
+        Figures {
+            pairs: tally.pairs,
+            contacts: tally.flows.contacts(),
+            flows: tally.flows,
+            mismatches: tally.mismatches,
+            cycles: tally.cycles,
+            cycles_per_pair: tally.cycles_per_pair(),
+            ns_per_pair: ns(tally.cycles_per_pair()),
+            link: LinkFigures {
+                name: &self.link,
+                bytes_read: tally.bytes_read,
+                bytes_written: tally.bytes_written,
+                limit_ns_per_pair: ns(tally.limit_per_pair()),
+                efficiency: tally.efficiency(),
+            },
+            host_seconds: tally.host_seconds,
+        }
+    }
+
+    /// The table for people: a column a job.
+    pub fn table(&self) -> String {
+        let heading: Vec<&str> = [""].into_iter().chain(self.jobs.iter().map(|job| job.name.as_str())).collect();
+        let ns = self.config.cycle_ns();
+        let ns_title = format!("ns a pair at {} MHz", self.config.clock_mhz);
+        let latency = self.latency_cycles;
+        type Show<'a> = Box<dyn Fn(&Tally) -> String + 'a>;
+        let rows: Vec<(&str, Show<'_>)> = vec![
+            ("pairs", Box::new(|t| grouped(t.pairs))),
+            ("contacts", Box::new(|t| grouped(t.flows.contacts()))),
+            ("  real", Box::new(|t| grouped(t.flows.real))),
+            ("  grazing (same centre)", Box::new(|t| grouped(t.flows.grazing))),
+            ("no contact (fake)", Box::new(|t| grouped(t.flows.fake))),
+            ("invalid pairs", Box::new(|t| grouped(t.flows.invalid))),
+            ("mismatches with the reference", Box::new(|t| grouped(t.mismatches))),
+            ("cycles", Box::new(|t| grouped(t.cycles))),
+            ("cycles a pair", Box::new(|t| figure(t.cycles_per_pair(), 3))),
+            (&ns_title, Box::new(move |t| figure(t.cycles_per_pair().map(|c| c * ns), 2))),
+            ("latency of an SCPU, cycles", Box::new(move |_| grouped(latency.into()))),
+            ("link allows, cycles a pair", Box::new(|t| figure(t.limit_per_pair(), 3))),
+            ("share of that reached", Box::new(|t| percent(t.efficiency()))),
+            ("simulated in, seconds", Box::new(|t| format!("{:.1}", t.host_seconds))),
+        ];
+        let row = |(title, show): (&str, Show<'_>)| {
+            [title.to_owned()].into_iter().chain(self.jobs.iter().map(|job| show(&job.tally))).collect::<Vec<_>>()
+        };
+        table(&heading, rows.into_iter().map(row))
+    }
+}
+
+fn percent(share: Option<f64>) -> String {
+    share.map_or_else(|| "-".to_owned(), |share| format!("{:.1} %", 100.0 * share))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use expect_test::expect;
+
+    fn run() -> Run {
+        let tally = Tally {
+            pairs: 12_354,
+            flows: Flows { fake: 9_420, grazing: 0, real: 2_934, invalid: 0 },
+            mismatches: 0,
+            cycles: 6_300,
+            limit_cycles: 6_177.0,
+            bytes_read: 395_328,
+            bytes_written: 395_328,
+            host_seconds: 0.25,
+        };
+        let jobs = vec![
+            Job { name: "diamond:10".into(), tally },
+            Job { name: "empty.csv".into(), tally: Tally { cycles: 9, ..Tally::default() } },
+        ];
+        Run {
+            config: Config::default(),
+            seed: 1,
+            replay: "afu cosim".into(),
+            tools: BTreeMap::new(),
+            rtl_sha256: "00".into(),
+            link: "ideal".into(),
+            latency_cycles: 60,
+            jobs,
+        }
+    }
+
+    #[test]
+    fn json_has_the_keys_of_its_schema() {
+        let json = serde_json::to_value(run().json()).expect("plain values");
+        let keys: Vec<_> = json.as_object().expect("an object").keys().map(String::as_str).collect();
+        for key in [
+            "schema",
+            "version",
+            "seed",
+            "replay",
+            "tools",
+            "rtl_sha256",
+            "config",
+            "pairs",
+            "contacts",
+            "flows",
+            "mismatches",
+            "cycles",
+            "cycles_per_pair",
+            "latency_cycles",
+            "clock_mhz",
+            "ns_per_pair",
+            "link",
+            "host_seconds",
+            "jobs",
+        ] {
+            assert!(keys.contains(&key), "{key} is missing from {keys:?}");
+        }
+        assert_eq!(json["link"]["bytes_read"], 395_328);
+        assert_eq!(json["contacts"], 2_934);
+        assert_eq!(json["jobs"][1]["cycles_per_pair"], serde_json::Value::Null);
+        assert_eq!(json["jobs"][0]["link"]["limit_ns_per_pair"], 2.5);
+    }
+
+    #[test]
+    fn the_table_has_a_column_a_job() {
+        expect![[r#"
+            ────────────────────────────────────────────────────────
+                                             diamond:10   empty.csv
+            ────────────────────────────────────────────────────────
+             pairs                               12 354           0
+             contacts                             2 934           0
+               real                               2 934           0
+               grazing (same centre)                  0           0
+             no contact (fake)                    9 420           0
+             invalid pairs                            0           0
+             mismatches with the reference            0           0
+             cycles                               6 300           9
+             cycles a pair                        0.510           -
+             ns a pair at 200 MHz                  2.55           -
+             latency of an SCPU, cycles              60          60
+             link allows, cycles a pair           0.500           -
+             share of that reached               98.0 %           -
+             simulated in, seconds                  0.2         0.0
+            ────────────────────────────────────────────────────────"#]]
+        .assert_eq(&run().table());
+    }
+}

@@ -1,0 +1,69 @@
+//! Tables for a terminal.
+
+use comfy_table::{Cell, CellAlignment, LineStyle, Table, TableStyle};
+
+const RULE: LineStyle = LineStyle::none().fill('─').junction('─');
+const STYLE: TableStyle = TableStyle::new().top_border(RULE).header_separator(RULE).bottom_border(RULE);
+
+/// A table with a heading line; the first column is text, the others are figures.
+pub fn table<R, C>(heading: &[&str], rows: R) -> String
+where
+    R: IntoIterator<Item = C>,
+    C: IntoIterator<Item = String>,
+{
+    let mut table = Table::new();
+    table.load_style(STYLE);
+    let aligned = |(column, text): (usize, String)| {
+        let side = if column == 0 { CellAlignment::Left } else { CellAlignment::Right };
+        Cell::new(text).set_alignment(side)
+    };
+    table.set_header(heading.iter().map(|text| (*text).to_owned()).enumerate().map(aligned));
+    for row in rows {
+        table.add_row(row.into_iter().enumerate().map(aligned));
+    }
+    table.trim_fmt()
+}
+
+/// `12354` as `12 354`.
+pub fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let mut text = String::with_capacity(digits.len() * 4 / 3);
+    for (place, digit) in digits.chars().enumerate() {
+        if place > 0 && (digits.len() - place).is_multiple_of(3) {
+            text.push(' ');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// A figure with `places` decimals, or a dash where there is none (a job of no pairs has no cycles a pair).
+pub fn figure(value: Option<f64>, places: usize) -> String {
+    value.map_or_else(|| "-".to_owned(), |value| format!("{value:.places$}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn digits_are_grouped_in_threes() {
+        for (number, text) in [(0, "0"), (999, "999"), (1000, "1 000"), (12_354, "12 354"), (1_234_567, "1 234 567")] {
+            assert_eq!(grouped(number), text);
+        }
+    }
+
+    #[test]
+    fn a_table_has_its_figures_on_the_right() {
+        let text =
+            table(&["set", "pairs"], [["a".to_owned(), "1".to_owned()], ["bcd".to_owned(), "12 354".to_owned()]]);
+        let expected = expect_test::expect![[r#"
+            ──────────────
+             set    pairs
+            ──────────────
+             a          1
+             bcd   12 354
+            ──────────────"#]];
+        expected.assert_eq(&text);
+    }
+}

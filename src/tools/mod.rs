@@ -1,0 +1,51 @@
+//! The programs outside this crate: which there are, what needs them, what installs them.
+
+mod probe;
+
+use serde::Serialize;
+
+/// A program or library this crate uses but does not contain.
+#[derive(Clone, Debug, Serialize)]
+pub struct Tool {
+    /// Its name.
+    pub name: &'static str,
+    /// The version it tells, or where it lies when it tells none; `None`: not found.
+    pub found: Option<String>,
+    /// What needs it.
+    pub needed_for: &'static str,
+    /// Whether simulation (`afu cosim`, `afu sweep`) needs it.
+    pub required: bool,
+    /// The command that installs it, on Debian and its kin.
+    pub install: &'static str,
+}
+
+/// Looks for every tool.
+pub fn all() -> Vec<Tool> {
+    let tool = |name, found, required, needed_for, install| Tool { name, found, needed_for, required, install };
+    vec![
+        tool("C++ compiler", probe::compiler(), true, "afu cosim, afu sweep: compiling a model", "apt-get install g++"),
+        tool("Verilator", probe::verilator(), true, "afu cosim, afu sweep: the model itself", "./scripts/setup"),
+        tool(
+            "libclang",
+            probe::libclang(),
+            false,
+            "building this program with its built-in model",
+            "apt-get install libclang-dev",
+        ),
+        tool(
+            "zlib",
+            probe::header("zlib.h"),
+            false,
+            "afu cosim --trace FILE.fst: FST waveforms (VCD needs nothing)",
+            "apt-get install zlib1g-dev liblz4-dev",
+        ),
+        tool(
+            "Icarus Verilog",
+            probe::version("iverilog", &["-V"]),
+            false,
+            "tests: the same RTL in a second, four-state simulator",
+            "apt-get install iverilog",
+        ),
+        tool("Yosys", probe::yosys(), false, "tests: no latch, no multiple driver", "apt-get install yosys"),
+    ]
+}

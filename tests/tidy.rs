@@ -1,0 +1,157 @@
+//! The house rules that a compiler does not hold: who imports whom, how long a file may be, what no file may name.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Who may import whom: `ARCHITECTURE.md` draws it. A module may always import itself.
+const HOUSE: &[(&str, &[&str])] = &[
+    ("number", &[]),
+    ("hdl", &[]),
+    ("kernel", &["number"]),
+    ("config", &["number", "kernel"]),
+    ("pairs", &["number", "kernel"]),
+    ("operator", &["hdl", "number"]),
+    ("pipeline", &["operator", "kernel", "hdl", "number"]),
+    ("afu", &["config", "pipeline", "operator", "kernel", "hdl", "number"]),
+    ("link", &["number"]),
+    ("cosim", &["config", "afu", "link", "pairs", "kernel", "number"]),
+    ("tools", &["cosim"]),
+    ("report", &["tools", "cosim", "config", "afu", "link", "pairs", "kernel", "number"]),
+    ("sweep", &["report", "cosim", "config", "afu", "link", "pairs", "kernel", "number"]),
+];
+
+/// Longer than this, a file is two things.
+const LINES: usize = 420;
+
+fn files(folder: &str, extensions: &[&str]) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    let mut open = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)];
+    while let Some(folder) = open.pop() {
+        let Ok(entries) = fs::read_dir(&folder) else { continue };
+        for entry in entries {
+            let path = entry.expect("a readable folder").path();
+            if path.is_dir() {
+                open.push(path);
+            } else if path.extension().is_some_and(|e| extensions.iter().any(|known| e == *known)) {
+                found.push(path);
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+fn text(path: &Path) -> String {
+    fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+fn short(path: &Path) -> String {
+    path.strip_prefix(env!("CARGO_MANIFEST_DIR")).unwrap_or(path).display().to_string()
+}
+
+/// The modules that a line of code names through `crate::`, in a `use` (braces included) or in a path.
+fn imported(line: &str) -> Vec<String> {
+    let code = line.split("//").next().unwrap_or_default();
+    let mut names = Vec::new();
+    for (_, rest) in code.match_indices("crate::").map(|(at, word)| (at, &code[at + word.len()..])) {
+        let mut depth = 0;
+        let mut word = String::new();
+        for c in rest.chars().chain([';']) {
+            match c {
+                '{' => depth += 1,
+                '}' => depth -= 1,
+                c if c.is_alphanumeric() || c == '_' => {
+                    word.push(c);
+                    continue;
+                }
+                _ => {}
+            }
+            if !word.is_empty() {
+                names.push(std::mem::take(&mut word));
+            }
+            // A path names one module; a list in braces names one behind each comma.
+            if depth == 0 {
+                break;
+            }
+        }
+    }
+    names
+}
+
+/// Import lines that go up or sideways.
+fn strays(module: &str, source: &str) -> Vec<String> {
+    let allowed: BTreeMap<_, _> = HOUSE.iter().copied().collect();
+    let Some(allowed) = allowed.get(module) else { return vec![format!("`{module}` is not in the house")] };
+    let known = |name: &str| HOUSE.iter().any(|(module, _)| *module == name);
+    let mut wrong = Vec::new();
+    for (number, line) in source.lines().enumerate() {
+        for name in imported(line) {
+            if known(&name) && name != module && !allowed.contains(&name.as_str()) {
+                wrong.push(format!("line {}: `{module}` may not import `{name}`", number + 1));
+            }
+        }
+    }
+    wrong
+}
+
+#[test]
+fn imports_go_down_only() {
+    let mut wrong = Vec::new();
+    for path in files("src", &["rs"]) {
+        let name = short(&path);
+        let mut parts = name.split('/').skip(1);
+        let module = parts.next().expect("a file in src").trim_end_matches(".rs").to_owned();
+        if ["lib", "main", "cli"].contains(&module.as_str()) {
+            continue;
+        }
+        wrong.extend(strays(&module, &text(&path)).into_iter().map(|what| format!("{name}: {what}")));
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn a_stray_import_is_seen() {
+    assert_eq!(strays("kernel", "use crate::number::Format;\n").len(), 0);
+    assert_eq!(strays("kernel", "use crate::hdl::Graph;\n").len(), 1);
+    assert_eq!(strays("number", "fn f(x: crate::kernel::Fields) {}\n").len(), 1);
+    assert_eq!(strays("hdl", "use crate::{number::Format, hdl::Graph};\n").len(), 1);
+    assert_eq!(strays("garden", "").len(), 1);
+}
+
+#[test]
+fn a_file_is_one_thing() {
+    let sources = ["src", "tests", "examples", "benches", "tb"].map(|f| files(f, &["rs", "h", "cpp"])).concat();
+    let long: Vec<_> =
+        sources.iter().map(|p| (short(p), text(p).lines().count())).filter(|(_, lines)| *lines > LINES).collect();
+    assert!(long.is_empty(), "more than {LINES} lines: {long:?}");
+}
+
+#[test]
+fn no_file_names_a_registry_host_or_a_path_of_one_machine() {
+    // In pieces, so that this file does not name them.
+    let hosts = ["deb.deb~ian.org", "pypi~.org", "pythonhosted~.org", "crates~.io", "npmjs~.org"];
+    let paths = ["/wo~rk/", "/fa~rm/", "/ho~me/", "/Us~ers/"];
+    let words: Vec<String> = hosts.iter().chain(&paths).map(|word| word.replace('~', "")).collect();
+    let mut checked = ["README.md", "ARCHITECTURE.md", "Cargo.toml", "build.rs", ".ci/run"].map(PathBuf::from).to_vec();
+    for path in &mut checked {
+        *path = Path::new(env!("CARGO_MANIFEST_DIR")).join(&path);
+    }
+    for folder in ["src", "tests", "examples", "benches", "tb", "rtl", "scripts", "docs"] {
+        checked.extend(files(folder, &["rs", "h", "cpp", "v", "sv", "md", "json", "core", "f", "toml", "sdc", "xdc"]));
+    }
+    for name in ["demo", "test", "setup"] {
+        checked.push(Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts").join(name));
+    }
+    let mut found = Vec::new();
+    checked.retain(|path| path.exists());
+    assert!(checked.len() > 20, "the files are where this test looks");
+    for path in &checked {
+        for (number, line) in text(path).lines().enumerate() {
+            found.extend(
+                words.iter().filter(|w| line.contains(*w)).map(|w| format!("{}:{}: {w}", short(path), number + 1)),
+            );
+        }
+    }
+    assert!(found.is_empty(), "{found:#?}");
+}
