@@ -31,7 +31,7 @@ fn top() -> Arc<Module> {
     store.write(enable, position.value(), data);
     graph.output("stored", store.read(position.value()));
     graph.output("late", data.delay(9));
-    graph.output("later", data.delay(70));
+    graph.output("later", data.delay(79));
     let slots = graph.array("slots", &slot(), count, &[("chosen", data.low(7)), ("value", data.slice(5, 7))]);
     graph.output("result", slots.output("result"));
     graph.output("last", count.equals(data.low(7)));

@@ -5,23 +5,36 @@ use std::collections::{BTreeSet, HashMap};
 use super::error::{Error, Errors};
 use super::graph::{Inner, Paths};
 use super::module::{Instance, Memory, Module, Node, NodeId, Op};
+use super::share_delays;
 
 pub(super) fn finish(mut inner: Inner) -> Result<Module, Errors> {
     check_connected(&mut inner);
     if !inner.errors.is_empty() {
         return Err(Errors(inner.errors));
     }
-    let looped = resolve_wires(&mut inner);
-    let order = match looped.map_or_else(|| Walk::new(&inner).order(), Err) {
-        Ok(order) => order,
+    match order(&mut inner) {
+        Ok(order) => Ok(renumber(inner, &order)),
         Err(looped) => {
             let node = &inner.nodes[looped.index()];
             let name = node.name.clone().unwrap_or_else(|| format!("{:?}", node.op));
             let message = format!("combinational loop through `{name}`");
-            return Err(Errors(vec![Error { module: inner.name, message, place: inner.places[looped.index()] }]));
+            Err(Errors(vec![Error { module: inner.name, message, place: inner.places[looped.index()] }]))
         }
-    };
-    Ok(renumber(inner, &order))
+    }
+}
+
+/// What lives, operands first; or a node that depends on itself.
+fn order(inner: &mut Inner) -> Result<Vec<NodeId>, NodeId> {
+    resolve_wires(inner)?;
+    let live = Walk::new(inner).order()?;
+    if !live.iter().any(|id| matches!(inner.nodes[id.index()].op, Op::Delay { .. })) {
+        return Ok(live);
+    }
+    // Only what lives may lengthen a chain, so each step is followed by another look at what does.
+    share_delays::collapse(inner, &live);
+    let live = Walk::new(inner).order()?;
+    share_delays::chain(inner, &live);
+    Walk::new(inner).order()
 }
 
 fn check_connected(inner: &mut Inner) {
@@ -38,35 +51,44 @@ fn check_connected(inner: &mut Inner) {
     }
 }
 
-/// Puts what drives a wire in its place; an unnamed driver takes the wire's name. Gives a wire that drives itself.
-fn resolve_wires(inner: &mut Inner) -> Option<NodeId> {
+/// Puts what drives a wire in its place; an unnamed driver takes the wire's name.
+/// Fails with a wire that drives itself.
+fn resolve_wires(inner: &mut Inner) -> Result<(), NodeId> {
     let mut target: Vec<NodeId> = (0..inner.nodes.len() as u32).map(NodeId).collect();
-    for index in 0..inner.nodes.len() {
-        let wire = NodeId(index as u32);
-        let mut end = wire;
+    for target in &mut target {
+        let wire = *target;
+        let (mut end, mut steps) = (wire, 0);
         while inner.nodes[end.index()].op == Op::Wire {
             end = inner.nodes[end.index()].operands[0];
-            if end == wire {
-                return Some(wire);
+            steps += 1;
+            if steps > inner.nodes.len() {
+                return Err(end);
             }
         }
-        target[index] = end;
+        *target = end;
         if end != wire {
-            let name = inner.nodes[index].name.clone();
+            let name = inner.nodes[wire.index()].name.clone();
             let driver = &mut inner.nodes[end.index()];
             if driver.name.is_none() && !matches!(driver.op, Op::Constant(_) | Op::Parameter(_)) {
                 driver.name = name;
             }
         }
     }
-    let operands = inner.nodes.iter_mut().flat_map(|node| node.operands.iter_mut());
-    let ports = inner.ports.iter_mut().filter_map(|port| port.node.as_mut());
-    let memories = inner.memories.iter_mut().filter_map(|memory| memory.write.as_mut()).flatten();
-    let instances = inner.instances.iter_mut().flat_map(|instance| instance.inputs.iter_mut().flatten());
-    for id in operands.chain(ports).chain(memories).chain(instances) {
-        *id = target[id.index()];
+    inner.redirect(|id| target[id.index()]);
+    Ok(())
+}
+
+impl Inner {
+    /// Replaces every use of a node.
+    pub(super) fn redirect(&mut self, to: impl Fn(NodeId) -> NodeId) {
+        let operands = self.nodes.iter_mut().flat_map(|node| &mut node.operands);
+        let ports = self.ports.iter_mut().filter_map(|port| port.node.as_mut());
+        let writes = self.memories.iter_mut().filter_map(|memory| memory.write.as_mut()).flatten();
+        let inputs = self.instances.iter_mut().flat_map(|instance| &mut instance.inputs).flatten();
+        for id in operands.chain(ports).chain(writes).chain(inputs) {
+            *id = to(*id);
+        }
     }
-    None
 }
 
 /// Depth-first from the outputs. Registers, delays, memory reads and instances without a combinational path cut it:

@@ -4,6 +4,7 @@
 //! operation records an [`Error`] with its place and yields a poisoned handle; [`Graph::finish`] returns all of
 //! them together or a [`Module`], from which nothing can be taken that its outputs do not need.
 
+mod delay_model;
 mod error;
 mod evaluate;
 mod finish;
@@ -11,10 +12,12 @@ mod fold;
 mod graph;
 mod keywords;
 mod module;
+mod share_delays;
 mod signal;
 mod state;
 pub mod verilog;
 
+pub use delay_model::DelayModel;
 pub use error::{Error, Errors};
 pub use evaluate::{EvaluateError, Evaluator, Pin};
 pub use graph::Graph;

@@ -67,7 +67,7 @@ module top #(
     stored <= store[position];
     late_line[delay_9] <= data;
     late <= late_line[delay_9_next];
-    later_line[delay_70] <= data;
+    later_line[delay_70] <= late;
     later <= later_line[delay_70_next];
     if (enable) store[position] <= data;
   end

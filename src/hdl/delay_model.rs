@@ -1,0 +1,152 @@
+//! How long operations take on a target's fabric, for cutting pipelines. All times are in nanoseconds.
+
+use serde::{Deserialize, Serialize};
+
+use super::module::{Module, Node, Op};
+
+/// What a clocked design of a target can do between two registers.
+///
+/// The default is fitted to register-to-register figures of one open flow (Yosys 0.70, nextpnr-ecp5 0.11, LFE5U-85F
+/// speed grade 8): adders of 12, 16, 24, 32 and 48 bits 453, 431, 385, 356 and 306 MHz; a 31-bit comparison 304; a
+/// 28-bit shifter of two, three and five levels 447, 306 and 234; an 18 × 18 product 182, a 24 × 24 one 111. Routing
+/// is contained in each figure; fan-out is not modelled.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DelayModel {
+    /// The target.
+    pub name: String,
+    /// Clock to output, routing to the first logic and set-up: paid once between two registers.
+    pub register: f64,
+    /// One level of look-up tables and the way to the next.
+    pub lut: f64,
+    /// Inputs of a look-up table.
+    pub lut_inputs: u32,
+    /// One level of two-way multiplexers: their select lines go far.
+    pub mux: f64,
+    /// Into a carry chain and out of it at a sum bit.
+    pub carry: f64,
+    /// One bit of a carry chain.
+    pub carry_bit: f64,
+    /// Out of a carry chain at its end, as a comparison does, beyond what a sum needs.
+    pub carry_out: f64,
+    /// One multiplier block.
+    pub multiplier: f64,
+    /// The widest operand of a multiplier block.
+    pub multiplier_bits: u32,
+}
+
+impl Default for DelayModel {
+    fn default() -> Self {
+        Self {
+            name: "ecp5".to_owned(),
+            register: 1.0,
+            lut: 0.62,
+            lut_inputs: 4,
+            mux: 0.65,
+            carry: 0.85,
+            carry_bit: 0.0295,
+            carry_out: 0.52,
+            multiplier: 4.5,
+            multiplier_bits: 18,
+        }
+    }
+}
+
+impl DelayModel {
+    /// The time between two register ranks at `clock_mhz` that is left for logic.
+    pub fn budget(&self, clock_mhz: f64) -> f64 {
+        1000.0 / clock_mhz - self.register
+    }
+
+    /// The clock, in MHz, at which logic that takes `logic` runs between two registers.
+    pub fn clock(&self, logic: f64) -> f64 {
+        1000.0 / (self.register + logic)
+    }
+
+    /// From the operands' arrival to the result of a combinational node; wiring takes no time.
+    pub fn delay(&self, module: &Module, node: &Node) -> f64 {
+        let width = |position: usize| module.node(node.operands[position]).width;
+        let constant = |position: usize| matches!(module.node(node.operands[position]).op, Op::Constant(_));
+        match node.op {
+            // An inverter is absorbed by the table before or after it.
+            Op::Not | Op::Wire | Op::Slice { .. } | Op::Concat => 0.0,
+            Op::And | Op::Or | Op::Xor => self.gate(),
+            Op::Mux if constant(1) || constant(2) => self.gate(),
+            Op::Mux => self.mux,
+            Op::Add | Op::Sub => self.adder(node.width),
+            Op::Less => self.tree(2 * width(0)).min(self.adder(width(0)) + self.carry_out),
+            Op::Equal if constant(0) || constant(1) => self.tree(width(0)),
+            Op::Equal => self.tree(2 * width(0)).min(self.adder(width(0)) + self.carry_out),
+            Op::Any | Op::All => self.tree(width(0)),
+            Op::Mul => self.product(width(0), width(1)),
+            // Each output is a function of all address bits.
+            Op::OneHot => self.tree(width(0)),
+            Op::Input | Op::Parameter(_) | Op::Constant(_) => 0.0,
+            Op::Delay { .. } | Op::Register { .. } | Op::MemoryRead { .. } | Op::InstanceOutput { .. } => 0.0,
+        }
+    }
+
+    /// A gate of two inputs: a table of 2^n inputs takes a tree of them n levels deep.
+    fn gate(&self) -> f64 {
+        self.lut / f64::from(self.lut_inputs.max(2)).log2()
+    }
+
+    /// Any function of `inputs` bits that is a tree of tables.
+    fn tree(&self, inputs: u32) -> f64 {
+        let (mut levels, mut reach) = (0, 1_u32);
+        while reach < inputs {
+            reach = reach.saturating_mul(self.lut_inputs.max(2));
+            levels += 1;
+        }
+        self.lut * f64::from(levels)
+    }
+
+    fn adder(&self, width: u32) -> f64 {
+        let chained = self.carry + self.carry_bit * f64::from(width);
+        // The highest sum bit of a narrow adder is one function of all operand bits.
+        if 2 * width <= self.lut_inputs { self.tree(2 * width).min(chained) } else { chained }
+    }
+
+    /// Multiplier blocks and a tree of adders over them, or shifted rows where one operand is narrow.
+    fn product(&self, left: u32, right: u32) -> f64 {
+        let (narrow, wide) = (left.min(right), left.max(right));
+        let adders = |rows: u32, width: u32| f64::from(rows.next_power_of_two().ilog2()) * self.adder(width);
+        let bits = self.multiplier_bits.max(1);
+        let tiles = narrow.div_ceil(bits).saturating_mul(wide.div_ceil(bits)).min(1 << 16);
+        let blocks = self.multiplier + adders(tiles, wide + narrow - bits.min(narrow + wide - 1));
+        blocks.min(self.gate() + adders(narrow, wide + narrow))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hdl::{Graph, Signal};
+
+    fn clock(build: impl for<'g> Fn(Signal<'g>, Signal<'g>) -> Signal<'g>, width: u32) -> f64 {
+        let g = Graph::new("one");
+        g.output("y", build(g.input("a", width), g.input("b", width)));
+        let module = g.finish().unwrap();
+        let model = DelayModel::default();
+        model.clock(module.nodes.iter().map(|node| model.delay(&module, node)).sum())
+    }
+
+    #[test]
+    fn the_default_meets_its_measurements() {
+        for (width, mhz) in [(12, 453.0), (16, 431.0), (24, 385.0), (32, 356.0), (48, 306.0)] {
+            let modelled = clock(|a, b| a + b, width);
+            assert!((modelled / mhz - 1.0_f64).abs() < 0.03, "{width}-bit adder: {modelled:.0} for {mhz} MHz");
+        }
+        for (width, mhz) in [(18, 182.0), (24, 111.0)] {
+            let modelled = clock(|a, b| a * b, width);
+            assert!((modelled / mhz - 1.0_f64).abs() < 0.08, "{width}-bit product: {modelled:.0} for {mhz} MHz");
+        }
+    }
+
+    #[test]
+    fn reductions_are_trees() {
+        let model = DelayModel::default();
+        for (bits, levels) in [(1, 0), (2, 1), (4, 1), (5, 2), (16, 2), (17, 3), (64, 3), (65, 4)] {
+            assert_eq!(model.tree(bits), model.lut * f64::from(levels), "{bits}");
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! Delays of one value share their registers: those of 5 and 3 cycles are a chain of 3 and 2.
+
+use std::collections::{BTreeMap, HashMap};
+
+use super::graph::Inner;
+use super::module::{Node, NodeId, Op};
+
+/// Makes every live delay one of a value that is not itself delayed, so that what merely led to it can go.
+pub(super) fn collapse(inner: &mut Inner, live: &[NodeId]) {
+    let delayed = |nodes: &[Node], id: NodeId| match nodes[id.index()].op {
+        Op::Delay { cycles } => Some((nodes[id.index()].operands[0], cycles)),
+        _ => None,
+    };
+    for &id in live {
+        let Some((mut source, mut total)) = delayed(&inner.nodes, id) else { continue };
+        let mut steps = 0;
+        while let Some((further, cycles)) = delayed(&inner.nodes, source) {
+            let Some(sum) = total.checked_add(cycles).filter(|_| steps < live.len()) else { break };
+            (source, total) = (further, sum);
+            steps += 1;
+        }
+        if steps == live.len() {
+            // Behind a circle of delays, which has no beginning: a value that keeps going round. It stays as it is.
+            continue;
+        }
+        let node = &mut inner.nodes[id.index()];
+        node.op = Op::Delay { cycles: total };
+        node.operands[0] = source;
+    }
+}
+
+/// Makes the live delays of each value, collapsed before, one chain.
+pub(super) fn chain(inner: &mut Inner, live: &[NodeId]) {
+    let mut of: BTreeMap<NodeId, BTreeMap<u32, NodeId>> = BTreeMap::new();
+    let mut replaced: HashMap<NodeId, NodeId> = HashMap::new();
+    for &id in live {
+        let node = &inner.nodes[id.index()];
+        let Op::Delay { cycles } = node.op else { continue };
+        let named = node.name.is_some();
+        let at = of.entry(node.operands[0]).or_default();
+        match at.get(&cycles).copied() {
+            None => drop(at.insert(cycles, id)),
+            Some(other) if named && inner.nodes[other.index()].name.is_none() => {
+                at.insert(cycles, id);
+                replaced.insert(other, id);
+            }
+            Some(other) => drop(replaced.insert(id, other)),
+        }
+    }
+    for (source, delays) in of {
+        let (mut from, mut distance) = (source, 0);
+        for (cycles, id) in delays {
+            let node = &mut inner.nodes[id.index()];
+            node.op = Op::Delay { cycles: cycles - distance };
+            node.operands[0] = from;
+            (from, distance) = (id, cycles);
+        }
+    }
+    if !replaced.is_empty() {
+        // A delay replaced by one that was replaced later in turn.
+        inner.redirect(|mut id| {
+            while let Some(&other) = replaced.get(&id) {
+                id = other;
+            }
+            id
+        });
+    }
+}

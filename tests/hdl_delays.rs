@@ -1,0 +1,101 @@
+//! Delays of one value become one chain, however they were written.
+
+use contact_afu::hdl::{Evaluator, Graph, Module, Op};
+
+/// The delays of a module, each with its cycles and the name of what it delays, if that is not a delay.
+fn delays(module: &Module) -> Vec<(u32, Option<String>)> {
+    let mut found: Vec<_> = module
+        .nodes
+        .iter()
+        .filter_map(|node| match node.op {
+            Op::Delay { cycles } => Some((cycles, module.node(node.operands[0]).name.clone())),
+            _ => None,
+        })
+        .collect();
+    found.sort();
+    found
+}
+
+#[test]
+fn different_distances_share_their_registers() {
+    let g = Graph::new("shared");
+    let x = g.input("x", 8);
+    g.output("five", x.delay(5));
+    g.output("three", x.delay(3));
+    g.output("also_five", x.delay(2).delay(3));
+    g.output("six", x.delay(1).delay(4).delay(1));
+    let module = g.finish().unwrap();
+    assert_eq!(delays(&module), [(1, None), (2, None), (3, Some("x".to_owned()))]);
+
+    let mut run = Evaluator::new(&module, &[]).unwrap();
+    for t in 0..30_u32 {
+        run.set("x", u128::from(t + 1));
+        let ago = |cycles: u32| u128::from((t + 1).saturating_sub(cycles));
+        for (port, cycles) in [("five", 5), ("three", 3), ("also_five", 5), ("six", 6)] {
+            assert_eq!(run.get(port), ago(cycles), "{port} at {t}");
+        }
+        run.step();
+    }
+}
+
+#[test]
+fn a_chain_that_is_only_passed_through_is_one_delay() {
+    let g = Graph::new("through");
+    let x = g.input("x", 8);
+    g.output("y", x.delay(1).delay(1).delay(1).delay(7));
+    assert_eq!(delays(&g.finish().unwrap()), [(10, Some("x".to_owned()))]);
+}
+
+#[test]
+fn delays_that_nothing_needs_lengthen_nothing() {
+    let g = Graph::new("dead");
+    let x = g.input("x", 8);
+    let _ = x.delay(2) + x.delay(4);
+    g.output("y", x.delay(3));
+    assert_eq!(delays(&g.finish().unwrap()), [(3, Some("x".to_owned()))]);
+}
+
+#[test]
+fn of_equal_delays_the_named_one_stays() {
+    let g = Graph::new("named");
+    let x = g.input("x", 8);
+    g.output("a", x.delay(2).delay(2).plus(1));
+    g.output("b", x.delay(4).named("x_late").plus(2));
+    let module = g.finish().unwrap();
+    let names: Vec<_> = module.nodes.iter().filter(|n| matches!(n.op, Op::Delay { .. })).map(|n| &n.name).collect();
+    assert_eq!(names, [&Some("x_late".to_owned())]);
+}
+
+#[test]
+fn delays_through_registers_and_in_circles_stay_what_they_are() {
+    let g = Graph::new("circle");
+    let round = g.wire("round", 4);
+    let x = g.input("x", 4);
+    round.drive((round.delay(2).delay(1) + x).delay(1));
+    g.output("y", round);
+    let still = g.wire("still", 4);
+    still.drive(still.delay(3));
+    g.output("z", still.delay(2));
+    let module = g.finish().unwrap();
+    let mut run = Evaluator::new(&module, &[]).unwrap();
+    let mut seen = vec![0_u128; 4];
+    for t in 0..40 {
+        run.set("x", t % 16);
+        assert_eq!((run.get("y"), run.get("z")), (seen[seen.len() - 1], 0), "at {t}");
+        // y(t + 1) = y(t - 3) + x(t)
+        seen.push((seen[seen.len() - 4] + t % 16) % 16);
+        run.step();
+    }
+}
+
+#[test]
+fn wires_in_a_circle_are_an_error_wherever_it_is_entered() {
+    let g = Graph::new("wires");
+    let (a, b, c) = (g.wire("a", 1), g.wire("b", 1), g.wire("c", 1));
+    a.drive(b);
+    b.drive(c);
+    c.drive(b);
+    g.output("y", a);
+    let error = g.finish().unwrap_err().to_string();
+    assert!(error.starts_with("wires: combinational loop through `"), "{error}");
+}
