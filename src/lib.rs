@@ -11,6 +11,7 @@ pub mod kernel;
 pub mod link;
 pub mod number;
 pub mod operator;
+pub mod pairs;
 pub mod pipeline;
 pub mod report;
 pub mod tools;

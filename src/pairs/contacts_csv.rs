@@ -1,0 +1,53 @@
+//! Contacts as CSV: `pair,flow,pos_x,pos_y,pos_z,normal_x,normal_y,normal_z,depth,invalid`.
+
+use super::{FileError, table};
+use crate::kernel::{ContactRecord, Flow};
+use std::io::{self, Write};
+use std::path::Path;
+
+const COLUMNS: [&str; 10] =
+    ["pair", "flow", "pos_x", "pos_y", "pos_z", "normal_x", "normal_y", "normal_z", "depth", "invalid"];
+const PAIR: usize = 0;
+const FLOW: usize = 1;
+const NUMBERS: usize = 2;
+const INVALID: usize = 9;
+
+pub fn read(file: &Path, text: &[u8]) -> Result<Vec<ContactRecord>, FileError> {
+    let mut contacts = Vec::new();
+    table::read(file, text, &COLUMNS, |row| {
+        if row.text(PAIR).parse() != Ok(contacts.len()) {
+            return Err(row.error(PAIR, format!("`{}` should be {}", row.text(PAIR), contacts.len())));
+        }
+        let flow = Flow::ALL.into_iter().find(|flow| flow.name() == row.text(FLOW));
+        let flow = flow.ok_or_else(|| {
+            row.error(FLOW, format!("`{}` is none of fake, grazing, real and invalid", row.text(FLOW)))
+        })?;
+        let expected = if flow == Flow::Invalid { "1" } else { "0" };
+        if row.text(INVALID) != expected {
+            return Err(row.error(INVALID, format!("`{}` should be {expected} for flow {flow}", row.text(INVALID))));
+        }
+        let mut words = [flow.flags(); 8];
+        for (i, word) in words[..7].iter_mut().enumerate() {
+            *word = row.number(NUMBERS + i)?.to_bits();
+        }
+        contacts.push(ContactRecord(words));
+        Ok(())
+    })?;
+    Ok(contacts)
+}
+
+/// Flags that no kernel writes are written as far as the columns go: bits 2:1 as the flow, bit 3 as invalid.
+pub fn write(out: impl Write, contacts: &[ContactRecord]) -> io::Result<()> {
+    let mut out = csv::Writer::from_writer(out);
+    out.write_record(COLUMNS)?;
+    for (pair, contact) in contacts.iter().enumerate() {
+        out.write_field(pair.to_string())?;
+        out.write_field(Flow::ALL[(contact.flags() >> 1 & 3) as usize].name())?;
+        for &word in &contact.0[..7] {
+            out.write_field(table::decimal(f32::from_bits(word)))?;
+        }
+        out.write_field((contact.flags() >> 3 & 1).to_string())?;
+        out.write_record(None::<&[u8]>)?;
+    }
+    out.flush()
+}

@@ -1,0 +1,110 @@
+//! Reading and writing by file name.
+
+use super::{FileError, Set, SetError, contacts_csv, npy, pairs_csv};
+use crate::kernel::{ContactRecord, PairRecord};
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+const PAIR_TYPE: &str = "<f4";
+const CONTACT_TYPE: &str = "<u4";
+
+/// The formats a file can have.
+enum Kind {
+    Csv,
+    Npy,
+}
+
+fn kind(file: &Path) -> Result<Kind, FileError> {
+    match file.extension().and_then(|extension| extension.to_str()) {
+        Some(extension) if extension.eq_ignore_ascii_case("csv") => Ok(Kind::Csv),
+        Some(extension) if extension.eq_ignore_ascii_case("npy") => Ok(Kind::Npy),
+        _ => Err(FileError::Extension(file.to_owned())),
+    }
+}
+
+/// Why pairs could not be had.
+#[derive(Debug, thiserror::Error)]
+pub enum LoadError {
+    /// A set's name is wrong.
+    #[error(transparent)]
+    Set(#[from] SetError),
+    /// A file is wrong.
+    #[error(transparent)]
+    File(#[from] FileError),
+}
+
+/// The pairs of a named set (`diamond:10`, `random:1000` with `seed`) or of a file.
+///
+/// # Errors
+/// When the name or the file is wrong.
+pub fn load(source: &str, seed: u64) -> Result<Vec<PairRecord>, LoadError> {
+    if Set::is_name(source) { Ok(source.parse::<Set>()?.pairs(seed)) } else { Ok(read_pairs(Path::new(source))?) }
+}
+
+/// The pairs of a `.csv` or `.npy` file.
+///
+/// # Errors
+/// When the file cannot be read or is not of that form.
+pub fn read_pairs(file: &Path) -> Result<Vec<PairRecord>, FileError> {
+    match kind(file)? {
+        Kind::Csv => pairs_csv::read(file, &bytes(file)?),
+        Kind::Npy => Ok(npy::read(file, &bytes(file)?, PAIR_TYPE)?.into_iter().map(PairRecord).collect()),
+    }
+}
+
+/// The contacts of a `.csv` or `.npy` file.
+///
+/// # Errors
+/// When the file cannot be read or is not of that form.
+pub fn read_contacts(file: &Path) -> Result<Vec<ContactRecord>, FileError> {
+    match kind(file)? {
+        Kind::Csv => contacts_csv::read(file, &bytes(file)?),
+        Kind::Npy => Ok(npy::read(file, &bytes(file)?, CONTACT_TYPE)?.into_iter().map(ContactRecord).collect()),
+    }
+}
+
+/// Writes pairs to a `.csv` or `.npy` file, which is there whole or not at all.
+///
+/// # Errors
+/// When the name has another ending or the file cannot be written.
+pub fn write_pairs(file: &Path, pairs: &[PairRecord]) -> Result<(), FileError> {
+    match kind(file)? {
+        Kind::Csv => write(file, |out| pairs_csv::write(out, pairs)),
+        Kind::Npy => write(file, |out| npy::write(out, PAIR_TYPE, pairs.iter().map(|pair| pair.0))),
+    }
+}
+
+/// Writes contacts to a `.csv` or `.npy` file, which is there whole or not at all.
+///
+/// # Errors
+/// When the name has another ending or the file cannot be written.
+pub fn write_contacts(file: &Path, contacts: &[ContactRecord]) -> Result<(), FileError> {
+    match kind(file)? {
+        Kind::Csv => write(file, |out| contacts_csv::write(out, contacts)),
+        Kind::Npy => write(file, |out| npy::write(out, CONTACT_TYPE, contacts.iter().map(|contact| contact.0))),
+    }
+}
+
+fn bytes(file: &Path) -> Result<Vec<u8>, FileError> {
+    fs::read(file).map_err(FileError::reading(file))
+}
+
+/// Writes next to the file and renames.
+fn write(file: &Path, content: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>) -> Result<(), FileError> {
+    let folder = match file.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    let write = || {
+        // A file made by hand rather than by tempfile, which would give it to its owner alone.
+        let aside = tempfile::Builder::new().prefix(".afu-").make_in(folder, |path| File::create_new(path))?;
+        let mut out = BufWriter::new(aside.as_file());
+        content(&mut out)?;
+        out.flush()?;
+        drop(out);
+        aside.persist(file).map_err(|error| error.error)?;
+        Ok(())
+    };
+    write().map_err(FileError::writing(file))
+}

@@ -1,0 +1,16 @@
+//! Pairs by name (`diamond:10`, `random:1000`) and from files, and contacts to files: CSV and `.npy`.
+
+mod contacts_csv;
+mod diamond;
+mod error;
+mod file;
+mod npy;
+mod npy_header;
+mod pairs_csv;
+mod random;
+mod set;
+mod table;
+
+pub use error::FileError;
+pub use file::{LoadError, load, read_contacts, read_pairs, write_contacts, write_pairs};
+pub use set::{Set, SetError};

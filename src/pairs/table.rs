@@ -1,0 +1,133 @@
+//! A CSV file with known columns.
+
+use super::FileError;
+use std::path::Path;
+
+/// A row: where it begins in the file's text, and its fields in the order of the columns asked for.
+pub struct Row<'a, const N: usize> {
+    file: &'a Path,
+    text: &'a [u8],
+    begin: u64,
+    columns: &'static [&'static str; N],
+    fields: [&'a str; N],
+}
+
+/// Reads a file whose header names exactly `columns`, in any order, and gives each row to `take`.
+pub fn read<const N: usize>(
+    file: &Path,
+    text: &[u8],
+    columns: &'static [&'static str; N],
+    mut take: impl FnMut(Row<'_, N>) -> Result<(), FileError>,
+) -> Result<(), FileError> {
+    let mut reader = csv::ReaderBuilder::new().has_headers(false).flexible(true).trim(csv::Trim::All).from_reader(text);
+    let mut record = csv::StringRecord::new();
+    if !reader.read_record(&mut record).map_err(|error| broken(file, text, error))? {
+        let problem = format!("the file is empty; it must begin with the header {}", columns.join(","));
+        return Err(FileError::Line { file: file.to_owned(), line: 1, problem });
+    }
+    let places = header(file, text, columns, &record)?;
+    while reader.read_record(&mut record).map_err(|error| broken(file, text, error))? {
+        let begin = record.position().map_or(0, csv::Position::byte);
+        let line = || line_at(text, begin);
+        if record.len() > N {
+            let problem = format!("{} fields under a header of {N}", record.len());
+            return Err(FileError::Line { file: file.to_owned(), line: line(), problem });
+        }
+        let mut fields = [""; N];
+        for (i, &place) in places.iter().enumerate() {
+            let missing = || FileError::Field {
+                file: file.to_owned(),
+                line: line(),
+                field: columns[i],
+                problem: format!("missing: the line has {} of {N} fields", record.len()),
+            };
+            fields[i] = record.get(place).ok_or_else(missing)?;
+        }
+        take(Row { file, text, begin, columns, fields })?;
+    }
+    Ok(())
+}
+
+/// Where each column stands.
+fn header<const N: usize>(
+    file: &Path,
+    text: &[u8],
+    columns: &'static [&'static str; N],
+    record: &csv::StringRecord,
+) -> Result<[usize; N], FileError> {
+    let line = line_at(text, record.position().map_or(0, csv::Position::byte));
+    let known = |name: &str| columns.contains(&name);
+    if let Some(unknown) = record.iter().find(|name| !known(name)) {
+        let problem = format!("`{unknown}` is no column of this file; the header is {}", columns.join(","));
+        return Err(FileError::Line { file: file.to_owned(), line, problem });
+    }
+    let mut places = [0; N];
+    for (place, &field) in places.iter_mut().zip(columns) {
+        let mut found = record.iter().enumerate().filter(|(_, name)| *name == field);
+        let problem = match (found.next(), found.next()) {
+            (Some((i, _)), None) => {
+                *place = i;
+                continue;
+            }
+            (None, _) => "the header has no such column",
+            (Some(_), Some(_)) => "the header has this column twice",
+        };
+        return Err(FileError::Field { file: file.to_owned(), line, field, problem: problem.to_owned() });
+    }
+    Ok(places)
+}
+
+/// What the CSV reader itself refuses: text that is not UTF-8.
+fn broken(file: &Path, text: &[u8], error: csv::Error) -> FileError {
+    let line = line_at(text, error.position().map_or(0, csv::Position::byte));
+    let problem = match error.kind() {
+        csv::ErrorKind::Utf8 { .. } => "not UTF-8 text".to_owned(),
+        _ => format!("not CSV: {error}"),
+    };
+    FileError::Line { file: file.to_owned(), line, problem }
+}
+
+/// The line, from 1, of the row that begins at `begin`. (The reader's own count is early by the empty lines before
+/// a row, of which the second half of a CR LF is one.)
+fn line_at(text: &[u8], begin: u64) -> u64 {
+    let (before, rest) = text.split_at((begin as usize).min(text.len()));
+    let empty = rest.iter().take_while(|byte| matches!(byte, b'\r' | b'\n'));
+    1 + before.iter().chain(empty).filter(|&&byte| byte == b'\n').count() as u64
+}
+
+impl<const N: usize> Row<'_, N> {
+    /// The text of column `i`.
+    pub fn text(&self, i: usize) -> &str {
+        self.fields[i]
+    }
+
+    /// An error in column `i`.
+    pub fn error(&self, i: usize, problem: String) -> FileError {
+        FileError::Field {
+            file: self.file.to_owned(),
+            line: line_at(self.text, self.begin),
+            field: self.columns[i],
+            problem,
+        }
+    }
+
+    /// Column `i` as the binary32 number nearest to its decimals. NaN and infinities can be written; a decimal
+    /// beyond the largest number cannot be meant.
+    pub fn number(&self, i: usize) -> Result<f32, FileError> {
+        let text = self.text(i);
+        let value = text.parse::<f32>().map_err(|_| self.error(i, format!("`{text}` is not a number")))?;
+        if value.is_infinite() && text.contains(|c: char| c.is_ascii_digit()) {
+            return Err(self.error(i, format!("`{text}` is beyond the largest binary32 number")));
+        }
+        Ok(value)
+    }
+}
+
+/// The shortest decimals that read back as `value`.
+pub fn decimal(value: f32) -> String {
+    let mut text = format!("{value:?}");
+    if text.ends_with(".0") {
+        text.truncate(text.len() - 2);
+    }
+    text
+}

@@ -1,0 +1,200 @@
+//! Files of pairs and contacts: what is written reads back, and what is wrong is named.
+
+use contact_afu::kernel::{ContactRecord, Fields, PairRecord, Reference};
+use contact_afu::number::Format;
+use contact_afu::pairs::{self, Set};
+use std::fs;
+use std::path::{Path, PathBuf};
+use tempfile::TempDir;
+
+fn folder() -> TempDir {
+    tempfile::tempdir().unwrap()
+}
+
+fn put(folder: &TempDir, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
+    let file = folder.path().join(name);
+    fs::write(&file, bytes).unwrap();
+    file
+}
+
+/// NaN as CSV can have it.
+fn canonical(word: u32) -> u32 {
+    if f32::from_bits(word).is_nan() { 0x7FC0_0000 } else { word }
+}
+
+#[test]
+fn pairs_survive_both_formats() {
+    let folder = folder();
+    for set in [Set::Diamond(3), Set::Random(20_000), Set::Random(0)] {
+        let expected = set.pairs(3);
+        let npy = folder.path().join("pairs.npy");
+        pairs::write_pairs(&npy, &expected).unwrap();
+        assert_eq!(pairs::read_pairs(&npy).unwrap(), expected);
+        let csv = folder.path().join("pairs.csv");
+        pairs::write_pairs(&csv, &expected).unwrap();
+        let canonical: Vec<_> = expected.iter().map(|pair| PairRecord(pair.0.map(canonical))).collect();
+        assert_eq!(pairs::read_pairs(&csv).unwrap(), canonical);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2, "nothing is left beside the files");
+    }
+}
+
+#[test]
+fn contacts_survive_both_formats() {
+    let folder = folder();
+    for set in [Set::Random(20_000), Set::Random(0)] {
+        let expected = Reference::new(Format::WIDE, Fields::ALL).run_all(&set.pairs(4));
+        for name in ["contacts.npy", "contacts.CSV"] {
+            let file = folder.path().join(name);
+            pairs::write_contacts(&file, &expected).unwrap();
+            assert_eq!(pairs::read_contacts(&file).unwrap(), expected);
+        }
+    }
+}
+
+#[test]
+fn csv_is_plain_to_read() {
+    let folder = folder();
+    let file = folder.path().join("pairs.csv");
+    let pair = PairRecord::from_spheres([0.1, -0.0, 1e-45, f32::MAX], [16_777_216.0, f32::NAN, f32::INFINITY, 1.0]);
+    pairs::write_pairs(&file, &[pair]).unwrap();
+    let expected = "x1,y1,z1,r1,x2,y2,z2,r2\n0.1,-0,1e-45,3.4028235e38,16777216,NaN,inf,1\n";
+    assert_eq!(fs::read_to_string(&file).unwrap(), expected);
+
+    let file = folder.path().join("contacts.csv");
+    let contacts = Reference::new(Format::BINARY32, Fields::ALL)
+        .run_all(&[PairRecord::from_spheres([0.0, 0.0, 0.0, 0.5], [1.0, 0.0, 0.0, 0.5]), pair]);
+    pairs::write_contacts(&file, &contacts).unwrap();
+    let expected = "pair,flow,pos_x,pos_y,pos_z,normal_x,normal_y,normal_z,depth,invalid\n\
+                    0,real,0.5,0,0,-1,0,0,0,0\n\
+                    1,invalid,0,0,0,0,0,0,0,1\n";
+    assert_eq!(fs::read_to_string(&file).unwrap(), expected);
+}
+
+#[test]
+fn columns_stand_in_any_order_and_spaces_do_not_count() {
+    let folder = folder();
+    let file = put(&folder, "pairs.csv", "\u{feff}r2, r1,x1,y1,z1,x2,y2,z2\r\n8, 4,1,2,3,5,6,+7e0\r\n");
+    let expected = PairRecord::from_spheres([1.0, 2.0, 3.0, 4.0], [5.0, 6.0, 7.0, 8.0]);
+    assert_eq!(pairs::read_pairs(&file).unwrap(), [expected]);
+}
+
+/// Our npy files are another library's too, and the other way round.
+#[test]
+fn npy_is_understood_by_another_library() {
+    use npyz::WriterBuilder;
+    let folder = folder();
+    let expected = Set::Diamond(3).pairs(0);
+    let ours = folder.path().join("ours.npy");
+    pairs::write_pairs(&ours, &expected).unwrap();
+    let read = npyz::NpyFile::new(fs::File::open(&ours).unwrap()).unwrap();
+    assert_eq!(read.shape(), [132, 8]);
+    let values: Vec<f32> = read.into_vec().unwrap();
+    assert!(values.into_iter().eq(expected.iter().flat_map(|pair| pair.values())));
+
+    let theirs = folder.path().join("theirs.npy");
+    let out = fs::File::create(&theirs).unwrap();
+    let mut writer = npyz::WriteOptions::new().default_dtype().shape(&[132, 8]).writer(out).begin_nd().unwrap();
+    writer.extend(expected.iter().flat_map(|pair| pair.values())).unwrap();
+    writer.finish().unwrap();
+    assert_eq!(pairs::read_pairs(&theirs).unwrap(), expected);
+}
+
+const HEADER: &str = "x1,y1,z1,r1,x2,y2,z2,r2\n";
+
+/// The one line that a wrong file gives, its folder left out.
+fn complaint<T: std::fmt::Debug>(read: fn(&Path) -> Result<T, pairs::FileError>, file: &Path) -> String {
+    let error = read(file).unwrap_err().to_string();
+    let name = file.display().to_string();
+    assert!(error.starts_with(&name), "{error} names {name}");
+    assert!(!error.contains('\n'), "{error}");
+    error[name.len()..].to_owned()
+}
+
+#[test]
+fn a_wrong_csv_is_named_by_line_and_field() {
+    let folder = folder();
+    for (text, expected) in [
+        (String::new(), ", line 1: the file is empty; it must begin with the header x1,y1,z1,r1,x2,y2,z2,r2"),
+        ("x1,y1,z1,r1,x2,y2,z2\n".into(), ", line 1, field r2: the header has no such column"),
+        ("x1,y1,z1,r1,x2,y2,z2,r2,x1\n".into(), ", line 1, field x1: the header has this column twice"),
+        ("0,0,0,1,1,0,0,1\n".into(), ", line 1: `0` is no column of this file; the header is x1,y1,z1,r1,x2,y2,z2,r2"),
+        (format!("{HEADER}1,2,3,4,5,6,7,8\n1,2,three,4,5,6,7,8\n"), ", line 3, field z1: `three` is not a number"),
+        (
+            "x1,y1,z1,r1,x2,y2,z2,r2\r\n1,2,3,4,5,6,7,8\r\n1,2,3,x,5,6,7,8".into(),
+            ", line 3, field r1: `x` is not a number",
+        ),
+        (format!("{HEADER}1,2,3,4,5,6,7\n"), ", line 2, field r2: missing: the line has 7 of 8 fields"),
+        (format!("{HEADER}1,2,3,4,,6,7,8\n"), ", line 2, field x2: `` is not a number"),
+        (format!("{HEADER}\n\n1,2,3,4,5,6,7,8,9\n"), ", line 4: 9 fields under a header of 8"),
+        (format!("{HEADER}1,2,3,4,5,6,7,1e39\n"), ", line 2, field r2: `1e39` is beyond the largest binary32 number"),
+    ] {
+        let file = put(&folder, "pairs.csv", &text);
+        assert_eq!(complaint(pairs::read_pairs, &file), expected, "{text}");
+    }
+    let file = put(&folder, "pairs.csv", [HEADER.as_bytes(), b"1,2,3,4,5,6,7,8\n1,\xFF,3,4,5,6,7,8\n"].concat());
+    assert_eq!(complaint(pairs::read_pairs, &file), ", line 3: not UTF-8 text");
+
+    let header = "pair,flow,pos_x,pos_y,pos_z,normal_x,normal_y,normal_z,depth,invalid\n";
+    for (line, expected) in [
+        ("1,fake,0,0,0,0,0,0,0,0", "field pair: `1` should be 0"),
+        ("0,none,0,0,0,0,0,0,0,0", "field flow: `none` is none of fake, grazing, real and invalid"),
+        ("0,fake,0,0,0,0,0,0,0,1", "field invalid: `1` should be 0 for flow fake"),
+    ] {
+        let file = put(&folder, "contacts.csv", format!("{header}{line}\n"));
+        assert_eq!(complaint(pairs::read_contacts, &file), format!(", line 2, {expected}"));
+    }
+}
+
+/// A version 1.0 header.
+fn npy(dictionary: &str, data: usize) -> Vec<u8> {
+    let length = (dictionary.len() as u16).to_le_bytes();
+    [b"\x93NUMPY\x01\x00", &length[..], dictionary.as_bytes(), &vec![0; data]].concat()
+}
+
+#[test]
+fn a_wrong_npy_is_named_by_field() {
+    let folder = folder();
+    let array = |descr: &str, order: &str, shape: &str, data| {
+        npy(&format!("{{'descr': '{descr}', 'fortran_order': {order}, 'shape': {shape}, }}\n"), data)
+    };
+    for (bytes, expected) in [
+        (Vec::new(), ", header: the file is empty"),
+        (HEADER.into(), ", header: this is not an npy file"),
+        (array("<f8", "False", "(1, 8)", 64), ", descr: '<f8' should be '<f4'"),
+        (array(">f4", "False", "(1, 8)", 32), ", descr: '>f4' should be '<f4'"),
+        (array("<f4", "False", "(8,)", 32), ", shape: [8] should be [n, 8]"),
+        (array("<f4", "False", "(8, 1)", 32), ", shape: [8, 1] should be [n, 8]"),
+        (array("<f4", "True", "(2, 8)", 64), ", fortran_order: True should be False (see numpy.ascontiguousarray)"),
+        (array("<f4", "False", "(3, 8)", 64), ", shape: 3 records of 32 bytes, but the data has 64 bytes"),
+        (array("<f4", "False", "(1, 8)", 33), ", shape: 1 records of 32 bytes, but the data has 33 bytes"),
+        (
+            array("<f4", "False", "(576460752303423488, 8)", 0),
+            ", shape: 576460752303423488 records of 32 bytes, but the data has 0 bytes",
+        ),
+        (
+            b"\x93NUMPY\x02\x00\xff\xff\xff\xff{".to_vec(),
+            ", header: 4294967295 bytes long, where an n x 8 array needs fewer than 1024",
+        ),
+    ] {
+        let file = put(&folder, "pairs.npy", &bytes);
+        assert_eq!(complaint(pairs::read_pairs, &file), expected);
+    }
+    let file = put(&folder, "contacts.npy", array("<f4", "False", "(1, 8)", 32));
+    assert_eq!(complaint(pairs::read_contacts, &file), ", descr: '<f4' should be '<u4'");
+}
+
+#[test]
+fn an_absent_file_and_a_strange_name_are_refused() {
+    let folder = folder();
+    for name in ["absent.csv", "absent.npy"] {
+        let complaint = complaint(pairs::read_pairs, &folder.path().join(name));
+        assert!(complaint.starts_with(": cannot be read: "), "{complaint}");
+    }
+    let strange = folder.path().join("pairs.txt");
+    assert_eq!(complaint(pairs::read_pairs, &strange), ": the name must end in .csv or .npy");
+    assert!(pairs::write_pairs(&strange, &[]).is_err());
+    let error = pairs::write_contacts(&folder.path().join("no/such/folder.csv"), &[ContactRecord::default()]);
+    assert!(error.unwrap_err().to_string().contains("cannot be written"));
+    assert!(pairs::load("diamond:x", 0).unwrap_err().to_string().contains("`x` must be a number from 1 to 100"));
+    assert_eq!(pairs::load("diamond:3", 0).unwrap().len(), 132);
+}
