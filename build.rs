@@ -1,1 +1,109 @@
-fn main() {}
+//! Builds the committed AFU of `rtl/` into the crate, as a Verilated model behind the C ABI of `tb/harness.h`.
+//!
+//! Nothing here fails a build: what is missing or refused is a warning, and a crate without a built-in model. (Bad
+//! Verilog must not stop the program that writes it anew.) Only OUT_DIR is written to.
+
+use std::env;
+
+#[cfg(feature = "cosim")]
+#[path = "src/cosim/verilate/mod.rs"]
+mod verilate;
+
+fn main() {
+    println!("cargo:rerun-if-changed=build.rs");
+    println!("cargo:rustc-check-cfg=cfg(afu_built_in)");
+    let target = env::var("TARGET").unwrap_or_default();
+    println!("cargo:rustc-env=AFU_TARGET={target}");
+    #[cfg(feature = "cosim")]
+    cosim::main(&target);
+}
+
+#[cfg(feature = "cosim")]
+mod cosim {
+    use std::env;
+    use std::fs;
+    use std::panic;
+    use std::path::{Path, PathBuf};
+
+    use crate::verilate::{self, Compiler, Design, Harness, Tool, Trace};
+
+    const HARNESS: Harness<'static> =
+        Harness { header: include_str!("tb/harness.h"), source: include_str!("tb/harness.cpp") };
+
+    pub fn main(target: &str) {
+        for path in ["tb", "src/cosim/verilate", "rtl"] {
+            println!("cargo:rerun-if-changed={path}");
+        }
+        for name in ["AFU_VERILATOR", "CXX", "CXXFLAGS", "DOCS_RS", "VIRTUAL_ENV", "LIBCLANG_PATH"] {
+            println!("cargo:rerun-if-env-changed={name}");
+        }
+        let Some(out) = env::var_os("OUT_DIR").map(PathBuf::from) else { return warn("OUT_DIR is not set") };
+        bindings(&out);
+        if env::var_os("DOCS_RS").is_some() {
+            return;
+        }
+        if let Err(why) = model(&out, target) {
+            warn(&format!("no built-in AFU model: {why}"));
+            // Cargo runs a build script again while a file it depends on is absent: so the next build tries once more.
+            println!("cargo:rerun-if-changed={}", out.join("absent").display());
+        }
+    }
+
+    fn warn(text: &str) {
+        for line in text.lines() {
+            println!("cargo:warning={line}");
+        }
+    }
+
+    /// Makes Rust types of the C ABI; without libclang, takes those that were made earlier (a test compares them).
+    fn bindings(out: &Path) {
+        let to = out.join("harness.rs");
+        // clang-sys panics where libclang is missing.
+        let made = panic::catch_unwind(|| {
+            let builder = bindgen::Builder::default()
+                .header("tb/harness.h")
+                .allowlist_item("(afu|AFU)_.*")
+                .rust_edition(bindgen::RustEdition::Edition2024)
+                .layout_tests(false)
+                .generate_comments(false)
+                .formatter(bindgen::Formatter::Prettyplease)
+                .disable_header_comment();
+            builder.generate().map(|bindings| bindings.to_string()).map_err(|e| e.to_string())
+        });
+        let text = match made {
+            Ok(Ok(text)) => text,
+            Ok(Err(why)) => return earlier_bindings(&to, &why),
+            Err(_) => return earlier_bindings(&to, "libclang is missing; scripts/setup installs it"),
+        };
+        if let Err(e) = fs::write(&to, text) {
+            warn(&format!("cannot write {}: {e}", to.display()));
+        }
+    }
+
+    fn earlier_bindings(to: &Path, why: &str) {
+        warn(&format!("bindgen: {why}; using tb/harness.rs"));
+        if let Err(e) = fs::copy("tb/harness.rs", to) {
+            warn(&format!("cannot copy tb/harness.rs: {e}"));
+        }
+    }
+
+    fn model(out: &Path, target: &str) -> Result<(), String> {
+        let list = Path::new("rtl/contact_afu.f");
+        if !list.is_file() {
+            return Err("there is no rtl/contact_afu.f; `afu rtl --out rtl` writes it".to_owned());
+        }
+        let files = verilate::read_file_list(list).map_err(|e| e.to_string())?;
+        let design = Design { files: &files, top: "contact_afu", parameters: &[], trace: Trace::Off, harness: HARNESS };
+        let host = env::var("HOST").unwrap_or_else(|_| target.to_owned());
+        let tool = Tool::find().map_err(|e| e.to_string())?;
+        println!("cargo:rerun-if-changed={}", tool.program().display());
+        let compiler = Compiler::find(target, &host).map_err(|e| e.to_string())?;
+        let objects =
+            verilate::objects_for_static(&design, &tool, &compiler, &out.join("models")).map_err(|e| e.to_string())?;
+        let mut library = cc::Build::new();
+        library.cpp(true).objects(&objects);
+        library.try_compile("contact_afu_model").map_err(|e| e.to_string())?;
+        println!("cargo:rustc-cfg=afu_built_in");
+        Ok(())
+    }
+}

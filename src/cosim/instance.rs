@@ -1,0 +1,210 @@
+//! One module with its state.
+
+use std::ffi::{CStr, CString, c_int};
+use std::os::unix::ffi::OsStrExt;
+use std::path::Path;
+use std::ptr::NonNull;
+use std::slice;
+
+use super::abi::{Api, raw};
+use super::error::SimulationError;
+use super::port::{Port, Wide};
+
+/// A simulated module: its ports are memory ([`Port`], [`Wide`]), its clock is [`Instance::tick`].
+///
+/// It may move between threads but is used by one at a time.
+#[derive(Debug)]
+pub struct Instance {
+    api: Api,
+    handle: NonNull<raw::afu_instance>,
+}
+
+// SAFETY: an instance has a VerilatedContext of its own and refers to nothing of the thread that made it; it is not
+// Sync, and its ports borrow it.
+unsafe impl Send for Instance {}
+
+/// The module's clock input.
+#[derive(Clone, Copy, Debug)]
+pub struct Clock<'a> {
+    instance: &'a Instance,
+    index: u32,
+}
+
+impl Instance {
+    pub(super) fn new(api: Api, seed: u64) -> Result<Self, SimulationError> {
+        // SAFETY: a function of a loaded model, which takes any seed.
+        let handle = NonNull::new(unsafe { (api.create)(seed) });
+        let handle = handle.ok_or_else(|| SimulationError::Stopped(message(api, std::ptr::null_mut())))?;
+        Ok(Self { api, handle })
+    }
+
+    fn ports(&self) -> &[raw::afu_port] {
+        let mut count = 0;
+        // SAFETY: the handle is live; the list is owned by the instance and does not change.
+        unsafe {
+            let first = (self.api.ports)(self.handle.as_ptr(), &mut count);
+            if first.is_null() { &[] } else { slice::from_raw_parts(first, count as usize) }
+        }
+    }
+
+    /// Names and widths of all ports: (name, bits, whether it is an input).
+    pub fn port_list(&self) -> Vec<(String, u32, bool)> {
+        let entry = |port: &raw::afu_port| (name_of(port), port.bits, port.direction == raw::AFU_INPUT);
+        self.ports().iter().map(entry).collect()
+    }
+
+    /// Whether there is a port of this name.
+    pub fn has_port(&self, name: &str) -> bool {
+        self.ports().iter().any(|port| name_of(port) == name)
+    }
+
+    fn find(&self, name: &str, bits: u32, direction: u32) -> Result<(u32, &raw::afu_port), SimulationError> {
+        let text = |bits: u32, direction: u32| {
+            format!("an {} of {bits} bits", if direction == raw::AFU_INPUT { "input" } else { "output" })
+        };
+        let fail =
+            |found: String| SimulationError::Port { name: name.to_owned(), expected: text(bits, direction), found };
+        let mut all = (0..).zip(self.ports());
+        let (index, port) =
+            all.find(|(_, port)| name_of(port) == name).ok_or_else(|| fail("no such port".to_owned()))?;
+        if (port.bits, port.direction) != (bits, direction) {
+            return Err(fail(text(port.bits, port.direction)));
+        }
+        Ok((index, port))
+    }
+
+    fn scalar(&self, name: &str, bits: u32, direction: u32) -> Result<Port<'_>, SimulationError> {
+        let (_, port) = self.find(name, bits, direction)?;
+        if !(1..=64).contains(&bits) {
+            let (expected, found) = ("1 to 64 bits".to_owned(), format!("{bits} bits"));
+            return Err(SimulationError::Port { name: name.to_owned(), expected, found });
+        }
+        // SAFETY: address and width come from the harness; the memory lives as long as the instance, which the port
+        // borrows, and which is not Sync.
+        Ok(unsafe { Port::new(port.address, bits) })
+    }
+
+    fn vector<const WORDS: usize>(&self, name: &str, direction: u32) -> Result<Wide<'_, WORDS>, SimulationError> {
+        let (_, port) = self.find(name, 32 * WORDS as u32, direction)?;
+        if WORDS < 3 {
+            let (expected, found) = ("more than 64 bits".to_owned(), format!("{} bits", port.bits));
+            return Err(SimulationError::Port { name: name.to_owned(), expected, found });
+        }
+        // SAFETY: as in `scalar`.
+        Ok(unsafe { Wide::new(port.address) })
+    }
+
+    /// The input `name` of `bits` (up to 64) bits.
+    ///
+    /// # Errors
+    /// When there is no such input.
+    pub fn input(&self, name: &str, bits: u32) -> Result<Port<'_>, SimulationError> {
+        self.scalar(name, bits, raw::AFU_INPUT)
+    }
+
+    /// The output `name` of `bits` (up to 64) bits.
+    ///
+    /// # Errors
+    /// When there is no such output.
+    pub fn output(&self, name: &str, bits: u32) -> Result<Port<'_>, SimulationError> {
+        self.scalar(name, bits, raw::AFU_OUTPUT)
+    }
+
+    /// The input `name` of 32 × `WORDS` bits (more than 64).
+    ///
+    /// # Errors
+    /// When there is no such input.
+    pub fn wide_input<const WORDS: usize>(&self, name: &str) -> Result<Wide<'_, WORDS>, SimulationError> {
+        self.vector(name, raw::AFU_INPUT)
+    }
+
+    /// The output `name` of 32 × `WORDS` bits (more than 64).
+    ///
+    /// # Errors
+    /// When there is no such output.
+    pub fn wide_output<const WORDS: usize>(&self, name: &str) -> Result<Wide<'_, WORDS>, SimulationError> {
+        self.vector(name, raw::AFU_OUTPUT)
+    }
+
+    /// The clock input `name`.
+    ///
+    /// # Errors
+    /// When there is no such input of one bit.
+    pub fn clock(&self, name: &str) -> Result<Clock<'_>, SimulationError> {
+        self.find(name, 1, raw::AFU_INPUT).map(|(index, _)| Clock { instance: self, index })
+    }
+
+    /// Settles the outputs that depend on inputs without a clock between.
+    ///
+    /// # Errors
+    /// When the module ends itself.
+    pub fn evaluate(&self) -> Result<(), SimulationError> {
+        // SAFETY: the handle is live.
+        self.checked(unsafe { (self.api.evaluate)(self.handle.as_ptr()) })
+    }
+
+    /// Writes a waveform of all that follows to `path`, with the time axis of a clock of this half period. The model
+    /// must have been built with a [`Trace`](super::Trace). After [`Instance::trace_close`] another may follow.
+    ///
+    /// # Errors
+    /// When the model was built without, one is open already, or the file cannot be written.
+    pub fn trace_open(&self, path: &Path, half_period_ps: u64) -> Result<(), SimulationError> {
+        let fail = |why: String| SimulationError::Waveform { path: path.to_owned(), why };
+        let text = CString::new(path.as_os_str().as_bytes()).map_err(|e| fail(e.to_string()))?;
+        // SAFETY: the handle is live and the text ends with a zero.
+        match unsafe { (self.api.trace_open)(self.handle.as_ptr(), text.as_ptr(), half_period_ps) } {
+            0 => Ok(()),
+            _ => Err(fail(message(self.api, self.handle.as_ptr()))),
+        }
+    }
+
+    /// Ends the waveform.
+    ///
+    /// # Errors
+    /// When none is open.
+    pub fn trace_close(&self) -> Result<(), SimulationError> {
+        // SAFETY: the handle is live.
+        self.checked(unsafe { (self.api.trace_close)(self.handle.as_ptr()) })
+    }
+
+    fn checked(&self, result: c_int) -> Result<(), SimulationError> {
+        if result == 0 { Ok(()) } else { Err(SimulationError::Stopped(message(self.api, self.handle.as_ptr()))) }
+    }
+
+    /// The model's table and this instance, for a C++ loop over the same ABI to compare with.
+    #[doc(hidden)]
+    pub fn as_raw(&self) -> *mut std::ffi::c_void {
+        self.handle.as_ptr().cast()
+    }
+}
+
+impl Clock<'_> {
+    /// `cycles` full cycles: each a rising edge, at which registers take what their inputs were set to, and a falling
+    /// one.
+    ///
+    /// # Errors
+    /// When the module ends itself.
+    #[inline]
+    pub fn tick(self, cycles: u64) -> Result<(), SimulationError> {
+        let Instance { api, handle } = self.instance;
+        // SAFETY: the handle is live and the index is that of one of its ports.
+        self.instance.checked(unsafe { (api.clock)(handle.as_ptr(), self.index, cycles) })
+    }
+}
+
+impl Drop for Instance {
+    fn drop(&mut self) {
+        // SAFETY: the handle is live and nothing uses it after this.
+        unsafe { (self.api.destroy)(self.handle.as_ptr()) }
+    }
+}
+
+fn name_of(port: &raw::afu_port) -> String {
+    // SAFETY: a zero-terminated literal in the model, which is never unloaded.
+    unsafe { CStr::from_ptr(port.name) }.to_string_lossy().into_owned()
+}
+
+fn message(api: Api, handle: *mut raw::afu_instance) -> String {
+    // SAFETY: the handle is live or null, which asks for this thread's creation error; the text is never null.
+    unsafe { CStr::from_ptr((api.error)(handle)) }.to_string_lossy().into_owned()
+}

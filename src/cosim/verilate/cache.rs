@@ -1,0 +1,78 @@
+//! Results kept by key: made aside, renamed into place, by one process at a time.
+
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::process;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use super::Error;
+
+/// The folder `cache/key`, made by `make` if it is not there. `make` is given an empty folder of its own, which becomes
+/// `cache/key` when it succeeds and vanishes when it fails: a key never holds half a result.
+pub(super) fn once(cache: &Path, key: &str, make: impl FnOnce(&Path) -> Result<(), Error>) -> Result<PathBuf, Error> {
+    let result = cache.join(key);
+    if result.is_dir() {
+        return Ok(result);
+    }
+    fs::create_dir_all(cache).map_err(|e| Error::io("create", cache, e))?;
+    // Whoever is second waits here and then finds the result. The lock ends with its process, however that ends.
+    let lock_path = cache.join(format!("{key}.lock"));
+    let lock = File::create(&lock_path).map_err(|e| Error::io("create", &lock_path, e))?;
+    lock.lock().map_err(|e| Error::io("lock", &lock_path, e))?;
+    let made = if result.is_dir() { Ok(()) } else { make_aside(cache, &result, make) };
+    // A process that comes after this makes a new lock and finds the result, or after a failure tries for itself.
+    let _ = fs::remove_file(&lock_path);
+    made.map(|()| result)
+}
+
+fn make_aside(cache: &Path, result: &Path, make: impl FnOnce(&Path) -> Result<(), Error>) -> Result<(), Error> {
+    let aside = Aside::new(cache)?;
+    make(&aside.0)?;
+    match fs::rename(&aside.0, result) {
+        // Locks only save work; where they failed and another process was faster, its result is the same.
+        Err(_) if result.is_dir() => Ok(()),
+        renamed => renamed.map_err(|e| Error::io("create", result, e)),
+    }
+}
+
+/// A folder that is removed unless it was renamed away.
+struct Aside(PathBuf);
+
+impl Aside {
+    fn new(cache: &Path) -> Result<Self, Error> {
+        static NEXT: AtomicU64 = AtomicU64::new(0);
+        let name = format!("building-{}-{}", process::id(), NEXT.fetch_add(1, Ordering::Relaxed));
+        let path = cache.join(name);
+        let _ = fs::remove_dir_all(&path); // of a process long gone that had our number
+        fs::create_dir(&path).map_err(|e| Error::io("create", &path, e))?;
+        // Verilator and the compiler run in other folders.
+        Ok(Self(path.canonicalize().map_err(|e| Error::io("read", &path, e))?))
+    }
+}
+
+impl Drop for Aside {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// Removes everything in `folder` but `name`.
+pub(super) fn keep_only(folder: &Path, name: &str) -> Result<(), Error> {
+    for entry in fs::read_dir(folder).map_err(|e| Error::io("read", folder, e))?.flatten() {
+        let path = entry.path();
+        if entry.file_name() != name {
+            let removed = if path.is_dir() { fs::remove_dir_all(&path) } else { fs::remove_file(&path) };
+            removed.map_err(|e| Error::io("remove", &path, e))?;
+        }
+    }
+    Ok(())
+}
+
+/// The files in `folder` with this extension, sorted.
+pub(super) fn files_in(folder: &Path, extension: &str) -> Result<Vec<PathBuf>, Error> {
+    let entries = fs::read_dir(folder).map_err(|e| Error::io("read", folder, e))?;
+    let mut files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+    files.retain(|path| path.extension().is_some_and(|found| found == extension));
+    files.sort();
+    Ok(files)
+}

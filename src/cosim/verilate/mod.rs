@@ -1,0 +1,269 @@
+//! From Verilog text to a compiled model: finds Verilator and a C++ compiler, runs them, keeps what they made.
+//!
+//! build.rs uses this folder too (by `#[path]`), so it knows std, `cc` and a hash, and nothing of the crate. Neither
+//! perl, python nor make takes part: Verilator's binary is run directly and its C++ compiled here.
+
+// Each of the two users leaves some of it unused.
+#![allow(dead_code)]
+
+mod cache;
+mod compile;
+mod error;
+mod ports;
+mod tool;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+pub use compile::Compiler;
+pub use error::Error;
+pub use tool::Tool;
+
+use sha2::{Digest, Sha256};
+
+/// The kind of waveform a model can write. It is a property of the compiled model: tracing costs time even when off.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Trace {
+    /// None: the fastest model.
+    #[default]
+    Off,
+    /// Value change dump (IEEE 1364-2005, clause 18): text, read by everything.
+    Vcd,
+    /// GTKWave's compressed format; needs zlib's headers (Verilator 5.006) or lz4's (later).
+    Fst,
+}
+
+impl Trace {
+    /// The number this kind has in `tb/harness.h`.
+    pub(crate) const fn number(self) -> u32 {
+        match self {
+            Self::Off => 0,
+            Self::Vcd => 1,
+            Self::Fst => 2,
+        }
+    }
+}
+
+/// One Verilog file: the name errors call it by, and its text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct File {
+    /// A relative path without `..`.
+    pub name: String,
+    /// What is in it.
+    pub text: String,
+}
+
+/// The files that wrap any model in the C ABI.
+#[derive(Clone, Copy, Debug)]
+pub struct Harness<'a> {
+    /// `tb/harness.h`.
+    pub header: &'a str,
+    /// `tb/harness.cpp`.
+    pub source: &'a str,
+}
+
+/// What to verilate.
+#[derive(Clone, Copy, Debug)]
+pub struct Design<'a> {
+    /// Verilog files, each before those that use it.
+    pub files: &'a [File],
+    /// The top module.
+    pub top: &'a str,
+    /// Parameters of the top module: name and Verilog constant.
+    pub parameters: &'a [(String, String)],
+    /// The waveform to build in.
+    pub trace: Trace,
+    /// The wrapping.
+    pub harness: Harness<'a>,
+}
+
+/// Changes when the commands below change in a way the other parts of a model's key don't show.
+const RECIPE: &str = "contact-afu model 1";
+
+/// The class Verilator makes of the top module; `tb/harness.cpp` names it.
+const PREFIX: &str = "Vmodel";
+
+/// SHA-256 of Verilog files, names and order included, in lower-case hex: the identity of a design.
+pub fn rtl_sha256(files: &[File]) -> String {
+    let mut hash = Sha256::new();
+    for file in files {
+        for part in [&file.name, &file.text] {
+            hash.update((part.len() as u64).to_le_bytes());
+            hash.update(part.as_bytes());
+        }
+    }
+    hex(&hash.finalize())
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Reads a file list (`.f`): one relative path a line; `//` and `#` begin comments.
+pub fn read_file_list(list: &Path) -> Result<Vec<File>, Error> {
+    let text = fs::read_to_string(list).map_err(|e| Error::io("read", list, e))?;
+    let folder = list.parent().unwrap_or(Path::new("."));
+    let mut files = Vec::new();
+    for (number, line) in text.lines().enumerate() {
+        let name = line.split("//").next().unwrap_or("").split('#').next().unwrap_or("").trim();
+        if name.is_empty() {
+            continue;
+        }
+        let plain = !name.starts_with(['-', '+', '/']) && !name.split('/').any(|part| part == "..");
+        if !plain {
+            let what = format!("line {}: `{name}` is not a relative path inside the folder", number + 1);
+            return Err(Error::FileList { path: list.to_owned(), what });
+        }
+        let path = folder.join(name);
+        let text = fs::read_to_string(&path).map_err(|e| Error::io("read", &path, e))?;
+        files.push(File { name: name.to_owned(), text });
+    }
+    if files.is_empty() {
+        return Err(Error::FileList { path: list.to_owned(), what: "names no file".to_owned() });
+    }
+    Ok(files)
+}
+
+/// The key a model is cached by: everything that could change its bytes.
+fn key(design: &Design, tool: &Tool, compiler: &Compiler, kind: &str) -> String {
+    let mut hash = Sha256::new();
+    let mut add = |text: &str| {
+        hash.update((text.len() as u64).to_le_bytes());
+        hash.update(text.as_bytes());
+    };
+    add(RECIPE);
+    add(kind);
+    add(tool.sha256());
+    add(compiler.identity());
+    add(&rtl_sha256(design.files));
+    add(design.harness.header);
+    add(design.harness.source);
+    verilator_arguments(design).iter().for_each(|argument| add(argument));
+    hex(&hash.finalize())
+}
+
+fn verilator_arguments(design: &Design) -> Vec<String> {
+    // Lint errors stay errors. --output-split bounds the time one C++ file takes, so that all cores have work.
+    let fixed = ["--cc", "--no-timing", "-O3", "--output-split", "20000", "--output-split-cfuncs", "2000"];
+    let mut arguments: Vec<String> = fixed.map(str::to_owned).to_vec();
+    arguments.extend(["--prefix".to_owned(), PREFIX.to_owned(), "--top-module".to_owned(), design.top.to_owned()]);
+    match design.trace {
+        Trace::Off => {}
+        Trace::Vcd => arguments.push("--trace".to_owned()), // 5.006 does not know --trace-vcd
+        Trace::Fst => arguments.push("--trace-fst".to_owned()),
+    }
+    arguments.extend(design.parameters.iter().map(|(name, value)| format!("-G{name}={value}")));
+    arguments.extend(design.files.iter().map(|file| file.name.clone()));
+    arguments
+}
+
+/// Builds `design` as a shared library, or finds it in the folder `cache`. Any number of processes may do so at once.
+/// `target` is the Rust target triple of this process.
+///
+/// # Errors
+/// See [`Error`].
+pub fn shared(design: &Design, cache: &Path, target: &str) -> Result<PathBuf, Error> {
+    let (tool, compiler) = (Tool::find()?, Compiler::find(target, target)?);
+    let key = key(design, &tool, &compiler, "shared");
+    let folder = cache::once(cache, &key, |aside| {
+        let objects = objects(design, &tool, &compiler, cache, aside)?;
+        compiler.link_shared(&objects, design.trace, &aside.join(MODEL))?;
+        cache::keep_only(aside, MODEL)
+    })?;
+    Ok(folder.join(MODEL))
+}
+
+/// File name of a model in the cache.
+const MODEL: &str = "model.so";
+
+/// Builds `design` as object files for a static link, or finds them in the folder `cache`.
+///
+/// # Errors
+/// See [`Error`].
+pub fn objects_for_static(
+    design: &Design,
+    tool: &Tool,
+    compiler: &Compiler,
+    cache: &Path,
+) -> Result<Vec<PathBuf>, Error> {
+    let key = key(design, tool, compiler, "static");
+    let folder = cache::once(cache, &key, |aside| {
+        let kept = aside.join("objects");
+        fs::create_dir(&kept).map_err(|e| Error::io("create", &kept, e))?;
+        for (index, object) in objects(design, tool, compiler, cache, aside)?.iter().enumerate() {
+            let to = kept.join(format!("model_{index}.o"));
+            fs::copy(object, &to).map_err(|e| Error::io("write", &to, e))?;
+        }
+        cache::keep_only(aside, "objects")
+    })?;
+    cache::files_in(&folder.join("objects"), "o")
+}
+
+/// Verilates `design` in the folder `aside` and compiles it; the runtime's objects come from the cache.
+fn objects(
+    design: &Design,
+    tool: &Tool,
+    compiler: &Compiler,
+    cache: &Path,
+    aside: &Path,
+) -> Result<Vec<PathBuf>, Error> {
+    let generated = aside.join("cpp");
+    verilate(design, tool, aside, &generated)?;
+    let classes = compile::Classes::read(&generated.join(format!("{PREFIX}_classes.mk")))?;
+
+    let ports = ports::read(&generated.join(format!("{PREFIX}.h")))?;
+    write(&generated.join("ports.inc"), &ports::include_file(&ports))?;
+    write(&generated.join("harness.h"), design.harness.header)?;
+    write(&generated.join("harness.cpp"), design.harness.source)?;
+
+    let mut objects = runtime(&classes.runtime, design.trace, tool, compiler, cache)?;
+    let mut flags = compile::model_flags(tool, design.trace);
+    flags.push(format!("-DAFU_TRACE={}", design.trace.number()));
+    flags.push(format!("-DAFU_RTL_SHA256=\"{}\"", rtl_sha256(design.files)));
+    let sources = compile::bundle(&generated, &classes.model)?;
+    objects.extend(compiler.compile_all(&sources, &flags, &generated)?);
+    Ok(objects)
+}
+
+/// Runs Verilator on `design`, in a folder `rtl` inside `aside`, so that messages name files as the caller does.
+fn verilate(design: &Design, tool: &Tool, aside: &Path, generated: &Path) -> Result<(), Error> {
+    let rtl = aside.join("rtl");
+    for file in design.files {
+        let path = rtl.join(&file.name);
+        let folder = path.parent().unwrap_or(&rtl);
+        fs::create_dir_all(folder).map_err(|e| Error::io("create", folder, e))?;
+        write(&path, &file.text)?;
+    }
+    let mut command = tool.command();
+    command.current_dir(&rtl).arg("--Mdir").arg(generated).args(verilator_arguments(design));
+    let output = command.output().map_err(|e| Error::io("run", tool.program(), e))?;
+    if output.status.success() {
+        return Ok(());
+    }
+    Err(Error::Refused { top: design.top.to_owned(), text: tool::readable(&output) })
+}
+
+/// Verilator's own runtime, compiled once for every model of one Verilator, compiler and trace.
+fn runtime(
+    names: &[String],
+    trace: Trace,
+    tool: &Tool,
+    compiler: &Compiler,
+    cache: &Path,
+) -> Result<Vec<PathBuf>, Error> {
+    let flags = compile::runtime_flags(tool, trace);
+    let mut hash = Sha256::new();
+    for part in [RECIPE, "runtime", tool.sha256(), compiler.identity(), &names.join(" "), &flags.join(" ")] {
+        hash.update((part.len() as u64).to_le_bytes());
+        hash.update(part.as_bytes());
+    }
+    let folder = cache::once(cache, &hex(&hash.finalize()), |aside| {
+        let sources: Vec<PathBuf> = names.iter().map(|name| tool.include().join(format!("{name}.cpp"))).collect();
+        compiler.compile_all(&sources, &flags, aside).map(drop)
+    })?;
+    cache::files_in(&folder, "o")
+}
+
+fn write(path: &Path, text: &str) -> Result<(), Error> {
+    fs::write(path, text).map_err(|e| Error::io("write", path, e))
+}

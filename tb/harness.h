@@ -1,0 +1,74 @@
+/* The C ABI over any Verilated module: one exported function, which returns a table.
+ *
+ * A port is memory: its address is fetched once an instance and then read and written directly. Scalars of up to 8,
+ * 16, 32 and 64 bits are one unsigned integer of that size; wider ports are 32-bit words, least significant first.
+ * Bits above a port's width are zero and must be kept so.
+ *
+ * No C++ exception crosses this border: what returns int returns 0, or -1 with a text from `error`. After an error
+ * of `evaluate` or `clock` ($fatal, $stop, $finish, a Verilator check) the instance only repeats that error.
+ * Each instance has a VerilatedContext of its own, so different threads may run different instances.
+ */
+#ifndef AFU_HARNESS_H
+#define AFU_HARNESS_H
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Changes with every change of this file that a caller would notice. */
+#define AFU_ABI 1u
+
+#define AFU_INPUT 0u
+#define AFU_OUTPUT 1u
+
+#define AFU_TRACE_OFF 0u
+#define AFU_TRACE_VCD 1u
+#define AFU_TRACE_FST 2u
+
+typedef struct afu_port {
+    const char *name;   /* as in the Verilog */
+    uint32_t bits;
+    uint32_t direction; /* AFU_INPUT or AFU_OUTPUT */
+    void *address;      /* valid as long as its instance */
+} afu_port;
+
+typedef struct afu_instance afu_instance;
+
+typedef struct afu_table {
+    uint32_t abi;           /* AFU_ABI; nothing below may be read if it differs */
+    uint32_t trace;         /* the kind of waveform this model was built to write: AFU_TRACE_* */
+    const char *rtl_sha256; /* of the Verilog the model was made from, lower-case hex */
+
+    /* NULL on an error, whose text `error(NULL)` gives on the same thread. With seed 0 everything that no reset
+     * reaches begins as zero, otherwise as random bits of that seed. */
+    afu_instance *(*create)(uint64_t seed);
+    void (*destroy)(afu_instance *);
+
+    /* The ports, `*count` of them, sorted as in the Verilated header; owned by the instance. */
+    const afu_port *(*ports)(afu_instance *, uint32_t *count);
+
+    /* Settles the model after ports were written. */
+    int (*evaluate)(afu_instance *);
+
+    /* `cycles` full cycles of the one-bit input `port` (an index into `ports`): high, evaluate, low, evaluate; each
+     * edge is written to the open waveform. */
+    int (*clock)(afu_instance *, uint32_t port, uint64_t cycles);
+
+    /* Writes a waveform to `path` from now on, with this half period of `clock`, in ps. A second one may follow. */
+    int (*trace_open)(afu_instance *, const char *path, uint64_t half_period_ps);
+    int (*trace_close)(afu_instance *);
+
+    /* The text of the last error: never NULL, valid until the next call with the same instance (or thread). */
+    const char *(*error)(afu_instance *);
+} afu_table;
+
+/* The only symbol a model exports. */
+__attribute__((visibility("default"))) const afu_table *afu_model(void);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
