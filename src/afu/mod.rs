@@ -1,1 +1,33 @@
-//! (in the making)
+//! The accelerator: record layout, processing units, the controller around them, and the top over the line port.
+//!
+//! Data flows one way: collector → feeder → slots (one SCPU each) → packer → dispatcher. Control watches.
+
+mod collector;
+mod control;
+mod dispatcher;
+mod feeder;
+mod files;
+mod generate;
+mod layout;
+mod packer;
+mod scpu;
+mod slot;
+mod spec;
+mod top;
+
+pub use control::JobError;
+pub use files::MANIFEST_SCHEMA;
+pub use generate::{Afu, BuildError};
+pub use layout::Layout;
+pub use spec::{Spec, SpecError};
+
+/// Bits of a line address: 64-byte lines of a 64-bit byte address space.
+pub const ADDRESS_BITS: u32 = 58;
+/// Bits of a job's epoch, the upper part of a tag.
+pub const EPOCH_BITS: u32 = 4;
+/// Bits of a pair count or number.
+pub const COUNT_BITS: u32 = 32;
+/// Bits that hold a number of SCPUs.
+pub const SCPU_BITS: u32 = 7;
+/// Largest number of SCPUs.
+pub const MAX_SCPUS: u32 = 64;

@@ -22,24 +22,15 @@ impl Expressions<'_> {
     fn term(&self, id: NodeId) -> String {
         let text = self.value(id);
         let node = self.module.node(id);
-        let compares = |id: NodeId| {
-            self.names.declared[id.index()].is_none() && matches!(self.module.node(id).op, Op::Less | Op::Equal)
+        let in_place = |id: NodeId| self.names.declared[id.index()].is_none();
+        let compares = |id: NodeId| in_place(id) && matches!(self.module.node(id).op, Op::Less | Op::Equal);
+        let compound = match node.op {
+            Op::And | Op::Or | Op::Xor | Op::Add | Op::Sub | Op::Mul => true,
+            Op::Equal | Op::Less | Op::Mux | Op::OneHot => true,
+            Op::Not => compares(node.operands[0]),
+            _ => false,
         };
-        let single = self.names.declared[id.index()].is_some()
-            || !(node.op == Op::Not && compares(node.operands[0]))
-                && !matches!(
-                    node.op,
-                    Op::And
-                        | Op::Or
-                        | Op::Xor
-                        | Op::Add
-                        | Op::Sub
-                        | Op::Mul
-                        | Op::Equal
-                        | Op::Less
-                        | Op::Mux
-                        | Op::OneHot
-                );
+        let single = !(in_place(id) && compound);
         if single { text } else { format!("({text})") }
     }
 

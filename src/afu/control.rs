@@ -1,0 +1,147 @@
+//! Control: takes a job, watches it, ends it. A job ends done when the last write is acknowledged; on an abort, an
+//! error response or the watchdog it stops asking, waits for what is outstanding, and ends with an error.
+
+use std::sync::Arc;
+
+use crate::hdl::{Errors, Graph, Module};
+
+use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, Spec};
+
+/// How a job ended, as the port `error` tells it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JobError {
+    /// Stopped by `abort`.
+    Aborted = 1,
+    /// A read was answered with an error.
+    Read = 2,
+    /// A write was answered with an error.
+    Write = 3,
+    /// No response for as many cycles as `watchdog` says, with some outstanding.
+    Watchdog = 4,
+    /// A `mode` this AFU does not have.
+    Mode = 5,
+}
+
+/// Bits of the port `error`.
+pub(super) const ERROR_BITS: u32 = 4;
+/// Bits of the port `mode`.
+pub(super) const MODE_BITS: u32 = 4;
+/// Bits of a cycle counter.
+const CYCLE_BITS: u32 = 64;
+
+/// Builds the module `contact_afu_control`; `capacity` is the number of results there is room for.
+pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, Errors> {
+    let graph = Graph::new("contact_afu_control");
+    graph.about("takes a job, watches it, ends it");
+    let room_bits = room_bits(capacity);
+    let layout = spec.layout();
+
+    let start = graph.input("start", 1);
+    let source = graph.input("source", ADDRESS_BITS);
+    let destination = graph.input("destination", ADDRESS_BITS);
+    let count = graph.input("count", COUNT_BITS);
+    let mode = graph.input("mode", MODE_BITS);
+    let epoch = graph.input("epoch", EPOCH_BITS);
+    let watchdog = graph.input("watchdog", COUNT_BITS);
+    let abort = graph.input("abort_job", 1);
+    let read_failed = graph.input("read_failed", 1);
+    let write_failed = graph.input("write_failed", 1);
+    let response = graph.input("response", 1);
+    let link_idle = graph.input("link_idle", 1);
+    let packed = graph.input("packer_done", 1);
+    let dispatched = graph.input("dispatched", 1);
+    let entered = graph.input("entered", spec.group_bits());
+    let emerged = graph.input("emerged", spec.group_bits());
+    let line_left = graph.input("line_left", 1);
+    let waits_for_input = graph.input("waits_for_input", 1);
+    let waits_for_output = graph.input("waits_for_output", 1);
+
+    let running = graph.register("running", 1, 0);
+    let draining = graph.register("draining", 1, 0);
+    let done = graph.register("done", 1, 0);
+    let error = graph.register("error", ERROR_BITS, 0);
+    let busy = (*running | *draining).named("busy");
+    let accept = (start & !busy).named("accept");
+
+    // The job, held from its start; everything downstream begins a cycle later.
+    let begin = graph.register("begin_job", 1, 0);
+    begin.next(accept);
+    let job_source = graph.data_register("job_source", ADDRESS_BITS);
+    job_source.next_if(accept, source);
+    let job_destination = graph.data_register("job_destination", ADDRESS_BITS);
+    job_destination.next_if(accept, destination);
+    let job_count = graph.register("job_count", COUNT_BITS, 0);
+    job_count.next_if(accept, count);
+    let job_epoch = graph.register("job_epoch", EPOCH_BITS, 0);
+    job_epoch.next_if(accept, epoch);
+    let job_watchdog = graph.register("job_watchdog", COUNT_BITS, 0);
+    job_watchdog.next_if(accept, watchdog);
+    let per_line = layout.pairs_per_line();
+    let shift = per_line.ilog2();
+    let rounded = job_count.extend(COUNT_BITS + 1).plus(u128::from(per_line - 1)).named("rounded_count");
+    let lines = rounded.drop_low(shift).extend(COUNT_BITS + 1).low(COUNT_BITS).named("lines");
+
+    // Pairs inside, and room for results: a pair takes its place when it enters, a line frees its places when it
+    // leaves for memory.
+    let room = graph.register("room", room_bits, u128::from(capacity));
+    let returned = graph.constant(room_bits, u128::from(layout.contacts_per_line())).gate(line_left);
+    room.next(begin.select(room.same(u128::from(capacity)), room.value() - entered.extend(room_bits) + returned));
+    let inside = graph.register("pairs_inside", room_bits, 0);
+    inside.next(inside.value() + entered.extend(room_bits) - emerged.extend(room_bits));
+
+    // Watchdog: cycles since the last response while one is owed.
+    let silence = graph.register("silence", COUNT_BITS, 0);
+    let quiet = (response | link_idle).named("not_waiting");
+    silence.next((quiet | !busy).select(silence.same(0), silence.plus(1)));
+    let expired = (job_watchdog.any() & silence.at_least(*job_watchdog)).named("expired");
+
+    // The end.
+    let complete = (*running & !*begin & packed & dispatched & link_idle).named("complete");
+    let causes = [
+        (mode.any() & accept, JobError::Mode),
+        (*running & abort, JobError::Aborted),
+        (*running & read_failed, JobError::Read),
+        (*running & write_failed, JobError::Write),
+        (*running & expired, JobError::Watchdog),
+    ];
+    let mut cause = graph.constant(ERROR_BITS, 0);
+    for (condition, code) in causes.into_iter().rev() {
+        cause = condition.select(graph.constant(ERROR_BITS, code as u128), cause);
+    }
+    let cause = cause.named("cause");
+    let failing = (cause.any() & !complete).named("failing");
+    let given_up = graph.register("given_up", 1, 0);
+    given_up.next(!accept & (*given_up | (busy & expired)));
+    let drained = (*draining & !inside.any() & (link_idle | *given_up)).named("drained");
+    running.next((accept & !failing) | (*running & !complete & !failing));
+    draining.next(failing | (*draining & !drained));
+    done.next(!accept & (*done | complete | drained));
+    error.next(failing.select(cause, accept.select(error.same(0), *error)));
+
+    for (name, counts) in [
+        ("cycles_busy", busy),
+        ("cycles_input", waits_for_input & *running),
+        ("cycles_output", waits_for_output & *running),
+    ] {
+        let counter = graph.register(name, CYCLE_BITS, 0);
+        counter.next(accept.select(counter.same(0), counter.value() + counts.extend(CYCLE_BITS)));
+        graph.output(name, counter.value());
+    }
+    graph.output("busy", busy);
+    graph.output("done", done.value());
+    graph.output("error", error.value());
+    graph.output("begin_job", begin.value());
+    graph.output("run", (*running & !*begin).named("run"));
+    graph.output("job_source", job_source.value());
+    graph.output("job_destination", job_destination.value());
+    graph.output("job_count", job_count.value());
+    graph.output("job_epoch", job_epoch.value());
+    graph.output("lines", lines);
+    graph.output("room", room.value());
+    graph.finish()
+}
+
+/// Bits that hold a number of results up to `capacity`.
+pub(super) fn room_bits(capacity: u32) -> u32 {
+    capacity.ilog2() + 1
+}

@@ -1,0 +1,212 @@
+//! What stands beside the Verilog: what simulators, synthesisers and integrators read.
+
+use std::fmt::Write as _;
+
+use serde_json::{Value, json};
+use sha2::{Digest, Sha256};
+
+use crate::hdl::Module;
+
+use super::Afu;
+
+/// The `schema` of a folder of generated hardware.
+pub const MANIFEST_SCHEMA: &str = "contact-afu/rtl/1";
+
+impl Afu {
+    /// All files of the generated folder, the manifest last: relative path and text.
+    pub fn files(&self) -> Vec<(String, String)> {
+        let verilog = self.verilog();
+        let names: Vec<&str> = verilog.iter().map(|(name, _)| name.as_str()).collect();
+        let beside = [
+            ("contact_afu.f", file_list(&names)),
+            ("contact_afu.core", fusesoc_core(&names)),
+            ("contact_afu.sdc", self.sdc()),
+            ("contact_afu.xdc", self.xdc()),
+            ("contact_afu_instance.vh", self.template()),
+            ("PORTS.md", self.ports()),
+        ];
+        let beside = beside.map(|(name, text)| (name.to_owned(), text));
+        let mut files: Vec<(String, String)> = verilog.iter().cloned().chain(beside).collect();
+        let manifest = self.manifest(&files);
+        files.push(("manifest.json".to_owned(), manifest));
+        files
+    }
+
+    /// SHA-256 over the Verilog's names and texts, in order: what a built model is known by.
+    pub fn rtl_sha256(&self) -> String {
+        rtl_sha256(self.verilog().iter().map(|(name, text)| (name.as_str(), text.as_str())))
+    }
+
+    fn period_ns(&self) -> f64 {
+        1000.0 / self.spec().config.clock_mhz
+    }
+
+    fn sdc(&self) -> String {
+        format!(
+            "# The clock that the stages were cut for.\ncreate_clock -name clk -period {:.3} [get_ports clk]\n",
+            self.period_ns()
+        )
+    }
+
+    fn xdc(&self) -> String {
+        format!(
+            "# The clock that the stages were cut for.\ncreate_clock -period {:.3} -name clk [get_ports clk]\n",
+            self.period_ns()
+        )
+    }
+
+    fn all_ports(&self) -> Vec<(bool, u32, String)> {
+        let reset = if self.spec().reset.active_low { "rst_n" } else { "rst" };
+        let implied = [(false, 1, "clk".to_owned()), (false, 1, reset.to_owned())];
+        let declared = self.top().ports.iter().map(|port| (port.output, port.width, port.name.clone()));
+        implied.into_iter().chain(declared).collect()
+    }
+
+    fn template(&self) -> String {
+        let ports = self.all_ports();
+        let widest = ports.iter().map(|(_, _, name)| name.len()).max().unwrap_or(0);
+        let lines: Vec<_> = ports.iter().map(|(_, _, name)| format!("  .{name:<widest$} ({name})")).collect();
+        let scpus = self.spec().config.scpus;
+        format!(
+            "// Instantiation template.\ncontact_afu #(\n  .SCPUS(32'd{scpus})\n) u_contact_afu (\n{}\n);\n",
+            lines.join(",\n")
+        )
+    }
+
+    fn ports(&self) -> String {
+        let mut out = String::from(
+            "# Ports of `contact_afu`\n\nOne clock. `SCPUS` (1 to 64) is a Verilog parameter. All outputs are registered or functions of \
+             registers.\nA line is 512 bits; word i of a line is bits 32·i+31 to 32·i; addresses count lines.\n\n| port | direction | bits | meaning |\n|---|---|---|---|\n",
+        );
+        for (output, width, name) in self.all_ports() {
+            let direction = if output { "out" } else { "in" };
+            let _ = writeln!(out, "| `{name}` | {direction} | {width} | {} |", meaning(&name));
+        }
+        out
+    }
+
+    fn manifest(&self, files: &[(String, String)]) -> String {
+        let spec = self.spec();
+        let layout = self.layout();
+        let hashes: serde_json::Map<String, Value> =
+            files.iter().map(|(name, text)| (name.clone(), Value::String(sha256(text.as_bytes())))).collect();
+        let manifest = json!({
+            "schema": MANIFEST_SCHEMA,
+            "version": env!("CARGO_PKG_VERSION"),
+            "top": self.top().name,
+            "config": spec.config,
+            "format": spec.config.profile.format().to_string(),
+            "reset": { "asynchronous": spec.reset.asynchronous, "active_low": spec.reset.active_low },
+            "line_bits": spec.line_bits,
+            "max_outstanding": spec.max_outstanding,
+            "records": {
+                "pair_bits": layout.pair_bits(),
+                "pairs_per_line": layout.pairs_per_line(),
+                "contact_bits": layout.contact_bits(),
+                "contacts_per_line": layout.contacts_per_line(),
+            },
+            "latency_cycles": self.kernel().latency,
+            "operators": operators(self.kernel()),
+            "rtl_sha256": self.rtl_sha256(),
+            "files": hashes,
+        });
+        // Keys and numbers only: this cannot fail.
+        serde_json::to_string_pretty(&manifest).unwrap_or_default() + "\n"
+    }
+}
+
+/// SHA-256 over names and texts in order, as 64 hexadecimal digits.
+pub fn rtl_sha256<'a>(files: impl Iterator<Item = (&'a str, &'a str)>) -> String {
+    let mut hash = Sha256::new();
+    for (name, text) in files {
+        hash.update(name.as_bytes());
+        hash.update([0]);
+        hash.update(text.as_bytes());
+        hash.update([0]);
+    }
+    hex(&hash.finalize())
+}
+
+fn sha256(bytes: &[u8]) -> String {
+    hex(&Sha256::digest(bytes))
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().fold(String::new(), |mut text, byte| {
+        let _ = write!(text, "{byte:02x}");
+        text
+    })
+}
+
+/// Each operator module of a kernel: how many instances, and its latency in cycles.
+fn operators(kernel: &Module) -> Value {
+    let mut found = std::collections::BTreeMap::new();
+    for instance in &kernel.instances {
+        let entry = found.entry(instance.module.name.clone()).or_insert((0, instance.module.latency));
+        entry.0 += 1;
+    }
+    let row =
+        |(name, (instances, latency))| json!({ "module": name, "instances": instances, "latency_cycles": latency });
+    Value::Array(found.into_iter().map(row).collect())
+}
+
+fn file_list(names: &[&str]) -> String {
+    names.iter().map(|name| format!("{name}\n")).collect()
+}
+
+fn fusesoc_core(names: &[&str]) -> String {
+    let files: String = names.iter().map(|name| format!("      - {name}\n")).collect();
+    format!(
+        "CAPI=2:\nname: ::contact_afu:{version}\ndescription: Collision-detection accelerator\n\nfilesets:\n  rtl:\n    files:\n{files}    \
+         file_type: verilogSource\n\ntargets:\n  default: &default\n    filesets: [rtl]\n    toplevel: contact_afu\n    parameters: [SCPUS]\n  lint:\n    \
+         <<: *default\n    default_tool: verilator\n    tools:\n      verilator:\n        mode: lint-only\n        verilator_options: [-Wall]\n  sim:\n    \
+         <<: *default\n    default_tool: icarus\n  synth:\n    <<: *default\n    default_tool: yosys\n    tools:\n      yosys:\n        arch: ecp5\n\n\
+         parameters:\n  SCPUS:\n    datatype: int\n    paramtype: vlogparam\n    description: Sphere Collision Processing Units, 1 to 64\n",
+        version = env!("CARGO_PKG_VERSION")
+    )
+}
+
+fn meaning(name: &str) -> &'static str {
+    match name {
+        "clk" => "clock",
+        "rst" => "reset, active high; at least one cycle",
+        "rst_n" => "reset, active low; at least one cycle",
+        "start" => "one cycle high starts a job; ignored while busy",
+        "source" => "line address of the first source line",
+        "destination" => "line address of the first destination line",
+        "count" => "pairs of the job; 0 is a job",
+        "mode" => "0; anything else ends the job with error 5",
+        "epoch" => "upper part of the job's tags: change it from job to job, so that late responses are known",
+        "watchdog" => "cycles without a response, with one owed, that end the job with error 4; 0: never",
+        "abort_job" => "high ends the job with error 1, when what is outstanding has been answered",
+        "busy" => "a job is running or ending",
+        "done" => "the last job has ended; low from the next start on",
+        "error" => "how: 0 well, 1 aborted, 2 read error, 3 write error, 4 watchdog, 5 unknown mode",
+        "contacts" => "contacts of the job so far",
+        "invalid" => "invalid pairs of the job so far",
+        "first_invalid" => "number of the first invalid pair, all ones if there is none",
+        "cycles_busy" => "cycles of the job so far",
+        "cycles_input" => "of these, cycles in which the SCPUs waited for pairs",
+        "cycles_output" => "of these, cycles in which pairs waited for room for their results",
+        "capability" => {
+            "7:0 SCPUS, 15:8 interval, 19:16 fields (hit, depth, normal, position from bit 16 up), 43:32 SCPU latency"
+        }
+        "rd_req_valid" => "a read request; it stays as it is until ready",
+        "rd_req_ready" => "the request is taken at this clock edge",
+        "rd_req_address" => "line address to read",
+        "rd_req_tag" => "epoch and slot; not used again before its response",
+        "rd_rsp_valid" => "a read response, in any order; never refused",
+        "rd_rsp_tag" => "the tag of its request",
+        "rd_rsp_data" => "the line",
+        "rd_rsp_error" => "the line could not be read: the job ends with error 2",
+        "wr_req_valid" => "a write request; it stays as it is until ready",
+        "wr_req_ready" => "the request is taken at this clock edge",
+        "wr_req_address" => "line address to write",
+        "wr_req_tag" => "epoch and slot; not used again before its response",
+        "wr_req_data" => "the line",
+        "wr_rsp_valid" => "a write acknowledgement, in any order; never refused",
+        "wr_rsp_tag" => "the tag of its request",
+        "wr_rsp_error" => "the line could not be written: the job ends with error 3",
+        _ => "",
+    }
+}

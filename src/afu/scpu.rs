@@ -1,0 +1,62 @@
+//! A Sphere Collision Processing Unit: raw words in, a contact record out, a pair every cycle.
+
+use std::sync::Arc;
+
+use crate::hdl::{Errors, Graph, Module, Signal};
+use crate::kernel::Fields;
+
+use super::Spec;
+
+/// The words of a pair, in record order.
+const PAIR: [&str; 8] = ["x1", "y1", "z1", "r1", "x2", "y2", "z2", "r2"];
+/// The words of a full contact before its flags, in record order.
+const CONTACT: [&str; 7] = ["pos_x", "pos_y", "pos_z", "normal_x", "normal_y", "normal_z", "depth"];
+
+/// Builds the module `scpu` around a kernel: detection of invalid pairs on the raw words, flags, record packing.
+/// Its latency is the kernel's.
+pub(super) fn scpu(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>, Errors> {
+    let graph = Graph::new("scpu");
+    let latency = kernel.latency;
+    graph.about(format!("one sphere collision processing unit: a pair every cycle, its record {latency} cycles later"));
+    let layout = spec.layout();
+    let pair = graph.input("pair", layout.pair_bits());
+    let words: Vec<Signal<'_>> =
+        PAIR.iter().zip(0..).map(|(name, index)| pair.slice(32 * index, 32).named(name)).collect();
+
+    // A NaN, an infinity or a negative radius (a negative zero is a radius) makes a pair invalid.
+    let mut invalid = graph.constant(1, 0);
+    for (word, name) in words.iter().zip(PAIR) {
+        invalid = invalid | word.slice(23, 8).all().named(&format!("{name}_not_finite"));
+        if name.starts_with('r') {
+            invalid = invalid | (word.msb() & word.low(31).any()).named(&format!("{name}_negative"));
+        }
+    }
+    let invalid = invalid.named("invalid");
+
+    let mut inputs: Vec<(&str, Signal<'_>)> = PAIR.into_iter().zip(words).collect();
+    inputs.push(("valid", !invalid));
+    let kernel = graph.instance("kernel", kernel, &inputs);
+    let hit = kernel.output("hit").named("hit");
+    let invalid = invalid.delay(latency).named("invalid_out");
+    let record = if spec.config.contact == Fields::HIT {
+        hit
+    } else {
+        let grazing = kernel.output("grazing").named("grazing");
+        let flow = invalid.select(
+            graph.constant(2, 0),
+            hit.select(grazing.select(graph.constant(2, 2), graph.constant(2, 3)), graph.constant(2, 1)),
+        );
+        let flags = Signal::join(&[invalid, flow.named("flow"), hit]).extend(32).named("flags");
+        let mut words: Vec<Signal<'_>> = layout
+            .contact_words()
+            .into_iter()
+            .map(|word| CONTACT.get(word).map_or(flags, |name| kernel.output(name)))
+            .collect();
+        words.reverse();
+        Signal::join(&words).extend(layout.contact_bits())
+    };
+    graph.output("record", record);
+    graph.output("contact", hit);
+    graph.output("invalid_pair", invalid);
+    graph.finish()
+}

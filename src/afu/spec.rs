@@ -1,0 +1,69 @@
+//! What an accelerator is generated from: the configuration, and what only proofs and integrators change.
+
+use crate::config::Config;
+use crate::hdl::Reset;
+
+use super::Layout;
+
+/// Everything that decides the generated Verilog.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spec {
+    /// What the user asked for.
+    pub config: Config,
+    /// How registers are reset.
+    pub reset: Reset,
+    /// Bits of a line: 512; less for proofs.
+    pub line_bits: u32,
+    /// Reads, and writes, outstanding at most: 64; less for proofs.
+    pub max_outstanding: u32,
+}
+
+/// Why a specification was refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SpecError {
+    /// The configuration.
+    #[error(transparent)]
+    Config(#[from] crate::config::Error),
+    /// A line that holds no pair.
+    #[error("a line of {0} bits: use a power of two that holds a pair")]
+    Line(u32),
+    /// A number of requests that the tags cannot carry.
+    #[error("{0} requests outstanding: use a power of two from 2 to 64")]
+    Outstanding(u32),
+}
+
+impl From<Config> for Spec {
+    fn from(config: Config) -> Self {
+        Self { config, reset: Reset::default(), line_bits: 512, max_outstanding: 64 }
+    }
+}
+
+impl Spec {
+    /// The record layout.
+    pub fn layout(&self) -> Layout {
+        Layout::new(self.line_bits, self.config.contact)
+    }
+
+    /// Pairs that can be handed to SCPUs in one cycle: those of one line.
+    pub fn lanes(&self) -> u32 {
+        self.layout().pairs_per_line()
+    }
+
+    /// Bits that hold a number of pairs from none to all lanes.
+    pub(super) fn group_bits(&self) -> u32 {
+        self.lanes().ilog2() + 1
+    }
+
+    /// # Errors
+    /// The first value out of range.
+    pub fn check(&self) -> Result<(), SpecError> {
+        self.config.check()?;
+        if !self.line_bits.is_power_of_two() || self.line_bits < self.layout().pair_bits() {
+            return Err(SpecError::Line(self.line_bits));
+        }
+        if !self.max_outstanding.is_power_of_two() || !(2..=64).contains(&self.max_outstanding) {
+            return Err(SpecError::Outstanding(self.max_outstanding));
+        }
+        Ok(())
+    }
+}

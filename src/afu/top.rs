@@ -1,0 +1,232 @@
+//! The accelerator as a whole: the controller's parts, the array of SCPUs, and the line port as the top.
+
+use std::sync::Arc;
+
+use crate::hdl::{Errors, Graph, Module, Signal};
+
+use super::control::{MODE_BITS, control, room_bits};
+use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, MAX_SCPUS, SCPU_BITS, Spec};
+use super::{collector, dispatcher, feeder, packer, scpu, slot};
+
+/// Register ranks round the slots: results are registered after they were or-ed together.
+const RANKS_AFTER: u32 = 1;
+/// Cycles a result spends between the SCPUs and its write request, and some to ride out a stall of the link.
+const CYCLES_IN_DISPATCH: u32 = 16;
+/// Lines the dispatcher keeps at least.
+const LEAST_LINES: u32 = 16;
+
+/// The top over the plain line port.
+pub(super) fn line_top(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>, Errors> {
+    let layout = spec.layout();
+    let (lanes, group_bits) = (spec.lanes(), spec.group_bits());
+    let slot_latency = slot::latency(kernel.latency);
+    let in_flight = (slot_latency + CYCLES_IN_DISPATCH) * lanes;
+    let depth = (in_flight.div_ceil(layout.contacts_per_line()) + LEAST_LINES / 2).next_power_of_two().max(LEAST_LINES);
+    let capacity = depth * layout.contacts_per_line();
+
+    let control = control(spec, capacity)?;
+    let collector = collector::collector(spec)?;
+    let feeder = feeder::feeder(spec, room_bits(capacity))?;
+    let slot = slot::slot(spec, &scpu::scpu(spec, kernel)?)?;
+    let packer = packer::packer(spec)?;
+    let dispatcher = dispatcher::dispatcher(spec, depth)?;
+
+    let graph = Graph::new("contact_afu");
+    graph.about("collision-detection accelerator: a controller and SCPUS sphere collision processing units");
+    graph.about(format!("an SCPU's latency is {} cycles", kernel.latency));
+    let scpus = graph.parameter("SCPUS", spec.config.scpus, 1..=MAX_SCPUS, SCPU_BITS);
+    let tag_bits = EPOCH_BITS + spec.max_outstanding.ilog2();
+    let start = graph.input("start", 1);
+    let source = graph.input("source", ADDRESS_BITS);
+    let destination = graph.input("destination", ADDRESS_BITS);
+    let count = graph.input("count", COUNT_BITS);
+    let mode = graph.input("mode", MODE_BITS);
+    let epoch = graph.input("epoch", EPOCH_BITS);
+    let watchdog = graph.input("watchdog", COUNT_BITS);
+    let abort = graph.input("abort_job", 1);
+    let rd_req_ready = graph.input("rd_req_ready", 1);
+    let rd_rsp_valid = graph.input("rd_rsp_valid", 1);
+    let rd_rsp_tag = graph.input("rd_rsp_tag", tag_bits);
+    let rd_rsp_data = graph.input("rd_rsp_data", spec.line_bits);
+    let rd_rsp_error = graph.input("rd_rsp_error", 1);
+    let wr_req_ready = graph.input("wr_req_ready", 1);
+    let wr_rsp_valid = graph.input("wr_rsp_valid", 1);
+    let wr_rsp_tag = graph.input("wr_rsp_tag", tag_bits);
+    let wr_rsp_error = graph.input("wr_rsp_error", 1);
+
+    // What flows back: control hears of all the others.
+    let wire = |name: &str, width: u32| graph.wire(name, width);
+    let (read_failed, write_failed) = (wire("read_failed", 1), wire("write_failed", 1));
+    let (response, link_idle) = (wire("response", 1), wire("link_idle", 1));
+    let (packed, dispatched) = (wire("packer_done", 1), wire("dispatched", 1));
+    let (entered, emerged) = (wire("entered", group_bits), wire("emerged", group_bits));
+    let (line_left, take) = (wire("line_left", 1), wire("take_line", 1));
+    let (waits_for_input, waits_for_output) = (wire("waits_for_input", 1), wire("waits_for_output", 1));
+    let control = graph.instance(
+        "control",
+        &control,
+        &[
+            ("start", start),
+            ("source", source),
+            ("destination", destination),
+            ("count", count),
+            ("mode", mode),
+            ("epoch", epoch),
+            ("watchdog", watchdog),
+            ("abort_job", abort),
+            ("read_failed", read_failed),
+            ("write_failed", write_failed),
+            ("response", response),
+            ("link_idle", link_idle),
+            ("packer_done", packed),
+            ("dispatched", dispatched),
+            ("entered", entered),
+            ("emerged", emerged),
+            ("line_left", line_left),
+            ("waits_for_input", waits_for_input),
+            ("waits_for_output", waits_for_output),
+        ],
+    );
+    let begin = control.output("begin_job");
+    let run = control.output("run");
+    let job_epoch = control.output("job_epoch");
+    let job_count = control.output("job_count");
+
+    let collector = graph.instance(
+        "collector",
+        &collector,
+        &[
+            ("start", begin),
+            ("run", run),
+            ("source", control.output("job_source")),
+            ("lines", control.output("lines")),
+            ("epoch", job_epoch),
+            ("take", take),
+            ("rd_req_ready", rd_req_ready),
+            ("rd_rsp_valid", rd_rsp_valid),
+            ("rd_rsp_tag", rd_rsp_tag),
+            ("rd_rsp_data", rd_rsp_data),
+            ("rd_rsp_error", rd_rsp_error),
+        ],
+    );
+    let feeder = graph.instance(
+        "feeder",
+        &feeder,
+        &[
+            ("start", begin),
+            ("run", run),
+            ("scpus", scpus),
+            ("count", job_count),
+            ("line_valid", collector.output("line_valid")),
+            ("line", collector.output("line")),
+            ("room", control.output("room")),
+        ],
+    );
+    take.drive(feeder.output("take"));
+    entered.drive(feeder.output("group"));
+    waits_for_input.drive(feeder.output("waits_for_input"));
+    waits_for_output.drive(feeder.output("waits_for_output"));
+
+    // A group's size and first SCPU travel beside the SCPUs, so that its results are known when they come out.
+    let group = feeder.output("issue_group");
+    let turn = feeder.output("issue_turn");
+    let (group_out, turn_out) = alongside(&graph, group, turn, slot_latency);
+    let slots = graph.array(
+        "slots",
+        &slot,
+        scpus,
+        &[
+            ("scpus", scpus),
+            ("in_turn", turn),
+            ("pairs", feeder.output("issue_pairs")),
+            ("out_group", group_out),
+            ("out_turn", turn_out),
+        ],
+    );
+    // The slots' answers come a cycle after `group_out`, and are registered once more after the or.
+    let group_done = register(&graph, "group_done", register(&graph, "group_answered", group_out));
+    let lane_outputs: Vec<String> =
+        (0..lanes).flat_map(|lane| ["record", "contact", "invalid"].map(|what| format!("{what}_{lane}"))).collect();
+    let mut packer_inputs = vec![("start", begin), ("count", job_count), ("group", group_done)];
+    for name in &lane_outputs {
+        packer_inputs.push((name, slots.output(name).delay(RANKS_AFTER)));
+    }
+    let packer = graph.instance("packer", &packer, &packer_inputs);
+    let dispatcher = graph.instance(
+        "dispatcher",
+        &dispatcher,
+        &[
+            ("start", begin),
+            ("run", run),
+            ("destination", control.output("job_destination")),
+            ("epoch", job_epoch),
+            ("line_valid", packer.output("line_valid")),
+            ("line", packer.output("line")),
+            ("wr_req_ready", wr_req_ready),
+            ("wr_rsp_valid", wr_rsp_valid),
+            ("wr_rsp_tag", wr_rsp_tag),
+            ("wr_rsp_error", wr_rsp_error),
+        ],
+    );
+    read_failed.drive(collector.output("failed"));
+    write_failed.drive(dispatcher.output("failed"));
+    response.drive(collector.output("response") | dispatcher.output("response"));
+    link_idle.drive(collector.output("idle") & dispatcher.output("idle"));
+    packed.drive(packer.output("done"));
+    dispatched.drive(dispatcher.output("empty"));
+    emerged.drive(group_done);
+    line_left.drive(dispatcher.output("take"));
+
+    for name in ["busy", "done", "error"] {
+        graph.output(name, control.output(name));
+    }
+    for name in ["contacts", "invalid", "first_invalid"] {
+        graph.output(name, packer.output(name));
+    }
+    for name in ["cycles_busy", "cycles_input", "cycles_output"] {
+        graph.output(name, control.output(name));
+    }
+    graph.output("capability", capability(&graph, spec, scpus, kernel.latency));
+    for name in ["rd_req_valid", "rd_req_address", "rd_req_tag"] {
+        graph.output(name, collector.output(name));
+    }
+    for name in ["wr_req_valid", "wr_req_address", "wr_req_tag", "wr_req_data"] {
+        graph.output(name, dispatcher.output(name));
+    }
+    graph.finish()
+}
+
+/// A register that is clear after reset.
+fn register<'g>(graph: &'g Graph, name: &str, next: Signal<'g>) -> Signal<'g> {
+    let register = graph.register(name, next.width(), 0);
+    register.next(next);
+    register.value()
+}
+
+/// Group size and turn as they were `latency` − 1 cycles ago. What a delay line holds is not reset, so group sizes
+/// count only once the line has been filled since reset.
+fn alongside<'g>(graph: &'g Graph, group: Signal<'g>, turn: Signal<'g>, latency: u32) -> (Signal<'g>, Signal<'g>) {
+    let cycles = latency - 1;
+    let age_bits = cycles.ilog2() + 1;
+    let age = graph.register("cycles_since_reset", age_bits, 0);
+    let settled = age.is(u128::from(cycles)).named("settled");
+    age.next(settled.select(*age, age.plus(1)));
+    let travelled = group.concat(turn).delay(cycles).named("travelled");
+    let group_out = travelled.high(group.width()).gate(settled).named("group_out");
+    (group_out, travelled.low(turn.width()).named("turn_out"))
+}
+
+/// What the host may rely on: bits 7:0 SCPUs, 15:8 interval, 19:16 contact fields (hit, depth, normal, position from
+/// bit 16 up), 43:32 latency of an SCPU in cycles; the others are zero.
+fn capability<'g>(graph: &'g Graph, spec: &Spec, scpus: Signal<'g>, latency: u32) -> Signal<'g> {
+    let fields = spec.config.contact;
+    let asked = [fields.position, fields.normal, fields.depth, true];
+    let mask = asked.into_iter().fold(0, |mask, bit| mask << 1 | u128::from(bit));
+    let constant = |width, value| graph.constant(width, value);
+    Signal::join(&[
+        constant(32, u128::from(latency.min(0xfff))),
+        constant(16, mask),
+        constant(8, u128::from(spec.config.interval.min(0xff))),
+        scpus.extend(8),
+    ])
+}
