@@ -5,12 +5,10 @@ use std::fmt::Write as _;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
+use crate::config::MANIFEST_SCHEMA;
 use crate::hdl::Module;
 
 use super::Afu;
-
-/// The `schema` of a folder of generated hardware.
-pub const MANIFEST_SCHEMA: &str = "contact-afu/rtl/1";
 
 impl Afu {
     /// All files of the generated folder, the manifest last: relative path and text.

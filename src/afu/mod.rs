@@ -16,7 +16,6 @@ mod spec;
 mod top;
 
 pub use control::JobError;
-pub use files::MANIFEST_SCHEMA;
 pub use generate::{Afu, BuildError};
 pub use layout::Layout;
 pub use spec::{Spec, SpecError};

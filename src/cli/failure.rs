@@ -28,6 +28,11 @@ impl Failure {
         Self { kind, error: anyhow::anyhow!("{message}") }
     }
 
+    /// Of a kind, with the error that made it.
+    pub fn caused(kind: Kind, error: impl Into<anyhow::Error>) -> Self {
+        Self { kind, error: error.into() }
+    }
+
     /// Says it on standard error, and gives the exit code.
     pub fn report(&self) -> ExitCode {
         eprintln!("afu: {:#}", self.error);
@@ -43,13 +48,13 @@ pub trait Classify<T> {
 
 impl<T, E: Into<anyhow::Error>> Classify<T> for Result<T, E> {
     fn ends(self, kind: Kind) -> Result<T, Failure> {
-        self.map_err(|error| Failure { kind, error: error.into() })
+        self.map_err(|error| Failure::caused(kind, error))
     }
 }
 
 impl From<contact_afu::config::Error> for Failure {
     fn from(error: contact_afu::config::Error) -> Self {
-        Self { kind: Kind::Usage, error: error.into() }
+        Self::caused(Kind::Usage, error)
     }
 }
 
@@ -60,6 +65,6 @@ impl From<contact_afu::report::folder::Error> for Failure {
             Foreign(_) | NotAFolder(_) => Kind::Usage,
             Path(_) | Io { .. } => Kind::Other,
         };
-        Self { kind, error: error.into() }
+        Self::caused(kind, error)
     }
 }

@@ -4,6 +4,7 @@ mod completions;
 mod doctor;
 mod failure;
 mod output;
+mod pairs;
 
 use std::process::ExitCode;
 
@@ -24,6 +25,8 @@ pub struct Program {
 
 #[derive(Subcommand, Debug)]
 enum Command {
+    /// Write a named set of pairs to a file
+    Pairs(pairs::Pairs),
     /// Say which tools are there, what needs them, and what installs the missing ones
     Doctor(doctor::Doctor),
     /// Print a shell's completion script
@@ -40,6 +43,7 @@ pub fn main() -> ExitCode {
 
 fn run(program: &Program) -> Result<(), Failure> {
     match &program.command {
+        Command::Pairs(options) => pairs::run(options),
         Command::Doctor(options) => doctor::run(options),
         Command::Completions(options) => completions::run(options),
     }

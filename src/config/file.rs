@@ -8,7 +8,7 @@ use serde::Deserialize;
 use super::Config;
 
 /// The schema of the manifest that stands beside generated Verilog.
-pub const MANIFEST_SCHEMA: &str = "contact-afu/manifest/1";
+pub const MANIFEST_SCHEMA: &str = "contact-afu/rtl/1";
 
 /// Why a file gave no configuration.
 #[derive(Debug, thiserror::Error)]
@@ -68,14 +68,14 @@ mod tests {
     fn a_manifest_gives_its_configuration_or_says_where_it_is_wrong() {
         let room = tempfile::tempdir().expect("a temporary folder");
         let file = room.path().join("manifest.json");
-        fs::write(&file, r#"{"schema": "contact-afu/manifest/1", "config": {"scpus": 3}, "files": {}}"#).expect("w");
+        fs::write(&file, r#"{"schema": "contact-afu/rtl/1", "config": {"scpus": 3}, "files": {}}"#).expect("w");
         assert_eq!(read(&file).expect("good").scpus, 3);
         assert_eq!(read(room.path()).expect("its folder").scpus, 3);
 
         for (text, says) in [
-            ("{\n\"schema\": \"contact-afu/manifest/1\",\n\"config\": {\"scpus\": \"x\"}}", "line 3"),
+            ("{\n\"schema\": \"contact-afu/rtl/1\",\n\"config\": {\"scpus\": \"x\"}}", "line 3"),
             ("{\"schema\": \"other/1\", \"config\": {}}", "other/1"),
-            ("{\"schema\": \"contact-afu/manifest/1\"}", "missing field `config`"),
+            ("{\"schema\": \"contact-afu/rtl/1\"}", "missing field `config`"),
             ("scpus = 3", "line 1"),
         ] {
             fs::write(&file, text).expect("written");

@@ -1,0 +1,58 @@
+//! `afu pairs`: a named set of pairs as a file.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use contact_afu::pairs::{self, FileError, LoadError, Set, SetError};
+use contact_afu::report::table::grouped;
+
+use super::failure::{Failure, Kind};
+use super::output;
+
+#[derive(Args, Debug)]
+pub struct Pairs {
+    /// diamond:H (candidate pairs of the paper's diamond of H layers) or random:N (N seeded pairs of every kind)
+    #[arg(value_name = "SET")]
+    set: Set,
+    /// Seed of random pairs
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// File to write: .csv (x1,y1,z1,r1,x2,y2,z2,r2 in decimals that read back the same) or .npy (<f4, n x 8)
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+}
+
+pub fn run(options: &Pairs) -> Result<(), Failure> {
+    let made = options.set.pairs(options.seed);
+    pairs::write_pairs(&options.out, &made)?;
+    let seed = match options.set {
+        Set::Random(_) => format!(", seed {}", options.seed),
+        Set::Diamond(_) => String::new(),
+    };
+    output::show(
+        &format!("{}: {} pairs of {}{seed}", options.out.display(), grouped(made.len() as u64), options.set),
+        false,
+    )
+}
+
+impl From<FileError> for Failure {
+    fn from(error: FileError) -> Self {
+        let kind = if matches!(error, FileError::Io { doing: "written", .. }) { Kind::Other } else { Kind::Usage };
+        Self::caused(kind, error)
+    }
+}
+
+impl From<SetError> for Failure {
+    fn from(error: SetError) -> Self {
+        Self::caused(Kind::Usage, error)
+    }
+}
+
+impl From<LoadError> for Failure {
+    fn from(error: LoadError) -> Self {
+        match error {
+            LoadError::Set(error) => error.into(),
+            LoadError::File(error) => error.into(),
+        }
+    }
+}
