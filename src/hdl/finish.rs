@@ -243,6 +243,7 @@ fn renumber(inner: Inner, order: &[NodeId]) -> Module {
         instances: instances.into_iter().map(|(_, instance)| instance).collect(),
         paths: Vec::new(),
         latency: 0,
+        timing: None,
     };
     module.paths = paths(&module);
     module

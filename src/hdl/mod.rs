@@ -4,6 +4,7 @@
 //! operation records an [`Error`] with its place and yields a poisoned handle; [`Graph::finish`] returns all of
 //! them together or a [`Module`], from which nothing can be taken that its outputs do not need.
 
+mod cut;
 mod delay_model;
 mod error;
 mod evaluate;
@@ -17,6 +18,7 @@ mod signal;
 mod state;
 pub mod verilog;
 
+pub use cut::{Timing, cut};
 pub use delay_model::DelayModel;
 pub use error::{Error, Errors};
 pub use evaluate::{EvaluateError, Evaluator, Pin};

@@ -189,6 +189,8 @@ pub struct Module {
     pub paths: Vec<BTreeSet<usize>>,
     /// Register ranks between inputs and outputs, for a pipeline.
     pub latency: u32,
+    /// What its stages come to, for a pipeline made by [`cut`](super::cut).
+    pub timing: Option<super::Timing>,
 }
 
 /// A longer delay than this many cycles is a memory with a pointer, not a row of registers.

@@ -1,0 +1,271 @@
+//! In which stage each operation stands.
+//!
+//! First as soon as possible, which gives the fewest stages there can be. Then operations move within their slack,
+//! one at a time, where that saves register bits: a sweep from the outputs moves them later, one from the inputs
+//! earlier, until neither gains. In a sweep from the outputs only what lies behind an operation has moved when it is
+//! looked at, so the arrival times of its operands are still right, and the time behind it is known; the sweep from
+//! the inputs is its mirror image.
+
+use crate::hdl::delay_model::DelayModel;
+use crate::hdl::module::{Module, NodeId, Op};
+
+/// Sweeps to save registers; each one gains less than the one before, and few modules take more than six.
+const MOST_SWEEPS: u32 = 24;
+
+/// Sums of the same delays in another order may differ by this much, in ns.
+const ROUNDING: f64 = 1e-9;
+
+/// Stages of a module's operations. All lists go by node.
+pub(super) struct Plan<'a> {
+    module: &'a Module,
+    budget: f64,
+    delay: Vec<f64>,
+    /// Who uses a value, each once.
+    users: Vec<Vec<NodeId>>,
+    /// Whether a value drives an output.
+    is_output: Vec<bool>,
+    /// Bits that a register of the value takes: constant parts of it need none.
+    bits: Vec<u64>,
+    /// From the beginning of the stage to the result.
+    arrival: Vec<f64>,
+    /// From the result to the end of the stage.
+    tail: Vec<f64>,
+    /// Made of constants and parameters alone: good in any stage.
+    pub invariant: Vec<bool>,
+    pub stage: Vec<u32>,
+    /// How many stages there are.
+    pub stages: u32,
+}
+
+/// The longest path between two register ranks.
+pub(super) struct Slowest {
+    pub logic: f64,
+    pub stage: u32,
+    pub path: Vec<NodeId>,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Sweep {
+    Later,
+    Earlier,
+}
+
+impl<'a> Plan<'a> {
+    /// `budget` is the time for logic between two registers, in ns.
+    pub(super) fn as_soon_as_possible(module: &'a Module, model: &DelayModel, budget: f64) -> Self {
+        let count = module.nodes.len();
+        let mut plan = Self {
+            module,
+            budget: budget + ROUNDING,
+            delay: module.nodes.iter().map(|node| model.delay(module, node)).collect(),
+            users: vec![Vec::new(); count],
+            is_output: vec![false; count],
+            bits: Vec::with_capacity(count),
+            arrival: vec![0.0; count],
+            tail: vec![0.0; count],
+            invariant: vec![false; count],
+            stage: vec![0; count],
+            stages: 1,
+        };
+        for id in module.ids() {
+            let node = module.node(id);
+            let index = id.index();
+            plan.invariant[index] = match node.op {
+                Op::Input => false,
+                _ => node.operands.iter().all(|operand| plan.invariant[operand.index()]),
+            };
+            let is_constant = |operand: &&NodeId| plan.invariant[operand.index()];
+            let constant: u32 = match node.op {
+                Op::Concat => node.operands.iter().filter(is_constant).map(|id| module.node(*id).width).sum(),
+                _ => 0,
+            };
+            plan.bits.push(u64::from(node.width - constant));
+            if plan.invariant[index] {
+                continue;
+            }
+            for operand in &node.operands {
+                if plan.users[operand.index()].last() != Some(&id) {
+                    plan.users[operand.index()].push(id);
+                }
+            }
+            let stage = plan.earliest(id);
+            let fits = plan.fits(plan.arrival_at(id, stage), plan.delay[index], 0.0);
+            plan.stage[index] = if fits { stage } else { stage + 1 };
+            plan.arrival[index] = plan.arrival_at(id, plan.stage[index]) + plan.delay[index];
+            plan.stages = plan.stages.max(plan.stage[index] + 1);
+        }
+        for port in module.ports.iter().filter(|port| port.output) {
+            if let Some(id) = port.node {
+                plan.is_output[id.index()] = true;
+            }
+        }
+        plan
+    }
+
+    /// Whether a path that long may stand in one stage. What takes longer alone may only share a stage with wiring.
+    fn fits(&self, before: f64, delay: f64, behind: f64) -> bool {
+        before + delay + behind <= self.budget.max(before).max(delay).max(behind)
+    }
+
+    /// Operands that may need a register.
+    fn operands(&self, id: NodeId) -> impl Iterator<Item = NodeId> + '_ {
+        self.module.node(id).operands.iter().copied().filter(|operand| !self.invariant[operand.index()])
+    }
+
+    /// The first stage in which all operands are there.
+    fn earliest(&self, id: NodeId) -> u32 {
+        self.operands(id).map(|operand| self.stage[operand.index()]).max().unwrap_or(0)
+    }
+
+    /// The last stage that still serves every user.
+    fn latest(&self, id: NodeId) -> u32 {
+        let users = self.users[id.index()].iter().map(|user| self.stage[user.index()]);
+        users.min().unwrap_or(self.stages - 1)
+    }
+
+    /// When the operands have come, if the operation stands in `stage`: at its beginning from registers.
+    fn arrival_at(&self, id: NodeId, stage: u32) -> f64 {
+        let here = self.operands(id).filter(|operand| self.stage[operand.index()] == stage);
+        here.map(|operand| self.arrival[operand.index()]).fold(0.0, f64::max)
+    }
+
+    /// What follows in the same stage, if the operation stands in `stage`.
+    fn tail_at(&self, id: NodeId, stage: u32) -> f64 {
+        let here = self.users[id.index()].iter().filter(|user| self.stage[user.index()] == stage);
+        here.map(|user| self.delay[user.index()] + self.tail[user.index()]).fold(0.0, f64::max)
+    }
+
+    /// The last stage whose beginning must still have the value, not counting one user.
+    fn needed_until(&self, id: NodeId, but_for: Option<NodeId>) -> u32 {
+        if self.is_output[id.index()] {
+            return self.stages;
+        }
+        let users = self.users[id.index()].iter().filter(|user| Some(**user) != but_for);
+        users.map(|user| self.stage[user.index()]).max().unwrap_or(0)
+    }
+
+    /// Bits of registers between stages.
+    pub(super) fn register_bits(&self) -> u64 {
+        let held = |id: NodeId| {
+            let cycles = self.needed_until(id, None).saturating_sub(self.stage[id.index()]);
+            if self.invariant[id.index()] { 0 } else { self.bits[id.index()] * u64::from(cycles) }
+        };
+        self.module.ids().map(held).sum()
+    }
+
+    /// Moves operations within their slack where it saves register bits.
+    pub(super) fn save_registers(&mut self) {
+        let mut best = (self.register_bits(), self.stage.clone());
+        let mut idle = 0;
+        for sweep in [Sweep::Later, Sweep::Earlier].into_iter().cycle().take(MOST_SWEEPS as usize) {
+            self.sweep(sweep);
+            let bits = self.register_bits();
+            idle = if bits < best.0 { 0 } else { idle + 1 };
+            // Of equals the later ones: fields and extensions then stand with their use, and what waits is whole.
+            if bits < best.0 || bits == best.0 && sweep == Sweep::Later {
+                best = (bits, self.stage.clone());
+            }
+            if idle == 3 {
+                break;
+            }
+        }
+        self.stage = best.1;
+        self.time_arrivals();
+    }
+
+    fn time_arrivals(&mut self) {
+        self.module.ids().for_each(|id| self.arrive(id));
+    }
+
+    fn time_tails(&mut self) {
+        (0..self.module.nodes.len() as u32).rev().for_each(|id| self.follow(NodeId(id)));
+    }
+
+    fn arrive(&mut self, id: NodeId) {
+        self.arrival[id.index()] = self.arrival_at(id, self.stage[id.index()]) + self.delay[id.index()];
+    }
+
+    fn follow(&mut self, id: NodeId) {
+        self.tail[id.index()] = self.tail_at(id, self.stage[id.index()]);
+    }
+
+    fn sweep(&mut self, sweep: Sweep) {
+        let count = self.module.nodes.len() as u32;
+        match sweep {
+            Sweep::Later => {
+                self.time_arrivals();
+                for id in (0..count).rev().map(NodeId) {
+                    self.improve(id, sweep);
+                    self.follow(id);
+                }
+            }
+            Sweep::Earlier => {
+                self.time_tails();
+                for id in (0..count).map(NodeId) {
+                    self.improve(id, sweep);
+                    self.arrive(id);
+                }
+            }
+        }
+    }
+
+    /// Moves one operation to the cheapest stage in the direction of the sweep; of equals to the farthest.
+    fn improve(&mut self, id: NodeId, sweep: Sweep) {
+        let index = id.index();
+        if self.invariant[index] || self.module.node(id).op == Op::Input {
+            return;
+        }
+        let now = self.stage[index];
+        let range = match sweep {
+            Sweep::Later => now..=self.latest(id).max(now),
+            Sweep::Earlier => self.earliest(id).min(now)..=now,
+        };
+        if range.start() == range.end() {
+            return;
+        }
+        let until = self.needed_until(id, None);
+        let mut sources: Vec<NodeId> = self.operands(id).collect();
+        sources.sort();
+        sources.dedup();
+        let others: Vec<(u64, u32)> = sources
+            .into_iter()
+            .map(|source| (self.bits[source.index()], self.needed_until(source, Some(id))))
+            .collect();
+        let bits = |stage: u32| -> u64 {
+            let held = self.bits[index] * u64::from(until.saturating_sub(stage));
+            held + others.iter().map(|&(bits, other)| bits * u64::from(other.max(stage))).sum::<u64>()
+        };
+        let possible = |stage: &u32| {
+            let (before, behind) = (self.arrival_at(id, *stage), self.tail_at(id, *stage));
+            *stage == now || self.fits(before, self.delay[index], behind)
+        };
+        let chosen = match sweep {
+            Sweep::Later => range.rev().filter(possible).min_by_key(|stage| bits(*stage)),
+            Sweep::Earlier => range.filter(possible).min_by_key(|stage| bits(*stage)),
+        };
+        self.stage[index] = chosen.unwrap_or(now);
+    }
+
+    /// The longest path of all stages. Arrivals are up to date.
+    pub(super) fn slowest(&self) -> Slowest {
+        let mut slowest = Slowest { logic: 0.0, stage: 0, path: Vec::new() };
+        let mut end = None;
+        for id in self.module.ids().filter(|id| !self.invariant[id.index()]) {
+            if self.arrival[id.index()] > slowest.logic {
+                slowest.logic = self.arrival[id.index()];
+                slowest.stage = self.stage[id.index()];
+                end = Some(id);
+            }
+        }
+        while let Some(id) = end {
+            let node = self.module.node(id);
+            if self.delay[id.index()] > 0.0 || node.name.is_some() && node.op != Op::Input {
+                slowest.path.push(id);
+            }
+            let latest = self.operands(id).filter(|operand| self.stage[operand.index()] == slowest.stage);
+            end = latest.max_by(|a, b| self.arrival[a.index()].total_cmp(&self.arrival[b.index()]));
+        }
+        slowest.path.reverse();
+        slowest
+    }
+}
