@@ -3,9 +3,9 @@
 
 mod support;
 
-use contact_afu::hdl::{Evaluator, Module, Op};
+use contact_afu::hdl::{DelayModel, Evaluator, Module, Op};
 use contact_afu::number::{Format, Subnormals};
-use contact_afu::operator::{Operator, build};
+use contact_afu::operator::{Operator, build, pipelined};
 use std::sync::Arc;
 use support::Words;
 
@@ -154,6 +154,39 @@ fn other_formats() {
         for to in [Format::BINARY32, Format::WIDE] {
             randomly(Operator::Convert { to }, format, count);
             randomly(Operator::Convert { to: format }, to, count);
+        }
+    }
+}
+
+/// Cut for any clock an operator computes the same, new operands in every cycle.
+#[test]
+fn pipelines_compute_the_same() {
+    for format in ["e5f2", "half", "paper", "wide", "e11f52"].map(format) {
+        let convert = Operator::Convert { to: if format == Format::WIDE { Format::BINARY32 } else { Format::WIDE } };
+        for (operator, clock_mhz) in ARITHMETIC.into_iter().chain([convert]).zip([100.0, 200.0, 300.0].iter().cycle()) {
+            let module = pipelined(operator, format, &DelayModel::default(), *clock_mhz).unwrap();
+            let mut evaluator = Evaluator::new(&module, &[]).unwrap();
+            let mut words = Words::new(format.exponent_bits(), format.fraction_bits(), 1);
+            let operands: Vec<_> = (0..2_000).map(|count| corner(operator, format, &mut words, count)).collect();
+            let latency = module.latency as usize;
+            assert!(latency > 0);
+            for cycle in 0..operands.len() + latency {
+                if cycle >= latency {
+                    let (a, b) = operands[cycle - latency];
+                    assert_eq!(
+                        evaluator.get("result"),
+                        operator.twin(format, a, b),
+                        "{} of {a:#x}, {b:#x}",
+                        module.name
+                    );
+                }
+                let (a, b) = operands.get(cycle).copied().unwrap_or_default();
+                evaluator.set("a", a);
+                if operator.operands() == 2 {
+                    evaluator.set("b", b);
+                }
+                evaluator.step();
+            }
         }
     }
 }

@@ -25,7 +25,12 @@ pub fn add<'g>(a: Signal<'g>, b: Signal<'g>, format: Format, subtract: bool) -> 
 
     // Below the significand stand a guard bit, a round bit and the sticky bit; above it the carry.
     let exponent_difference = (large_exponent - small_exponent).named("exponent_difference");
-    let (aligned, sticky) = shift_right_sticky(small_significand.append_zeros(2), exponent_difference, "align");
+    let (mut aligned, mut sticky) = shift_right_sticky(small_significand.append_zeros(2), exponent_difference, "align");
+    if !format.keeps_subnormals() {
+        // A zero's significand has a leading bit too: dropped here, where it is cheap.
+        let small_is_zero = b_is_larger.select(a.is_zero(), b.is_zero()).named("small_is_zero");
+        (aligned, sticky) = (aligned.gate(!small_is_zero), sticky & !small_is_zero);
+    }
     let width = format.significand_bits() + 4;
     let addend = aligned.concat(sticky.named("aligned_sticky")).extend(width).named("addend");
     let augend = large_significand.append_zeros(3).extend(width).named("augend");
@@ -39,14 +44,18 @@ pub fn add<'g>(a: Signal<'g>, b: Signal<'g>, format: Format, subtract: bool) -> 
     let normaliser = Normaliser { format, sum, large_exponent, zeros: zeros.named("leading_zeros") };
     let rounded = if format.keeps_subnormals() { normaliser.gradual() } else { normaliser.flushed() };
 
-    let sum_is_zero = sum_is_zero.named("sum_is_zero");
+    let is_zero = match format.keeps_subnormals() {
+        true => sum_is_zero,
+        false => sum_is_zero | (a.is_zero() & b.is_zero()),
+    };
+    let is_exact_zero = is_zero.named("is_exact_zero");
     let both_infinite = a.is_infinity() & b.is_infinity();
     let special = Special {
         nan: a.is_nan() | b.is_nan() | (both_infinite & effective_subtraction),
         infinity: a.is_infinity() | b.is_infinity(),
-        zero: sum_is_zero,
+        zero: is_exact_zero,
     };
-    let sign = large_sign & !(sum_is_zero & effective_subtraction);
+    let sign = large_sign & !(is_exact_zero & effective_subtraction);
     pack(format, sign, rounded, special)
 }
 

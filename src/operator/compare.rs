@@ -19,18 +19,14 @@ pub fn at_most<'g>(a: Signal<'g>, b: Signal<'g>, format: Format) -> Signal<'g> {
 /// Whether a > b, if neither is a NaN; and whether one is.
 fn order<'g>(a: Signal<'g>, b: Signal<'g>, format: Format) -> (Signal<'g>, Signal<'g>) {
     let (a, b) = (Operand::unpack(a, format, "a"), Operand::unpack(b, format, "b"));
-    let magnitude = |operand: &Operand<'g>| {
-        // What is flushed compares as the zero that it reads as.
-        if format.keeps_subnormals() { operand.magnitude() } else { operand.magnitude().gate(operand.hidden) }
-    };
-    let (a_magnitude, b_magnitude) = (magnitude(&a), magnitude(&b));
-    let b_is_smaller = b_magnitude.less_than(a_magnitude).named("b_magnitude_is_smaller");
-    let same = a_magnitude.equals(b_magnitude).named("same_magnitude");
+    let b_is_smaller = b.magnitude().less_than(a.magnitude()).named("b_magnitude_is_smaller");
+    let same = a.magnitude().equals(b.magnitude()).named("same_magnitude");
+    // Two flushed subnormals are equal; of one, and a normal number, the magnitudes tell the truth.
     let both_zero = (a.is_zero() & b.is_zero()).named("both_zero");
 
-    let across = !a.sign & b.sign & !both_zero;
+    let across = !a.sign & b.sign;
     let among_positive = !a.sign & !b.sign & b_is_smaller;
     let among_negative = a.sign & b.sign & !b_is_smaller & !same;
-    let greater = (across | among_positive | among_negative).named("is_greater");
+    let greater = ((across | among_positive | among_negative) & !both_zero).named("is_greater");
     (greater, (a.is_nan() | b.is_nan()).named("unordered"))
 }

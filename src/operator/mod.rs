@@ -1,7 +1,7 @@
 //! Floating-point hardware for any [`Format`]: one file an operator, each a graph of bit operations that rounds once,
 //! to nearest, ties to even, and equals its twin in [`crate::number::Soft`] bit for bit.
 //!
-//! Operators are made combinational ([`build`]) and cut into stages for a clock afterwards.
+//! Operators are made combinational ([`build`]) and cut into stages for a clock afterwards ([`pipelined`]).
 
 mod add;
 mod compare;
@@ -17,7 +17,7 @@ mod twin;
 
 use std::sync::Arc;
 
-use crate::hdl::{Errors, Graph, Module};
+use crate::hdl::{DelayModel, Errors, Graph, Module, cut};
 use crate::number::Format;
 
 /// What an operator computes, of operands `a` and `b` in one format.
@@ -59,12 +59,12 @@ impl Operator {
         }
     }
 
-    /// The width of its result, in bits.
-    pub const fn result_bits(self, format: Format) -> u32 {
+    /// The format of its result for operands in `format`; nothing where the result is one bit.
+    pub const fn result_format(self, format: Format) -> Option<Format> {
         match self {
-            Self::Greater | Self::AtMost | Self::RootExceeds => 1,
-            Self::Convert { to } => to.width(),
-            _ => format.width(),
+            Self::Greater | Self::AtMost | Self::RootExceeds => None,
+            Self::Convert { to } => Some(to),
+            _ => Some(format),
         }
     }
 
@@ -135,6 +135,20 @@ pub fn build(operator: Operator, format: Format) -> Result<Arc<Module>, Errors> 
     };
     graph.output("result", result);
     graph.finish()
+}
+
+/// The operator cut into stages for `clock_mhz`; its latency is in the module.
+///
+/// # Errors
+/// What the graph recorded, or what the cut could not meet.
+pub fn pipelined(
+    operator: Operator,
+    format: Format,
+    model: &DelayModel,
+    clock_mhz: f64,
+) -> Result<Arc<Module>, Errors> {
+    let combinational = build(operator, format)?;
+    cut(&combinational, model, clock_mhz)
 }
 
 fn about_format(format: Format) -> String {

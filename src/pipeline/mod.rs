@@ -1,1 +1,17 @@
-//! (in the making)
+//! Kernels as pipelines: mathematics read with [`Wire`] becomes a graph of operators, which is balanced into a module
+//! that takes new operands in every cycle and never stalls.
+
+mod balance;
+mod emit;
+mod kernel;
+mod names;
+mod report;
+mod sphere;
+mod trace;
+mod wire;
+
+pub use kernel::Kernel;
+pub use report::{KernelReport, OperatorUse};
+pub use sphere::{Settings, sphere_kernel};
+pub use trace::{Ports, trace};
+pub use wire::{Bit, Wire};

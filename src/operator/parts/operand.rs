@@ -70,12 +70,13 @@ impl<'g> Operand<'g> {
         self.name(self.exponent.all(), "is_special")
     }
 
-    /// Hidden bit and fraction; all clear for what reads as zero.
+    /// Hidden bit and fraction. Where subnormals are flushed the hidden bit is always set, so that the significand
+    /// of what reads as zero is of no use.
     #[track_caller]
     pub fn significand(&self) -> Signal<'g> {
         let kept = self.format.keeps_subnormals();
-        let fraction = if kept { self.fraction } else { self.fraction.gate(self.hidden) };
-        self.name(self.hidden.concat(fraction), "significand")
+        let leading = if kept { self.hidden } else { self.hidden.same(1) };
+        self.name(leading.concat(self.fraction), "significand")
     }
 
     /// The biased exponent that goes with [`Operand::significand`]: that of subnormals is 1.
@@ -92,13 +93,11 @@ impl<'g> Operand<'g> {
     /// is neither zero nor special.
     #[track_caller]
     pub fn normalised(&self) -> (Signed<'g>, Signal<'g>) {
-        let graph = self.fraction.graph();
         let largest = i64::from(self.format.special_exponent()) - 1;
-        if !self.format.keeps_subnormals() {
-            let significand = self.name(graph.constant(1, 1).concat(self.fraction), "significand");
-            return (Signed::unsigned(self.exponent, 1, largest), significand);
-        }
         let unshifted = self.significand();
+        if !self.format.keeps_subnormals() {
+            return (Signed::unsigned(self.exponent, 1, largest), unshifted);
+        }
         let (zeros, _) = leading_zeros(unshifted, &format!("{}_significand", self.prefix));
         let zeros = self.name(zeros, "leading_zeros");
         let significand = self.name(shift_left(unshifted, zeros, &format!("{}_normalise", self.prefix)), "normalised");

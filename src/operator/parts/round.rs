@@ -39,6 +39,12 @@ pub struct Special<'g> {
     pub zero: Signal<'g>,
 }
 
+/// One bit: the next magnitude is nearer, or as near and even.
+#[track_caller]
+fn rounds_up<'g>(fraction: Signal<'g>, guard: Signal<'g>, sticky: Signal<'g>) -> Signal<'g> {
+    (guard & (sticky | fraction.bit(0))).named("round_up")
+}
+
 /// {exponent, fraction}, one more where that is nearer. A carry out of the fraction makes the exponent one more,
 /// which is right; out of the largest finite number it makes infinity.
 #[track_caller]
@@ -48,32 +54,28 @@ pub fn nearest_even<'g>(
     guard: Signal<'g>,
     sticky: Signal<'g>,
 ) -> Signal<'g> {
-    let round_up = (guard & (sticky | fraction.bit(0))).named("round_up");
     let truncated = exponent.concat(fraction).named("truncated");
-    (truncated + round_up.extend(truncated.width())).named("rounded")
+    (truncated + rounds_up(fraction, guard, sticky).extend(truncated.width())).named("rounded")
 }
 
 /// Rounds, with gradual underflow or flushing as the format has it. What the exponent's range excludes costs nothing.
 #[track_caller]
 pub fn round<'g>(format: Format, value: Unrounded<'g>) -> Rounded<'g> {
-    let never = value.guard.graph().constant(1, 0);
-    let special = i64::from(format.special_exponent());
-    let overflow = value.exponent.at_least(special).named("overflow");
-    let field = value.exponent.bits(format.exponent_bits());
-    let fraction = value.significand.low(format.fraction_bits());
-    if value.exponent.min() > 0 {
-        let magnitude = nearest_even(field, fraction, value.guard, value.sticky);
-        return Rounded { magnitude, overflow, underflow: never };
+    let overflow = value.exponent.at_least(i64::from(format.special_exponent())).named("overflow");
+    let mut underflow = value.guard.graph().constant(1, 0);
+    let mut field = value.exponent.bits(format.exponent_bits());
+    let mut fraction = value.significand.low(format.fraction_bits());
+    let Unrounded { mut guard, mut sticky, .. } = value;
+    if value.exponent.min() <= 0 {
+        if format.keeps_subnormals() {
+            (field, fraction, guard, sticky) = denormalise(format, value);
+        } else {
+            // Just below the smallest normal number a result can still be rounded up to it.
+            let is_saved = fraction.all() & rounds_up(fraction, guard, sticky);
+            underflow = (value.exponent.is_negative() | (value.exponent.is(0) & !is_saved)).named("underflow");
+        }
     }
-    if format.keeps_subnormals() {
-        let (field, fraction, guard, sticky) = denormalise(format, value);
-        return Rounded { magnitude: nearest_even(field, fraction, guard, sticky), overflow, underflow: never };
-    }
-    // An exponent field of zero can still be rounded up to the smallest normal number.
-    let magnitude = nearest_even(field, fraction, value.guard, value.sticky);
-    let rounded_exponent = magnitude.high(format.exponent_bits()).named("rounded_exponent");
-    let underflow = (value.exponent.is_negative() | rounded_exponent.is_zero()).named("underflow");
-    Rounded { magnitude, overflow, underflow }
+    Rounded { magnitude: nearest_even(field, fraction, guard, sticky), overflow, underflow }
 }
 
 /// Moves a significand whose exponent is below the smallest normal one to the right. Gives exponent field, fraction,

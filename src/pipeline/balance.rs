@@ -1,0 +1,79 @@
+//! When each value of a kernel is there: as soon as possible, so that operands that meet are of the same cycle.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::kernel::{Kernel, Source};
+use crate::hdl::{Errors, Module};
+use crate::number::Format;
+use crate::operator::Operator;
+
+/// How many levels of glue may stand one behind the other before a register comes between: a level is a two-way
+/// choice or a gate, and operators' outputs and inputs are registers.
+const LONGEST_GLUE: u32 = 3;
+
+/// A time table of a kernel. Cycle 0 is that of the inputs.
+pub(super) struct Schedule {
+    /// The module of each operator in use.
+    pub modules: BTreeMap<(Operator, Format), Arc<Module>>,
+    /// When each value's operands meet. Nothing for what is dead, and for constants, which are there always.
+    pub start: Vec<Option<u32>>,
+    /// When each value is there; nothing as above.
+    pub ready: Vec<Option<u32>>,
+    /// When all outputs are there.
+    pub latency: u32,
+}
+
+impl Schedule {
+    /// Times for `kernel` with operators made by `pipelined`.
+    pub fn new(
+        kernel: &Kernel,
+        mut pipelined: impl FnMut(Operator, Format) -> Result<Arc<Module>, Errors>,
+    ) -> Result<Self, Errors> {
+        let count = kernel.values.len();
+        let mut this =
+            Self { modules: BTreeMap::new(), start: vec![None; count], ready: vec![None; count], latency: 0 };
+        // Levels of glue between the last register and the value.
+        let mut glue = vec![0_u32; count];
+        let live = kernel.live();
+        for index in (0..count).filter(|&index| live[index]) {
+            let value = &kernel.values[index];
+            let arrivals = value.operands.iter().filter_map(|id| Some((this.ready[id.index()]?, glue[id.index()])));
+            let registered = arrivals.clone().map(|(ready, glue)| ready + u32::from(glue > 0)).max();
+            let at_once = arrivals.clone().map(|(ready, _)| ready).max();
+            let (start, latency) = match value.source {
+                Source::Constant(_) => continue,
+                Source::Input(_) => (0, 0),
+                Source::Operator(operator, format) => {
+                    let module = match this.modules.get(&(operator, format)) {
+                        Some(module) => module,
+                        None => {
+                            let module = pipelined(operator, format)?;
+                            this.modules.entry((operator, format)).or_insert(module)
+                        }
+                    };
+                    // An operator's inputs come straight from registers.
+                    (registered.unwrap_or(0), module.latency)
+                }
+                Source::Select | Source::And | Source::Or | Source::Not => {
+                    let together = at_once.unwrap_or(0);
+                    let deepest = arrivals.filter(|(ready, _)| *ready == together).map(|(_, glue)| glue).max();
+                    let deepest = deepest.unwrap_or(0);
+                    let is_long = deepest >= LONGEST_GLUE;
+                    glue[index] = if is_long { 1 } else { deepest + 1 };
+                    (together + u32::from(is_long), 0)
+                }
+            };
+            this.start[index] = Some(start);
+            this.ready[index] = Some(start + latency);
+        }
+        for (_, id) in &kernel.outputs {
+            // Outputs are registers.
+            let is_register = glue[id.index()] == 0 && matches!(kernel.value(*id).source, Source::Operator(..));
+            if let Some(ready) = this.ready[id.index()] {
+                this.latency = this.latency.max(ready + u32::from(!is_register));
+            }
+        }
+        Ok(this)
+    }
+}

@@ -1,0 +1,121 @@
+//! A kernel with times as a module: operators as instances, and delays where a value has to wait.
+
+use std::sync::Arc;
+
+use super::balance::Schedule;
+use super::kernel::{Kernel, Source, ValueId};
+use super::names::Names;
+use crate::hdl::{DelayModel, Errors, Graph, Module, Node, NodeId, Op, Signal};
+use crate::operator::pipelined;
+
+impl Kernel {
+    /// The kernel as a pipeline that takes new inputs in every cycle, with operators cut for `clock_mhz`: all outputs
+    /// come out of registers, in the same cycle. What no output needs is left out; inputs stay as ports.
+    ///
+    /// # Errors
+    /// What a graph recorded, or a clock no operator can be cut for.
+    pub fn pipeline(&self, model: &DelayModel, clock_mhz: f64) -> Result<Arc<Module>, Errors> {
+        let schedule = Schedule::new(self, |operator, format| pipelined(operator, format, model, clock_mhz))?;
+        let graph = Graph::new(self.name.as_str());
+        self.about.iter().for_each(|line| graph.about(line.as_str()));
+        graph.about(format!("{} cycles from inputs to outputs, new inputs in every cycle", schedule.latency));
+        let signals = vec![None; self.values.len()];
+        Emitter { kernel: self, schedule: &schedule, graph: &graph, names: Names::new(self), signals }.emit();
+        let mut module = graph.finish()?;
+        let inner = Arc::make_mut(&mut module);
+        inner.latency = schedule.latency;
+        note_stages(inner);
+        Ok(module)
+    }
+}
+
+struct Emitter<'a, 'g> {
+    kernel: &'a Kernel,
+    schedule: &'a Schedule,
+    graph: &'g Graph,
+    names: Names,
+    /// Values when they come to be.
+    signals: Vec<Option<Signal<'g>>>,
+}
+
+impl<'g> Emitter<'_, 'g> {
+    fn emit(&mut self) {
+        for (name, id) in &self.kernel.inputs {
+            self.signals[id.index()] = Some(self.graph.input(name, self.kernel.value(*id).kind.width()));
+        }
+        for (index, value) in self.kernel.values.iter().enumerate() {
+            if let Source::Constant(bits) = value.source {
+                self.signals[index] = Some(self.graph.constant(value.kind.width(), bits));
+            } else if let Some(start) = self.schedule.start[index]
+                && self.signals[index].is_none()
+            {
+                self.signals[index] = self.compute(ValueId(index as u32), start);
+            }
+        }
+        for (name, id) in &self.kernel.outputs {
+            if let Some(signal) = self.at(*id, self.schedule.latency) {
+                self.graph.output(name, signal);
+            }
+        }
+    }
+
+    /// The value as of `cycle`, at or after the one it comes to be in. The graph makes one chain of a value's delays.
+    fn at(&self, id: ValueId, cycle: u32) -> Option<Signal<'g>> {
+        let ready = self.schedule.ready[id.index()].unwrap_or(cycle);
+        Some(self.signals[id.index()]?.delay(cycle - ready))
+    }
+
+    /// The value of operands that meet in cycle `start`.
+    fn compute(&mut self, id: ValueId, start: u32) -> Option<Signal<'g>> {
+        let value = self.kernel.value(id);
+        let operands = value.operands.iter().map(|id| self.at(*id, start)).collect::<Option<Vec<_>>>()?;
+        let name = self.names.signal(id).map(str::to_owned);
+        let signal = match (value.source, operands.as_slice()) {
+            (Source::Operator(operator, format), _) => {
+                let module = &self.schedule.modules[&(operator, format)];
+                let ports: Vec<_> = ["a", "b"].into_iter().zip(operands).collect();
+                let instance = self.names.instance(id, operator);
+                self.graph.instance(&instance, module, &ports).output("result")
+            }
+            (Source::Select, &[condition, yes, no]) => match (yes.as_constant(), no.as_constant()) {
+                (_, Some(0)) => yes.gate(condition),
+                (Some(0), _) => no.gate(!condition),
+                _ => condition.select(yes, no),
+            },
+            (Source::And, &[a, b]) => a & b,
+            (Source::Or, &[a, b]) => a | b,
+            (Source::Not, &[a]) => !a,
+            _ => return None,
+        };
+        Some(match name {
+            Some(name) => signal.named(&name),
+            None => signal,
+        })
+    }
+}
+
+/// Writes down which cycle each node belongs to, for the names of delays.
+fn note_stages(module: &mut Module) {
+    // What feeds an instance or a delay may stand behind it, so it takes as many rounds as there are ranks of them.
+    let mut changed = true;
+    while std::mem::take(&mut changed) {
+        for index in 0..module.nodes.len() {
+            let stage = stage(module, &module.nodes[index]);
+            changed |= stage != module.nodes[index].stage;
+            module.nodes[index].stage = stage;
+        }
+    }
+}
+
+fn stage(module: &Module, node: &Node) -> Option<u32> {
+    let latest = |ids: &mut dyn Iterator<Item = NodeId>| ids.filter_map(|id| module.node(id).stage).max();
+    match node.op {
+        Op::Input => Some(0),
+        Op::Delay { cycles } => Some(latest(&mut node.operands.iter().copied())? + cycles),
+        Op::InstanceOutput { instance, .. } => {
+            let instance = &module.instances[instance];
+            Some(latest(&mut instance.inputs.iter().flatten().copied())? + instance.module.latency)
+        }
+        _ => latest(&mut node.operands.iter().copied()),
+    }
+}

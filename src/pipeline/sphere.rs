@@ -1,0 +1,61 @@
+//! The contact of two spheres as a pipeline.
+
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+
+use super::trace::{Ports, trace};
+use super::wire::Wire;
+use crate::hdl::{DelayModel, Errors, Module};
+use crate::kernel::{Fields, PAIR_FIELDS, Pair, contact};
+use crate::number::Format;
+
+/// What decides the sphere kernel's bits and stages.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// The format computed in.
+    pub arithmetic: Format,
+    /// The format of the pair's and the contact's words.
+    pub record: Format,
+    /// The outputs asked for.
+    pub fields: Fields,
+    /// The clock that operators are cut for, in MHz.
+    pub clock_mhz: f64,
+    /// How long the target takes for each operation.
+    pub model: DelayModel,
+}
+
+/// The module `sphere_kernel`: a pair on inputs `x1 y1 z1 r1 x2 y2 z2 r2` with `valid`; `hit`, `grazing` and the
+/// fields asked for (`pos_x pos_y pos_z`, `normal_x normal_y normal_z`, `depth`), [`Module::latency`] cycles later.
+///
+/// `valid` is a truth value of the kernel like any other, and not reset. Without a hit all outputs are zero.
+///
+/// # Errors
+/// What a graph recorded, or a clock no operator can be cut for.
+pub fn sphere_kernel(settings: &Settings) -> Result<Arc<Module>, Errors> {
+    let kernel = trace("sphere_kernel", |ports| read(ports, settings))?;
+    kernel.pipeline(&settings.model, settings.clock_mhz)
+}
+
+fn read(ports: &Ports, settings: &Settings) {
+    let Settings { arithmetic, record, fields, .. } = *settings;
+    ports.about(format!("contact of two spheres: {fields}"));
+    ports.about(format!("computed in {arithmetic}, words in {record}"));
+    let [x1, y1, z1, r1, x2, y2, z2, r2] = PAIR_FIELDS.map(|name| ports.input(name, record));
+    let valid = ports.input_bit("valid");
+    let pair = Pair { p1: Vector3::new(x1, y1, z1), r1, p2: Vector3::new(x2, y2, z2), r2 };
+    let contact = contact(pair, valid, arithmetic, record, fields);
+
+    ports.output_bit("hit", contact.hit);
+    ports.output_bit("grazing", contact.grazing);
+    let vector = |asked: bool, names: [&str; 3], value: Vector3<Wire>| {
+        if asked {
+            names.iter().zip(value.iter()).for_each(|(name, component)| ports.output(name, *component));
+        }
+    };
+    vector(fields.position, ["pos_x", "pos_y", "pos_z"], contact.position);
+    vector(fields.normal, ["normal_x", "normal_y", "normal_z"], contact.normal);
+    if fields.depth {
+        ports.output("depth", contact.depth);
+    }
+}

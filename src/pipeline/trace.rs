@@ -1,0 +1,145 @@
+//! The kernel that is being read, in this thread; and its ports.
+
+use std::cell::RefCell;
+use std::panic::Location;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use super::kernel::{Kernel, Kind, ValueId};
+use super::wire::{Bit, Wire};
+use crate::hdl::Errors;
+use crate::number::Format;
+
+thread_local! {
+    static CURRENT: RefCell<Option<(u64, Kernel)>> = const { RefCell::new(None) };
+}
+
+/// Tells kernels apart, in all threads.
+static SERIAL: AtomicU64 = AtomicU64::new(0);
+
+/// What wires and bits are inside: a value of one kernel, or nothing after an error.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Handle {
+    kernel: u64,
+    value: Option<ValueId>,
+}
+
+impl Handle {
+    const POISON: Self = Self { kernel: 0, value: None };
+}
+
+/// Reads a kernel: `body` takes inputs from the ports, computes with them and gives outputs to the ports.
+///
+/// # Errors
+/// Every bad operation, together: mixed formats, wires of another kernel, constants that are no numbers of their
+/// format.
+pub fn trace(name: &str, body: impl FnOnce(&Ports)) -> Result<Kernel, Errors> {
+    let serial = SERIAL.fetch_add(1, Ordering::Relaxed) + 1;
+    let outer = CURRENT.replace(Some((serial, Kernel::new(name))));
+    let mut restore = Restore { outer: Some(outer) };
+    body(&Ports { _private: () });
+    let traced = CURRENT.replace(restore.outer.take().flatten());
+    match traced {
+        Some((_, kernel)) if kernel.errors.is_empty() => Ok(kernel),
+        Some((_, kernel)) => Err(Errors(kernel.errors)),
+        // Only if `body` had swapped the thread's kernel, which nothing outside this file can.
+        None => Err(Errors(Vec::new())),
+    }
+}
+
+/// Puts the outer kernel back if `body` panics.
+struct Restore {
+    outer: Option<Option<(u64, Kernel)>>,
+}
+
+impl Drop for Restore {
+    fn drop(&mut self) {
+        if let Some(outer) = self.outer.take() {
+            CURRENT.set(outer);
+        }
+    }
+}
+
+/// Makes a value of `operands` in the kernel being read. A poisoned operand gives poison; an operand of another
+/// kernel, or an error of `make`, is recorded and gives poison.
+pub(super) fn make(
+    what: &str,
+    operands: &[Handle],
+    place: &'static Location<'static>,
+    make: impl FnOnce(&mut Kernel, &[ValueId]) -> Result<ValueId, String>,
+) -> Handle {
+    CURRENT.with_borrow_mut(|current| {
+        let Some((serial, kernel)) = current else { return Handle::POISON };
+        let Some(ids) = operands.iter().map(|handle| handle.value).collect::<Option<Vec<_>>>() else {
+            return Handle::POISON;
+        };
+        if operands.iter().any(|handle| handle.kernel != *serial) {
+            kernel.error(format!("{what}: a wire of another kernel"), place);
+            return Handle::POISON;
+        }
+        match make(kernel, &ids) {
+            Ok(id) => Handle { kernel: *serial, value: Some(id) },
+            Err(message) => {
+                kernel.error(message, place);
+                Handle::POISON
+            }
+        }
+    })
+}
+
+/// The ports of the kernel that is being read.
+pub struct Ports {
+    _private: (),
+}
+
+impl Ports {
+    /// Adds a line to what the module's header says it is.
+    pub fn about(&self, line: impl Into<String>) {
+        CURRENT.with_borrow_mut(|current| {
+            if let Some((_, kernel)) = current {
+                kernel.about.push(line.into());
+            }
+        });
+    }
+
+    /// An input that carries a number.
+    #[track_caller]
+    pub fn input(&self, name: &str, format: Format) -> Wire {
+        Wire(input(name, Kind::Number(format), Location::caller()))
+    }
+
+    /// An input that carries a truth value.
+    #[track_caller]
+    pub fn input_bit(&self, name: &str) -> Bit {
+        Bit(input(name, Kind::Truth, Location::caller()))
+    }
+
+    /// An output that carries a number.
+    #[track_caller]
+    pub fn output(&self, name: &str, value: Wire) {
+        output(name, value.0, Location::caller());
+    }
+
+    /// An output that carries a truth value.
+    #[track_caller]
+    pub fn output_bit(&self, name: &str, value: Bit) {
+        output(name, value.0, Location::caller());
+    }
+}
+
+fn input(name: &str, kind: Kind, place: &'static Location<'static>) -> Handle {
+    make(name, &[], place, |kernel, _| Ok(kernel.input(name, kind)))
+}
+
+fn output(name: &str, value: Handle, place: &'static Location<'static>) {
+    let made = make(name, &[value], place, |kernel, ids| {
+        kernel.outputs.push((name.to_owned(), ids[0]));
+        Ok(ids[0])
+    });
+    CURRENT.with_borrow_mut(|current| {
+        if let (Some((_, kernel)), None) = (current, made.value)
+            && kernel.errors.is_empty()
+        {
+            kernel.error(format!("output `{name}`: its value was made outside of a kernel"), place);
+        }
+    });
+}

@@ -1,0 +1,184 @@
+//! The sphere kernel's pipeline against the reference kernel, bit for bit, a new pair in every cycle.
+
+use contact_afu::hdl::{DelayModel, Evaluator, Module};
+use contact_afu::kernel::{ContactRecord, Fields, Flow, PAIR_FIELDS, PairRecord, Reference};
+use contact_afu::number::Format;
+use contact_afu::pipeline::{KernelReport, Settings, sphere_kernel};
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use std::sync::Arc;
+
+const OUTPUTS: [&str; 7] = ["pos_x", "pos_y", "pos_z", "normal_x", "normal_y", "normal_z", "depth"];
+
+fn kernel(arithmetic: Format, fields: Fields) -> Arc<Module> {
+    let model = DelayModel::default();
+    sphere_kernel(&Settings { arithmetic, record: Format::BINARY32, fields, clock_mhz: 200.0, model }).unwrap()
+}
+
+/// What the pipeline gives for the pairs, one in every cycle.
+fn run(module: &Arc<Module>, pairs: &[PairRecord]) -> Vec<ContactRecord> {
+    let mut evaluator = Evaluator::new(module, &[]).unwrap();
+    let inputs = PAIR_FIELDS.map(|name| evaluator.pin(name).unwrap());
+    let valid = evaluator.pin("valid").unwrap();
+    let outputs = OUTPUTS.map(|name| evaluator.pin(name));
+    let [hit, grazing] = ["hit", "grazing"].map(|name| evaluator.pin(name).unwrap());
+    let latency = module.latency as usize;
+    let mut contacts = Vec::with_capacity(pairs.len());
+    for cycle in 0..pairs.len() + latency {
+        if cycle >= latency {
+            let pair = &pairs[cycle - latency];
+            let mut words = [0; 8];
+            for (word, pin) in words.iter_mut().zip(outputs) {
+                *word = pin.map_or(0, |pin| evaluator.read(pin) as u32);
+            }
+            let flow = match (pair.is_valid(), evaluator.read(hit), evaluator.read(grazing)) {
+                (false, ..) => Flow::Invalid,
+                (true, 0, _) => Flow::Fake,
+                (true, _, 0) => Flow::Real,
+                _ => Flow::Grazing,
+            };
+            words[7] = flow.flags();
+            contacts.push(ContactRecord(words));
+        }
+        // After the last pair nonsense follows, which must not reach back.
+        let pair = pairs.get(cycle).copied().unwrap_or(PairRecord([0x7FC0_0001; 8]));
+        inputs.iter().zip(pair.0).for_each(|(pin, word)| evaluator.write(*pin, word.into()));
+        evaluator.write(valid, pair.is_valid().into());
+        evaluator.step();
+    }
+    contacts
+}
+
+/// Pairs of every flow: words at random, spheres near touching at every scale, coincident and nearly coincident
+/// centres, and neighbours in the paper's diamond, which touch exactly.
+fn pairs(count: usize, seed: u64) -> Vec<PairRecord> {
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
+    let mut pairs = Vec::new();
+    while pairs.len() < count {
+        let scale = 2.0_f32.powi(random.random_range(-140..120));
+        let mut number = |reach: f32| (random.random::<f32>() * 2.0 - 1.0) * reach;
+        let first = [0; 3].map(|_| number(scale));
+        let direction = [0; 3].map(|_| number(scale));
+        let length = direction.iter().map(|c| f64::from(*c).powi(2)).sum::<f64>().sqrt() as f32;
+        let share = number(0.5) + 0.5;
+        let second: [f32; 3] = std::array::from_fn(|axis| first[axis] - direction[axis]);
+        let (r1, r2) = (length * share, length * (1.0 - share));
+        let nudge = random.random_range(-4..=4);
+        let r2 = f32::from_bits(r2.to_bits().saturating_add_signed(nudge));
+        pairs.push(match pairs.len() % 8 {
+            0 => PairRecord(std::array::from_fn(|_| random.random())),
+            1 => {
+                PairRecord(std::array::from_fn(|i| random.random::<u32>() & if i % 4 == 3 { 0x7FFF_FFFF } else { !0 }))
+            }
+            2 => sphere_pair(first, r1, first, r2),
+            3 => sphere_pair(first, r1, first.map(|c| f32::from_bits(c.to_bits() ^ 1)), r2),
+            4 => {
+                let [i, j, k] = [0; 3].map(|_| random.random_range(-9..=9) as f32);
+                let step = [0; 3].map(|_| random.random_range(-1..=1) as f32);
+                sphere_pair([i, j, k], 0.5, [i + step[0], j + step[1], k + step[2]], 0.5)
+            }
+            5 => sphere_pair(first, r1 * 1.5, second, r2 * 1.5),
+            _ => sphere_pair(first, r1, second, r2),
+        });
+    }
+    pairs
+}
+
+fn sphere_pair(p1: [f32; 3], r1: f32, p2: [f32; 3], r2: f32) -> PairRecord {
+    PairRecord::from_spheres([p1[0], p1[1], p1[2], r1], [p2[0], p2[1], p2[2], r2])
+}
+
+fn check(arithmetic: Format, fields: Fields, count: usize) {
+    let module = kernel(arithmetic, fields);
+    let pairs = pairs(count, 1);
+    let wanted = Reference::new(arithmetic, fields).run_all(&pairs);
+    for flow in Flow::ALL {
+        // Without a distance the kernel tells no flow from another but by its flags, and those are all here.
+        let seen = wanted.iter().filter(|contact| contact.flow() == Some(flow)).count();
+        assert!(seen * 40 > count, "only {seen} pairs are {flow}");
+    }
+    for (got, (wanted, pair)) in run(&module, &pairs).iter().zip(wanted.iter().zip(&pairs)) {
+        assert!(got == wanted, "{arithmetic}, {fields}: {pair:x?} gives {got:x?}, not {wanted:x?}");
+    }
+}
+
+fn every_fields() -> impl Iterator<Item = Fields> {
+    (0..8).map(|bits| Fields { depth: bits & 1 != 0, normal: bits & 2 != 0, position: bits & 4 != 0 })
+}
+
+#[test]
+fn wide() {
+    every_fields().for_each(|fields| check(Format::WIDE, fields, 4_000));
+}
+
+#[test]
+fn paper() {
+    every_fields().for_each(|fields| check(Format::BINARY32, fields, 4_000));
+}
+
+#[test]
+fn other_formats() {
+    for arithmetic in ["half", "e9f30", "e11f52"] {
+        check(arithmetic.parse().unwrap(), Fields::ALL, 500);
+    }
+}
+
+#[test]
+fn what_is_not_asked_for_is_not_there() {
+    for arithmetic in [Format::WIDE, Format::BINARY32] {
+        for fields in every_fields() {
+            let module = kernel(arithmetic, fields);
+            let uses = |name: &str| {
+                let report = KernelReport::of(&module);
+                let is_one = |module: &str| module.starts_with(&format!("fp_{name}_"));
+                report.operators.iter().filter(|of| is_one(&of.module)).map(|of| of.instances).sum::<usize>()
+            };
+            let distance = fields.need_distance();
+            let directed = fields.normal || fields.position;
+            assert_eq!(uses("sqrt"), usize::from(distance), "{fields}");
+            assert_eq!(uses("root_exceeds"), usize::from(!distance), "{fields}");
+            assert_eq!(uses("recip"), usize::from(directed), "{fields}");
+            assert_eq!(uses("halve"), usize::from(fields.position), "{fields}");
+            assert_eq!(
+                uses("mul"),
+                3 + if fields.position {
+                    6
+                } else if directed {
+                    3
+                } else {
+                    0
+                },
+                "{fields}"
+            );
+            assert_eq!(module.port("pos_y").is_some(), fields.position);
+            assert_eq!(module.port("normal_z").is_some(), fields.normal);
+            assert_eq!(module.port("depth").is_some(), fields.depth);
+            assert!(module.port("valid").is_some_and(|(_, port)| !port.output && port.node.is_some()));
+        }
+    }
+}
+
+/// The comparison is able to fail: one operator in place of another is found, at every place in the kernel.
+#[test]
+fn planted_faults_are_found() {
+    let module = kernel(Format::WIDE, Fields::ALL);
+    let pairs = pairs(400, 2);
+    let wanted = Reference::new(Format::WIDE, Fields::ALL).run_all(&pairs);
+    let operator = |name: &str| {
+        let all = module.instances.iter().map(|instance| &instance.module);
+        all.clone().find(|module| module.name == format!("fp_{name}_e10f23z")).unwrap().clone()
+    };
+    let swaps = [("add", "sub"), ("sub", "add"), ("recip", "sqrt"), ("greater", "at_most"), ("at_most", "greater")];
+    let mut planted = 0;
+    for (index, instance) in module.instances.iter().enumerate() {
+        for (from, to) in swaps.map(|(from, to)| (operator(from), operator(to))) {
+            if instance.module.name == from.name && from.ports.len() == to.ports.len() {
+                let mut faulty = Module::clone(&module);
+                faulty.instances[index].module = to;
+                planted += 1;
+                assert!(run(&Arc::new(faulty), &pairs) != wanted, "`{}` may be another operator", instance.name);
+            }
+        }
+    }
+    assert_eq!(planted, 15);
+}
