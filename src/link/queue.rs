@@ -1,0 +1,60 @@
+//! Requests in flight: when each is due, and which comes next.
+
+use std::collections::VecDeque;
+
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+use super::model::{Direction, Order};
+use super::regulator::{chance, up_to};
+
+/// The requests of one direction that have no response yet.
+#[derive(Clone, Debug)]
+pub(super) struct Queue<T> {
+    direction: Direction,
+    order: Order,
+    waiting: VecDeque<(u64, T)>,
+    /// Scratch: positions of those that are due.
+    due: Vec<usize>,
+}
+
+impl<T> Queue<T> {
+    pub(super) fn new(direction: Direction, order: Order) -> Self {
+        Self { direction, order, waiting: VecDeque::new(), due: Vec::new() }
+    }
+
+    /// A request accepted in cycle `now`.
+    pub(super) fn push(&mut self, now: u64, item: T, random: &mut Xoshiro256PlusPlus) {
+        let Direction { latency, tail, stragglers, .. } = self.direction;
+        let late = if chance(random, stragglers.share) { stragglers.cycles } else { 0 };
+        let due = now + u64::from(latency) + u64::from(up_to(random, tail)) + u64::from(late);
+        self.waiting.push_back((due, item));
+    }
+
+    /// Takes the request whose response comes in cycle `now`, if one is due and `may_leave`.
+    pub(super) fn pop(
+        &mut self,
+        now: u64,
+        random: &mut Xoshiro256PlusPlus,
+        may_leave: impl Fn(&T) -> bool,
+    ) -> Option<T> {
+        let ready = |(due, item): &(u64, T)| *due <= now && may_leave(item);
+        let index = match self.order {
+            Order::InOrder => self.waiting.front().is_some_and(ready).then_some(0)?,
+            Order::Shuffled => {
+                self.due.clear();
+                self.due.extend((0..self.waiting.len()).filter(|&i| ready(&self.waiting[i])));
+                let last = u32::try_from(self.due.len().checked_sub(1)?).unwrap_or(u32::MAX);
+                self.due[up_to(random, last) as usize]
+            }
+        };
+        self.waiting.remove(index).map(|(_, item)| item)
+    }
+
+    pub(super) fn iter_mut(&mut self) -> impl Iterator<Item = &mut T> {
+        self.waiting.iter_mut().map(|(_, item)| item)
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.waiting.len()
+    }
+}
