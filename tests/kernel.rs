@@ -139,14 +139,13 @@ impl Watched {
 }
 
 macro_rules! watched {
-    ($($trait:ident::$method:ident, $assign:ident::$assign_method:ident, $exact:expr;)*) => {$(
+    ($($trait:ident::$method:ident, $assign:ident::$assign_method:ident, $exact:ident;)*) => {$(
         impl $trait for Watched {
             type Output = Self;
 
             fn $method(self, other: Self) -> Self {
                 let result = self.0.$method(other.0);
-                let exact: fn(f64, f64, f64) -> bool = $exact;
-                let exact = exact(self.0.into(), other.0.into(), result.into());
+                let exact = $exact(self.0.into(), other.0.into(), result.into());
                 Self::watch(result, self.0.is_finite() && other.0.is_finite(), exact)
             }
         }
@@ -159,12 +158,25 @@ macro_rules! watched {
     )*};
 }
 
-// A product of two binary32 numbers is exact in binary64, and a sum that is tiny is exact.
+/// A sum that is tiny is exact.
+const fn sum_is_exact(_: f64, _: f64, _: f64) -> bool {
+    true
+}
+
+/// The product of two binary32 numbers is exact in binary64.
+fn product_is_exact(a: f64, b: f64, result: f64) -> bool {
+    a * b == result
+}
+
+fn quotient_is_exact(a: f64, b: f64, result: f64) -> bool {
+    b * result == a
+}
+
 watched! {
-    Add::add, AddAssign::add_assign, |_, _, _| true;
-    Sub::sub, SubAssign::sub_assign, |_, _, _| true;
-    Mul::mul, MulAssign::mul_assign, |a, b, result| a * b == result;
-    Div::div, DivAssign::div_assign, |a, b, result| b * result == a;
+    Add::add, AddAssign::add_assign, sum_is_exact;
+    Sub::sub, SubAssign::sub_assign, sum_is_exact;
+    Mul::mul, MulAssign::mul_assign, product_is_exact;
+    Div::div, DivAssign::div_assign, quotient_is_exact;
 }
 
 impl Number for Watched {

@@ -1,6 +1,7 @@
 //! The contact of two spheres, written once for every [`Number`](crate::number::Number): the reference kernel, its
 //! exact twins and the netlist are readings of [`contact`]. Records are what memory holds.
 
+pub mod batch;
 mod contact;
 mod fields;
 mod record;

@@ -41,7 +41,7 @@ impl Reference {
 
 /// The contact of one pair, in the machine's own arithmetic.
 #[inline(always)]
-fn native(pair: &PairRecord, fields: Fields) -> ContactRecord {
+pub(super) fn native(pair: &PairRecord, fields: Fields) -> ContactRecord {
     let valid = pair.is_valid();
     let contact = contact(pair.read(f32::from_bits), valid, Format::BINARY32, Format::BINARY32, fields);
     write(contact, valid, word)
@@ -50,13 +50,11 @@ fn native(pair: &PairRecord, fields: Fields) -> ContactRecord {
 /// The record of a contact.
 #[inline(always)]
 fn write<T: Number<Bool = bool>>(contact: Contact<T>, valid: bool, word: impl Fn(T) -> u32) -> ContactRecord {
-    let flow = match (valid, contact.hit, contact.grazing) {
-        (false, ..) => Flow::Invalid,
-        (true, false, _) => Flow::Fake,
-        (true, true, false) => Flow::Real,
-        (true, true, true) => Flow::Grazing,
-    };
+    // Selections rather than a `match`: the batch kernel is made of this, without branches.
+    let touching = if contact.grazing { Flow::Grazing.flags() } else { Flow::Real.flags() };
+    let apart = if valid { Flow::Fake.flags() } else { Flow::Invalid.flags() };
+    let flags = if contact.hit { touching } else { apart };
     let Contact { position: p, normal: n, depth, .. } = contact;
     let [px, py, pz, nx, ny, nz, depth] = [p.x, p.y, p.z, n.x, n.y, n.z, depth].map(word);
-    ContactRecord([px, py, pz, nx, ny, nz, depth, flow.flags()])
+    ContactRecord([px, py, pz, nx, ny, nz, depth, flags])
 }

@@ -39,7 +39,7 @@ impl Source {
 
     /// A number below `bound`, as evenly as matters here.
     fn below(&mut self, bound: u32) -> u32 {
-        (u64::from(self.bits()) * u64::from(bound) >> 32) as u32
+        ((u64::from(self.bits()) * u64::from(bound)) >> 32) as u32
     }
 
     /// A random significand; one in four has few bits set or few missing.
