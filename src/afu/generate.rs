@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use crate::hdl::verilog::{self, Style};
-use crate::hdl::{Errors, Module};
+use crate::hdl::{DelayModel, Errors, Module};
+use crate::number::Format;
+use crate::pipeline::{Settings, sphere_kernel};
 
 use super::top::line_top;
 use super::{Layout, Spec, SpecError};
@@ -28,6 +30,22 @@ pub enum BuildError {
 }
 
 impl Afu {
+    /// Generates the accelerator of a specification.
+    ///
+    /// # Errors
+    /// What is out of range in `spec`; a fault of the generator itself.
+    pub fn generate(spec: Spec) -> Result<Self, BuildError> {
+        spec.check()?;
+        let kernel = sphere_kernel(&Settings {
+            arithmetic: spec.config.profile.format(),
+            record: Format::BINARY32,
+            fields: spec.config.contact,
+            clock_mhz: spec.config.clock_mhz,
+            model: DelayModel::default(),
+        })?;
+        Self::around(spec, kernel)
+    }
+
     /// The accelerator of a specification around a kernel of the caller's: a module of the ports of
     /// [`crate::pipeline::sphere_kernel`] whose outputs follow its inputs by its `latency`, which is at least 1.
     ///

@@ -3,8 +3,10 @@
 mod completions;
 mod doctor;
 mod failure;
+mod machine;
 mod output;
 mod pairs;
+mod rtl;
 
 use std::process::ExitCode;
 
@@ -25,6 +27,8 @@ pub struct Program {
 
 #[derive(Subcommand, Debug)]
 enum Command {
+    /// Write the Verilog of an AFU with file list, FuseSoC core, constraints, template and manifest
+    Rtl(rtl::Rtl),
     /// Write a named set of pairs to a file
     Pairs(pairs::Pairs),
     /// Say which tools are there, what needs them, and what installs the missing ones
@@ -43,6 +47,7 @@ pub fn main() -> ExitCode {
 
 fn run(program: &Program) -> Result<(), Failure> {
     match &program.command {
+        Command::Rtl(options) => rtl::run(options),
         Command::Pairs(options) => pairs::run(options),
         Command::Doctor(options) => doctor::run(options),
         Command::Completions(options) => completions::run(options),

@@ -21,10 +21,17 @@ pub struct Tool {
 
 /// Looks for every tool.
 pub fn all() -> Vec<Tool> {
+    let simulates = cfg!(feature = "cosim");
     let tool = |name, found, required, needed_for, install| Tool { name, found, needed_for, required, install };
     vec![
-        tool("C++ compiler", probe::compiler(), true, "afu cosim, afu sweep: compiling a model", "apt-get install g++"),
-        tool("Verilator", probe::verilator(), true, "afu cosim, afu sweep: the model itself", "./scripts/setup"),
+        tool(
+            "C++ compiler",
+            probe::compiler(),
+            simulates,
+            "afu cosim, afu sweep: compiling a model",
+            "apt-get install g++",
+        ),
+        tool("Verilator", probe::verilator(), simulates, "afu cosim, afu sweep: the model itself", "./scripts/setup"),
         tool(
             "libclang",
             probe::libclang(),

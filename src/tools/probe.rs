@@ -13,9 +13,34 @@ pub(super) fn version(program: impl AsRef<OsStr>, arguments: &[&str]) -> Option<
     output.status.success().then_some(line)
 }
 
-/// The C++ compiler that builds would use: `$CXX`, else `c++`.
+/// The C++ compiler that compiles models.
+#[cfg(feature = "cosim")]
 pub(super) fn compiler() -> Option<String> {
-    version(env::var_os("CXX").unwrap_or_else(|| "c++".into()), &["--version"])
+    let target = env!("AFU_TARGET");
+    crate::cosim::verilate::Compiler::find(target, target).ok().map(|compiler| compiler.version().to_owned())
+}
+
+/// The C++ compiler that would compile models, had this program that feature.
+#[cfg(not(feature = "cosim"))]
+pub(super) fn compiler() -> Option<String> {
+    version(cxx(), &["--version"])
+}
+
+/// The Verilator that makes models. Its version text may carry no number, so its path stands beside it.
+#[cfg(feature = "cosim")]
+pub(super) fn verilator() -> Option<String> {
+    let tool = crate::cosim::verilate::Tool::find().ok()?;
+    Some(format!("{} ({})", tool.version(), tool.program().display()))
+}
+
+/// The Verilator that would make models, had this program that feature.
+#[cfg(not(feature = "cosim"))]
+pub(super) fn verilator() -> Option<String> {
+    version(env::var_os("AFU_VERILATOR").unwrap_or_else(|| "verilator".into()), &["--version"])
+}
+
+fn cxx() -> std::ffi::OsString {
+    env::var_os("CXX").unwrap_or_else(|| "c++".into())
 }
 
 /// Yosys, or the build of it that comes as a Python wheel.
@@ -25,8 +50,7 @@ pub(super) fn yosys() -> Option<String> {
 
 /// A header that the C++ compiler finds.
 pub(super) fn header(name: &str) -> Option<String> {
-    let compiler = env::var_os("CXX").unwrap_or_else(|| "c++".into());
-    let status = Command::new(compiler)
+    let status = Command::new(cxx())
         .args(["-x", "c++", "-fsyntax-only", "-include", name, "/dev/null"])
         .stdout(Stdio::null())
         .stderr(Stdio::null())
@@ -56,9 +80,4 @@ fn children(folder: &Path) -> Vec<PathBuf> {
     let mut paths: Vec<_> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
     paths.sort();
     paths
-}
-
-/// Verilator: `$AFU_VERILATOR`, or the system's.
-pub(super) fn verilator() -> Option<String> {
-    version(env::var_os("AFU_VERILATOR").unwrap_or_else(|| "verilator".into()), &["--version"])
 }

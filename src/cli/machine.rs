@@ -1,0 +1,103 @@
+//! The options that describe an AFU, the same in every subcommand.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use contact_afu::config::{self, Config, Input, Profile, Results, Shell};
+use contact_afu::kernel::Fields;
+
+use super::failure::{Classify, Failure, Kind};
+
+/// Everything but how many SCPUs and how fast each takes pairs: a sweep has lists of those.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "The AFU")]
+pub struct Machine {
+    /// Arithmetic: paper (IEEE binary32), wide, half, bfloat or eXfY (exponent and fraction bits) [default: wide]
+    #[arg(long, value_name = "NAME|eXfY")]
+    pub profile: Option<Profile>,
+    /// What comes back for a pair: a list of hit, depth, normal, position [default: all four]
+    #[arg(long, value_name = "FIELDS")]
+    pub contact: Option<Fields>,
+    /// How pairs are given: direct (both spheres whole) [default: direct]
+    #[arg(long, value_name = "KIND")]
+    pub input: Option<Input>,
+    /// Which pairs come back: all [default: all]
+    #[arg(long, value_name = "WHICH")]
+    pub results: Option<Results>,
+    /// What stands around the AFU's line port: line (nothing) [default: line]
+    #[arg(long, value_name = "SHELL")]
+    pub shell: Option<Shell>,
+    /// Clock that pipelines are cut for and time is told in, MHz [default: 200]
+    #[arg(long, value_name = "MHZ")]
+    pub clock: Option<f64>,
+    /// FPGA family whose delays pipelines are cut by: not built yet
+    #[arg(long, value_name = "NAME", hide = true)]
+    pub target: Option<String>,
+    /// Take the configuration from a manifest.json (or a folder with one); options given beside it win
+    #[arg(long, value_name = "FILE")]
+    pub config: Option<PathBuf>,
+}
+
+impl Machine {
+    /// The configuration file's or the default one, with the options given over it.
+    pub fn config(&self) -> Result<Config, Failure> {
+        if let Some(target) = &self.target {
+            let message = format!("--target {target}: not built yet; one delay model serves all families");
+            return Err(Failure::new(Kind::Usage, message));
+        }
+        let mut config = match &self.config {
+            Some(file) => config::read(file).ends(Kind::Usage)?,
+            None => Config::default(),
+        };
+        set(&mut config.profile, &self.profile);
+        set(&mut config.contact, &self.contact);
+        set(&mut config.input, &self.input);
+        set(&mut config.results, &self.results);
+        set(&mut config.shell, &self.shell);
+        set(&mut config.clock_mhz, &self.clock);
+        Ok(config)
+    }
+}
+
+/// One AFU.
+#[derive(Args, Debug)]
+pub struct One {
+    /// Sphere Collision Processing Units, 1 to 64 [default: 10]
+    #[arg(long, value_name = "N", help_heading = "The AFU")]
+    pub scpus: Option<u32>,
+    /// Cycles from one pair to the next in one SCPU: 1 [default: 1]
+    #[arg(long, value_name = "II", help_heading = "The AFU")]
+    pub interval: Option<String>,
+    #[command(flatten)]
+    pub machine: Machine,
+}
+
+impl One {
+    /// The configuration, known to be one that can be generated.
+    pub fn config(&self) -> Result<Config, Failure> {
+        let mut config = self.machine.config()?;
+        set(&mut config.scpus, &self.scpus);
+        if let Some(interval) = &self.interval {
+            config.interval = interval_of(interval)?;
+        }
+        config.check()?;
+        Ok(config)
+    }
+}
+
+/// `--interval`: a number of cycles; `auto` is for a link model to choose, which is not built yet.
+fn interval_of(text: &str) -> Result<u32, Failure> {
+    text.parse().map_err(|_| {
+        let message = match text {
+            "auto" => "interval auto: not built yet; an SCPU takes a pair every cycle (1)".to_owned(),
+            _ => format!("--interval {text}: give a number of cycles"),
+        };
+        Failure::new(Kind::Usage, message)
+    })
+}
+
+fn set<T: Clone>(to: &mut T, given: &Option<T>) {
+    if let Some(given) = given {
+        to.clone_from(given);
+    }
+}

@@ -1,0 +1,77 @@
+//! `afu rtl`: an AFU's Verilog, and what tools and people need around it.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use contact_afu::afu::{Afu, BuildError, Spec};
+use contact_afu::hdl::Reset;
+use contact_afu::report::folder::{self, Folder};
+
+use super::failure::{Failure, Kind};
+use super::machine::One;
+use super::output;
+
+#[derive(Args, Debug)]
+pub struct Rtl {
+    /// Folder to write: .v files, file list, FuseSoC core, constraints, instantiation template, PORTS.md, manifest.json
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Replace the folder even if afu did not write it
+    #[arg(long)]
+    force: bool,
+    /// Reset level, and whether it acts without a clock edge
+    #[arg(long, value_enum, value_name = "STYLE", default_value_t = Style::High, help_heading = "The AFU")]
+    reset: Style,
+    #[command(flatten)]
+    one: One,
+}
+
+#[derive(ValueEnum, Clone, Copy, Debug)]
+enum Style {
+    High,
+    Low,
+    AsyncHigh,
+    AsyncLow,
+}
+
+impl From<Style> for Reset {
+    fn from(style: Style) -> Self {
+        Self {
+            asynchronous: matches!(style, Style::AsyncHigh | Style::AsyncLow),
+            active_low: matches!(style, Style::Low | Style::AsyncLow),
+        }
+    }
+}
+
+pub fn run(options: &Rtl) -> Result<(), Failure> {
+    let config = options.one.config()?;
+    folder::check(&options.out, options.force)?;
+    let afu = Afu::generate(Spec { reset: options.reset.into(), ..Spec::from(config) })?;
+    let folder = Folder::begin(&options.out, options.force)?;
+    let files = afu.files();
+    for (name, text) in &files {
+        folder.write(name, text.as_bytes())?;
+    }
+    folder.commit()?;
+    let config = &afu.spec().config;
+    let text = format!(
+        "{}: {} files; {} SCPUs, {}, a contact {} cycles after its pair at {} MHz",
+        options.out.display(),
+        files.len(),
+        config.scpus,
+        config.profile,
+        afu.kernel().latency,
+        config.clock_mhz
+    );
+    output::show(&text, false)
+}
+
+impl From<BuildError> for Failure {
+    fn from(error: BuildError) -> Self {
+        let kind = match error {
+            BuildError::Spec(_) => Kind::Usage,
+            BuildError::Hardware(_) => Kind::Other,
+        };
+        Self::caused(kind, error)
+    }
+}

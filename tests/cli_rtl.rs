@@ -1,0 +1,101 @@
+//! `afu rtl`: what it writes, where it refuses to, and which options it does not have yet.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use assert_cmd::Command;
+
+fn afu(folder: &Path, arguments: &[&str]) -> assert_cmd::assert::Assert {
+    Command::cargo_bin("afu").expect("the program is built").current_dir(folder).args(arguments).assert()
+}
+
+fn said(assert: &assert_cmd::assert::Assert) -> String {
+    String::from_utf8(assert.get_output().stderr.clone()).expect("UTF-8")
+}
+
+fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let entries = fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("readable").path());
+    let named = |path: std::path::PathBuf| {
+        let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+        (name, fs::read(&path).expect("readable"))
+    };
+    entries.map(named).collect()
+}
+
+#[test]
+fn a_package_is_whole_and_the_same_every_time() {
+    let room = tempfile::tempdir().expect("a temporary folder");
+    afu(room.path(), &["rtl", "--out", "a"]).success();
+    afu(room.path(), &["rtl", "--scpus", "10", "--out", "b"]).success();
+    let (a, b) = (contents(&room.path().join("a")), contents(&room.path().join("b")));
+    assert_eq!(a, b, "the same configuration gives the same bytes");
+
+    let manifest: serde_json::Value = serde_json::from_slice(&a["manifest.json"]).expect("JSON");
+    let hashed = manifest["files"].as_object().expect("hashes");
+    let mut named: Vec<&str> = a.keys().map(String::as_str).filter(|name| *name != "manifest.json").collect();
+    named.sort_unstable();
+    assert!(named.iter().eq(hashed.keys().collect::<Vec<_>>().iter()), "every file has its hash");
+    let list = String::from_utf8(a["contact_afu.f"].clone()).expect("UTF-8");
+    assert!(list.lines().count() > 10 && list.lines().all(|file| a.contains_key(file)), "{list}");
+    for name in ["contact_afu.core", "contact_afu.sdc", "contact_afu.xdc", "PORTS.md"] {
+        assert!(a.contains_key(name), "{name}");
+    }
+}
+
+#[test]
+fn a_manifest_is_a_configuration_and_flags_win_over_it() {
+    let room = tempfile::tempdir().expect("a temporary folder");
+    afu(room.path(), &["rtl", "--scpus", "3", "--profile", "paper", "--contact", "hit,depth", "--out", "a"]).success();
+    afu(room.path(), &["rtl", "--config", "a/manifest.json", "--out", "b"]).success();
+    assert_eq!(contents(&room.path().join("a")), contents(&room.path().join("b")));
+    afu(room.path(), &["rtl", "--config", "a", "--scpus", "5", "--out", "c"]).success();
+    let text = fs::read(room.path().join("c/manifest.json")).expect("written");
+    let manifest: serde_json::Value = serde_json::from_slice(&text).expect("JSON");
+    assert_eq!((&manifest["config"]["scpus"], &manifest["config"]["profile"]), (&5.into(), &"paper".into()));
+}
+
+#[test]
+fn a_folder_of_somebody_else_is_refused_without_force() {
+    let room = tempfile::tempdir().expect("a temporary folder");
+    let theirs = room.path().join("theirs");
+    fs::create_dir(&theirs).expect("made");
+    fs::write(theirs.join("thesis.txt"), "years of work").expect("written");
+    let refused = afu(room.path(), &["rtl", "--out", "theirs"]).code(2);
+    assert!(said(&refused).contains("theirs") && said(&refused).contains("--force"), "{}", said(&refused));
+    assert_eq!(contents(&theirs).len(), 1);
+
+    afu(room.path(), &["rtl", "--out", "theirs", "--force"]).success();
+    assert!(!theirs.join("thesis.txt").exists() && theirs.join("contact_afu.v").exists());
+    afu(room.path(), &["rtl", "--scpus", "2", "--out", "theirs"]).success();
+    assert_eq!(fs::read_dir(room.path()).expect("there").count(), 1, "nothing is left aside");
+}
+
+#[test]
+fn what_is_not_built_yet_or_out_of_range_is_one_line_and_exit_2() {
+    let room = tempfile::tempdir().expect("a temporary folder");
+    for (arguments, word) in [
+        (["--interval", "2"], "interval 2"),
+        (["--interval", "auto"], "interval auto"),
+        (["--interval", "fast"], "--interval fast"),
+        (["--input", "indexed"], "input indexed"),
+        (["--input", "all"], "input all"),
+        (["--results", "hits"], "results hits"),
+        (["--shell", "spl2"], "shell spl2"),
+        (["--shell", "axi"], "shell axi"),
+        (["--target", "ecp5"], "--target ecp5"),
+        (["--scpus", "0"], "0 SCPUs"),
+        (["--scpus", "65"], "65 SCPUs"),
+        (["--clock", "0"], "clock 0"),
+        (["--clock", "inf"], "clock inf"),
+        (["--config", "absent.json"], "absent.json"),
+    ] {
+        let refused = afu(room.path(), &[&["rtl", "--out", "out"][..], &arguments].concat()).code(2);
+        let said = said(&refused);
+        assert!(said.starts_with("afu: ") && said.lines().count() == 1 && said.contains(word), "{said}");
+    }
+    for arguments in [["--profile", "exact"], ["--contact", "mass"], ["--shell", "pcie"], ["--scpus", "ten"]] {
+        afu(room.path(), &[&["rtl", "--out", "out"][..], &arguments].concat()).code(2);
+    }
+    assert_eq!(fs::read_dir(room.path()).expect("there").count(), 0, "nothing is written");
+}
