@@ -115,7 +115,7 @@ fn operations_move_to_where_fewer_bits_wait() {
 fn what_cannot_be_cut_is_said_together() {
     let g = Graph::new("clocked");
     let x = g.input("x", 8);
-    g.output("a", x.delay(3).named("x_late"));
+    g.output("a", x.delay(1).named("x_late"));
     let state = g.register("state", 8, 0);
     state.next(x);
     g.output("b", *state);

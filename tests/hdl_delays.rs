@@ -25,7 +25,8 @@ fn different_distances_share_their_registers() {
     g.output("also_five", x.delay(2).delay(3));
     g.output("six", x.delay(1).delay(4).delay(1));
     let module = g.finish().unwrap();
-    assert_eq!(delays(&module), [(1, None), (2, None), (3, Some("x".to_owned()))]);
+    // Six registers in all: a delay of a few cycles is as many registers.
+    assert_eq!(delays(&module), [vec![(1, None); 5], vec![(1, Some("x".to_owned()))]].concat());
 
     let mut run = Evaluator::new(&module, &[]).unwrap();
     for t in 0..30_u32 {
@@ -50,9 +51,9 @@ fn a_chain_that_is_only_passed_through_is_one_delay() {
 fn delays_that_nothing_needs_lengthen_nothing() {
     let g = Graph::new("dead");
     let x = g.input("x", 8);
-    let _ = x.delay(2) + x.delay(4);
-    g.output("y", x.delay(3));
-    assert_eq!(delays(&g.finish().unwrap()), [(3, Some("x".to_owned()))]);
+    let _ = x.delay(8) + x.delay(4);
+    g.output("y", x.delay(7));
+    assert_eq!(delays(&g.finish().unwrap()), [(7, Some("x".to_owned()))]);
 }
 
 #[test]

@@ -5,6 +5,7 @@
 //! link and checks every cycle of it.
 
 mod abi;
+pub mod drive;
 mod error;
 mod instance;
 mod model;
@@ -12,6 +13,7 @@ mod port;
 mod source;
 pub mod verilate;
 
+pub use drive::{Driver, Job, Outcome};
 pub use error::{CosimError, SimulationError};
 pub use instance::{Clock, Instance};
 pub use model::Model;

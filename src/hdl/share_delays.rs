@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 
 use super::graph::Inner;
-use super::module::{Node, NodeId, Op};
+use super::module::{LONGEST_REGISTER_DELAY, Node, NodeId, Op};
 
 /// Makes every live delay one of a value that is not itself delayed, so that what merely led to it can go.
 pub(super) fn collapse(inner: &mut Inner, live: &[NodeId]) {
@@ -50,6 +50,17 @@ pub(super) fn chain(inner: &mut Inner, live: &[NodeId]) {
     for (source, delays) in of {
         let (mut from, mut distance) = (source, 0);
         for (cycles, id) in delays {
+            // A few cycles are as many registers, each with a name of its own.
+            if cycles - distance <= LONGEST_REGISTER_DELAY {
+                while cycles - distance > 1 {
+                    let node =
+                        Node { op: Op::Delay { cycles: 1 }, operands: vec![from], ..inner.nodes[id.index()].clone() };
+                    from = NodeId(inner.nodes.len() as u32);
+                    inner.nodes.push(Node { name: None, ..node });
+                    inner.places.push(inner.places[id.index()]);
+                    distance += 1;
+                }
+            }
             let node = &mut inner.nodes[id.index()];
             node.op = Op::Delay { cycles: cycles - distance };
             node.operands[0] = from;

@@ -13,7 +13,7 @@ pub(super) fn chance(random: &mut Xoshiro256PlusPlus, share: f64) -> bool {
 
 /// A number from 0 to `most`, evenly distributed (to within 2^-32).
 pub(super) fn up_to(random: &mut Xoshiro256PlusPlus, most: u32) -> u32 {
-    if most == 0 { 0 } else { ((random.next_u64() >> 32) * (u64::from(most) + 1) >> 32) as u32 }
+    if most == 0 { 0 } else { (((random.next_u64() >> 32) * (u64::from(most) + 1)) >> 32) as u32 }
 }
 
 /// Lines a cycle, on average: a bucket into which a share of a line drips each cycle.

@@ -83,14 +83,13 @@ const RECIPE: &str = "contact-afu model 1";
 /// The class Verilator makes of the top module; `tb/harness.cpp` names it.
 const PREFIX: &str = "Vmodel";
 
-/// SHA-256 of Verilog files, names and order included, in lower-case hex: the identity of a design.
+/// SHA-256 over names and texts in order, in lower-case hex: the identity of a design, as `afu::Afu::rtl_sha256` gives
+/// it for generated ones.
 pub fn rtl_sha256(files: &[File]) -> String {
     let mut hash = Sha256::new();
-    for file in files {
-        for part in [&file.name, &file.text] {
-            hash.update((part.len() as u64).to_le_bytes());
-            hash.update(part.as_bytes());
-        }
+    for part in files.iter().flat_map(|file| [&file.name, &file.text]) {
+        hash.update(part.as_bytes());
+        hash.update([0]);
     }
     hex(&hash.finalize())
 }

@@ -144,7 +144,7 @@ impl<'a> Sections<'a> {
                         data += &format!("    {name}_line[delay_{depth}] <= {};\n", operand(0));
                         data += &format!("    {name} <= {name}_line[delay_{depth}_next];\n");
                     }
-                    None => data += &self.short_delay(*id, name),
+                    None => data += &format!("    {name} <= {};\n", operand(0)),
                 },
                 Op::MemoryRead { memory } => {
                     data += &format!("    {name} <= {}[{}];\n", self.module.memories[*memory].name, operand(0));
@@ -182,26 +182,6 @@ impl<'a> Sections<'a> {
             out += &self.reset_block(&reset, &running);
         }
         out
-    }
-
-    /// A delay of a few cycles: a row of registers, the last one under the value's name.
-    fn short_delay(&self, id: NodeId, name: &str) -> String {
-        let node = self.module.node(id);
-        let Op::Delay { cycles } = node.op else { return String::new() };
-        let source = self.text.value(node.operands[0]);
-        if cycles == 1 {
-            return format!("    {name} <= {source};\n");
-        }
-        // The row is one vector, shifted by a word.
-        let width = node.width;
-        let held = (cycles - 1) * width;
-        let shifted = if cycles == 2 { source } else { format!("{{{name}_row[{}:0], {source}}}", held - width - 1) };
-        let oldest = if width == 1 && held == 1 {
-            format!("{name}_row")
-        } else {
-            format!("{name}_row[{}:{}]", held - 1, held - width)
-        };
-        format!("    {name}_row <= {shifted};\n    {name} <= {oldest};\n")
     }
 
     fn reset_block(&self, reset: &str, running: &str) -> String {

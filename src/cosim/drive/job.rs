@@ -1,0 +1,218 @@
+//! Jobs and what comes of them.
+
+use std::ops::Range;
+
+use super::error::DriveError;
+use super::ports::Ports;
+use crate::afu::JobError;
+use crate::link::{LINE_BYTES, Line, Link, Memory, Replies, Requests, Traffic};
+
+/// Where sources lie unless the job says otherwise: a line address.
+const SOURCE: u64 = 0x1000;
+/// Where results go unless the job says otherwise; beyond every source.
+const DESTINATION: u64 = 1 << 40;
+
+/// What an AFU says of itself in its capability word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Capability {
+    /// Sphere Collision Processing Units.
+    pub scpus: u32,
+    /// Cycles from one pair to the next in an SCPU.
+    pub interval: u32,
+}
+
+impl Capability {
+    pub(super) fn from_bits(bits: u64) -> Self {
+        Self { scpus: (bits & 0xff) as u32, interval: (bits >> 8 & 0xff) as u32 }
+    }
+}
+
+/// A job for an AFU.
+#[derive(Clone, Debug)]
+pub struct Job<'a> {
+    /// The source lines.
+    pub source: &'a [Line],
+    /// Pairs in them.
+    pub pairs: u32,
+    /// Lines that the results take.
+    pub destination_lines: u64,
+    /// Line address of the first source line.
+    pub source_address: u64,
+    /// Line address of the first destination line.
+    pub destination_address: u64,
+    /// The AFU's mode: 0.
+    pub mode: u8,
+    /// Cycles without a response after which the AFU gives up; 0: never.
+    pub watchdog: u32,
+    /// SCPUs that the AFU must have.
+    pub scpus: Option<u32>,
+    /// Cycles after which the job has failed even if something still moves.
+    pub max_cycles: Option<u64>,
+}
+
+impl<'a> Job<'a> {
+    /// The job of `pairs` pairs in the lines `source`, whose results take `destination_lines`.
+    pub fn new(source: &'a [Line], pairs: u32, destination_lines: u64) -> Self {
+        Self {
+            source,
+            pairs,
+            destination_lines,
+            source_address: SOURCE,
+            destination_address: DESTINATION,
+            mode: 0,
+            watchdog: 0,
+            scpus: None,
+            max_cycles: None,
+        }
+    }
+
+    fn source_range(&self) -> Range<u64> {
+        self.source_address..self.source_address + self.source.len() as u64
+    }
+
+    fn destination_range(&self) -> Range<u64> {
+        self.destination_address..self.destination_address + self.destination_lines
+    }
+
+    /// Whether source and destination lie in the address space and apart.
+    pub(super) fn check(&self) -> Result<(), DriveError> {
+        let space = 1 << crate::afu::ADDRESS_BITS;
+        let fits = |first: u64, lines: u64| first <= space && lines <= space - first;
+        if !fits(self.source_address, self.source.len() as u64) {
+            return Err(DriveError::Job("the source ends beyond the last line address"));
+        }
+        if !fits(self.destination_address, self.destination_lines) {
+            return Err(DriveError::Job("the destination ends beyond the last line address"));
+        }
+        let (source, destination) = (self.source_range(), self.destination_range());
+        if source.start < destination.end && destination.start < source.end {
+            return Err(DriveError::Job("source and destination overlap"));
+        }
+        Ok(())
+    }
+
+    /// Puts the source where the AFU finds it, and nothing where it writes.
+    pub(super) fn place(&self, memory: &mut Memory) {
+        for (address, line) in self.source_range().zip(self.source) {
+            memory.set(address, line);
+        }
+        memory.forget(self.destination_range());
+        memory.guard(self.source_range(), self.destination_range());
+    }
+}
+
+/// What came of a job.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcome {
+    /// Cycles from the one in which `start` was high to the one in which `done` is.
+    pub cycles: u64,
+    /// The AFU's error code: 0 if all went well.
+    pub error: u8,
+    /// Contacts, as the AFU counted them.
+    pub contacts: u32,
+    /// Invalid pairs, as the AFU counted them.
+    pub invalid: u32,
+    /// The first invalid pair's number.
+    pub first_invalid: Option<u32>,
+    /// Cycles of the job, as the AFU counted them.
+    pub cycles_busy: u64,
+    /// Cycles in which it waited for input.
+    pub cycles_input: u64,
+    /// Cycles in which it waited for its output to leave.
+    pub cycles_output: u64,
+    /// Cycles from the first read's data to the first write request; nothing if either never was.
+    pub latency_cycles: Option<u64>,
+    /// Bytes of the lines that were read.
+    pub bytes_read: u64,
+    /// Bytes of the lines that were written.
+    pub bytes_written: u64,
+    /// The cycles that these lines take at least over this link.
+    pub limit_cycles: f64,
+    /// The destination lines that were written, in order; a line that was not is nothing.
+    pub lines: Vec<Option<Line>>,
+}
+
+impl Outcome {
+    /// How the job failed, if it did; a code that no AFU should give is a failed mode.
+    pub fn job_error(&self) -> Option<JobError> {
+        match self.error {
+            0 => None,
+            1 => Some(JobError::Aborted),
+            2 => Some(JobError::Read),
+            3 => Some(JobError::Write),
+            4 => Some(JobError::Watchdog),
+            _ => Some(JobError::Mode),
+        }
+    }
+
+    /// The share of the link's speed that was reached.
+    pub fn efficiency(&self) -> f64 {
+        if self.cycles == 0 { 0.0 } else { self.limit_cycles / self.cycles as f64 }
+    }
+}
+
+/// A job on its way.
+#[derive(Clone, Debug)]
+pub(super) struct Running {
+    destination: Range<u64>,
+    pub(super) watchdog: u32,
+    pub(super) max_cycles: Option<u64>,
+    pub(super) started: u64,
+    /// The link's traffic at the start.
+    pub(super) traffic: Traffic,
+    /// The last cycle in which a request was accepted or answered.
+    pub(super) last_sign: u64,
+    first_data: Option<u64>,
+    first_write: Option<u64>,
+}
+
+impl Running {
+    pub(super) fn new(job: &Job, cycle: u64, traffic: Traffic) -> Self {
+        Self {
+            destination: job.destination_range(),
+            watchdog: job.watchdog,
+            max_cycles: job.max_cycles,
+            started: cycle,
+            traffic,
+            last_sign: cycle,
+            first_data: None,
+            first_write: None,
+        }
+    }
+
+    /// Takes note of one cycle.
+    pub(super) fn note(&mut self, cycle: u64, requests: &Requests, replies: &Replies) {
+        if replies.read.is_some() {
+            self.first_data.get_or_insert(cycle);
+        }
+        if requests.write.is_some() {
+            self.first_write.get_or_insert(cycle);
+        }
+        let accepted = requests.read.is_some() && replies.read_ready || requests.write.is_some() && replies.write_ready;
+        if accepted || replies.read.is_some() || replies.write.is_some() {
+            self.last_sign = cycle;
+        }
+    }
+
+    pub(super) fn outcome(self, cycle: u64, ports: &Ports, link: &Link) -> Outcome {
+        let traffic = link.traffic();
+        let (reads, writes) = (traffic.reads - self.traffic.reads, traffic.writes - self.traffic.writes);
+        let counters = ports.counters();
+        let first_invalid = Some(counters.first_invalid).filter(|&pair| pair != u32::MAX);
+        Outcome {
+            cycles: cycle - self.started,
+            error: ports.error(),
+            contacts: counters.contacts,
+            invalid: counters.invalid,
+            first_invalid,
+            cycles_busy: counters.busy,
+            cycles_input: counters.input,
+            cycles_output: counters.output,
+            latency_cycles: self.first_data.zip(self.first_write).map(|(data, write)| write.saturating_sub(data)),
+            bytes_read: reads * LINE_BYTES,
+            bytes_written: writes * LINE_BYTES,
+            limit_cycles: link.model().limit_cycles(reads, writes),
+            lines: self.destination.map(|address| link.memory.get(address).copied()).collect(),
+        }
+    }
+}

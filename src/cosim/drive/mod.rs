@@ -1,0 +1,192 @@
+//! Gives an AFU jobs over a simulated link, and watches every cycle of the protocol between them.
+//!
+//! All outputs of the AFU are registered, so none depends on an input of the same cycle, and one evaluation an edge
+//! suffices: read the outputs, let the link decide, set the inputs, clock.
+
+mod error;
+mod job;
+mod monitor;
+mod ports;
+
+pub use error::{DriveError, Waiting};
+pub use job::{Capability, Job, Outcome};
+pub use monitor::ProtocolError;
+
+use super::instance::{Clock, Instance};
+use crate::link::{Link, Traffic};
+use job::Running;
+use monitor::Monitor;
+use ports::Ports;
+
+/// Cycles that reset is held.
+const RESET_CYCLES: u64 = 4;
+/// Cycles that an AFU with everything it needs may take without a sign: far more than any pipeline is deep.
+const PATIENCE_CYCLES: u64 = 20_000;
+
+/// A host with one AFU at the other end of a link.
+#[derive(Debug)]
+pub struct Driver<'a> {
+    clock: Clock<'a>,
+    ports: Ports<'a>,
+    link: Link,
+    monitor: Monitor,
+    /// Cycles since the driver was made.
+    cycle: u64,
+    /// The last job's; the next has another.
+    epoch: u8,
+    running: Option<Running>,
+}
+
+impl<'a> Driver<'a> {
+    /// Takes hold of the ports of `afu`, a module with the `line` shell's ports, and resets it.
+    ///
+    /// # Errors
+    /// When a port is missing, or the module ends itself.
+    pub fn new(afu: &'a Instance, link: Link) -> Result<Self, DriveError> {
+        let (clock, ports) = (afu.clock("clk")?, Ports::new(afu)?);
+        let monitor = Monitor::default();
+        let mut driver = Self { clock, ports, link, monitor, cycle: 0, epoch: 0, running: None };
+        driver.reset()?;
+        Ok(driver)
+    }
+
+    /// Resets the AFU, whatever it is doing. The link goes on: what was asked before is still answered.
+    ///
+    /// # Errors
+    /// When the module ends itself.
+    pub fn reset(&mut self) -> Result<(), DriveError> {
+        self.running = None;
+        self.monitor.forget();
+        self.ports.quiet();
+        self.ports.reset(true);
+        for _ in 0..RESET_CYCLES {
+            let replies = self.link.cycle(&Default::default());
+            self.monitor.answered(&replies);
+            self.ports.reply(&replies);
+            self.clock.tick(1)?;
+            self.cycle += 1;
+        }
+        self.ports.reset(false);
+        Ok(())
+    }
+
+    /// What the AFU says of itself.
+    pub fn capability(&self) -> Capability {
+        Capability::from_bits(self.ports.capability())
+    }
+
+    /// The link, with its memory.
+    pub fn link(&self) -> &Link {
+        &self.link
+    }
+
+    /// The link, with its memory, to plant faults.
+    pub fn link_mut(&mut self) -> &mut Link {
+        &mut self.link
+    }
+
+    /// Cycles since the driver was made.
+    pub fn cycle(&self) -> u64 {
+        self.cycle
+    }
+
+    /// Runs a job to its end.
+    ///
+    /// # Errors
+    /// When the AFU breaks the protocol, gives no sign of life, or ends itself. A job that ends with an error code is an
+    /// [`Outcome`].
+    pub fn run(&mut self, job: &Job) -> Result<Outcome, DriveError> {
+        self.start(job)?;
+        while !self.step()? {}
+        self.finish()
+    }
+
+    /// Puts a job's source into memory and starts the AFU on it.
+    ///
+    /// # Errors
+    /// When the AFU is not the one that was expected or is busy, or as in [`Driver::step`].
+    pub fn start(&mut self, job: &Job) -> Result<(), DriveError> {
+        let found = self.capability().scpus;
+        if let Some(expected) = job.scpus.filter(|&expected| expected != found) {
+            return Err(DriveError::Scpus { expected, found });
+        }
+        if self.ports.is_busy() {
+            return Err(DriveError::Busy);
+        }
+        job.check()?;
+        job.place(&mut self.link.memory);
+        self.epoch = (self.epoch + 1) % 16;
+        self.ports.start(job, self.epoch);
+        self.monitor.begin(self.epoch);
+        self.running = Some(Running::new(job, self.cycle, self.link.traffic()));
+        self.cycle_once()?;
+        self.ports.started();
+        Ok(())
+    }
+
+    /// One cycle; whether the job is done.
+    ///
+    /// # Errors
+    /// When the AFU breaks the protocol, gives no sign of life for longer than the link could explain, or ends itself.
+    pub fn step(&mut self) -> Result<bool, DriveError> {
+        if self.ports.is_done() {
+            let error = self.ports.error();
+            self.monitor.at_done(self.cycle, error, self.ports.is_busy(), &self.link.memory)?;
+            return Ok(true);
+        }
+        self.cycle_once()?;
+        let Some(running) = &self.running else { return Ok(true) };
+        let quiet = self.cycle - running.last_sign;
+        let cycles = self.cycle - running.started;
+        let patience = PATIENCE_CYCLES + self.link.model().patience_cycles() + u64::from(running.watchdog);
+        if quiet > patience || running.max_cycles.is_some_and(|most| cycles > most) {
+            return Err(self.timed_out(cycles));
+        }
+        Ok(false)
+    }
+
+    /// The outcome of a job that is done.
+    ///
+    /// # Errors
+    /// When none was started, or it is not done.
+    pub fn finish(&mut self) -> Result<Outcome, DriveError> {
+        if !self.ports.is_done() {
+            return Err(DriveError::NotDone);
+        }
+        let running = self.running.take().ok_or(DriveError::NotDone)?;
+        self.ports.abort(false);
+        Ok(running.outcome(self.cycle, &self.ports, &self.link))
+    }
+
+    /// Asks the AFU to abort, from the next cycle until its job is done.
+    pub fn abort(&mut self) {
+        self.ports.abort(true);
+    }
+
+    fn cycle_once(&mut self) -> Result<(), DriveError> {
+        let requests = self.ports.requests();
+        let replies = self.link.cycle(&requests);
+        self.monitor.check(self.cycle, &requests, &replies, self.ports.is_busy(), &self.link.memory)?;
+        self.ports.reply(&replies);
+        if let Some(running) = &mut self.running {
+            running.note(self.cycle, &requests, &replies);
+        }
+        self.clock.tick(1)?;
+        self.cycle += 1;
+        Ok(())
+    }
+
+    fn timed_out(&self, cycles: u64) -> DriveError {
+        let begun = self.running.as_ref().map_or(Traffic::default(), |running| running.traffic);
+        let traffic = self.link.traffic();
+        let requests = self.ports.requests();
+        let reads = (traffic.reads - begun.reads, traffic.read_responses - begun.read_responses);
+        let writes = (traffic.writes - begun.writes, traffic.write_responses - begun.write_responses);
+        let waiting = match self.monitor.oldest() {
+            Some((is_read, tag, since)) => Waiting::Response { is_read, tag, cycles: self.cycle - since },
+            None if requests.read.is_some() || requests.write.is_some() => Waiting::Ready,
+            None => Waiting::Afu,
+        };
+        DriveError::TimedOut { cycles, waiting, reads, writes }
+    }
+}

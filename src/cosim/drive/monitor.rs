@@ -1,0 +1,245 @@
+//! The line port's protocol, checked in every cycle.
+
+use super::error::DriveError;
+use crate::link::{MAX_OUTSTANDING, Memory, Replies, Requests, Violation};
+
+/// Values of a tag: a 4-bit epoch above a 6-bit slot.
+const TAGS: usize = 1 << 10;
+const SLOT_BITS: u32 = 6;
+
+/// The error code with which an AFU ends that will not wait for a lost response.
+const WATCHDOG: u8 = 4;
+
+/// How an AFU broke the protocol.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ProtocolError {
+    /// A request changed before it was accepted.
+    #[error("a {} request changed or vanished before it was accepted", direction(*is_read))]
+    Unstable {
+        /// Whether it is a read.
+        is_read: bool,
+    },
+    /// A tag was used before the response of its last use.
+    #[error("a {} used tag {tag:#05x}, whose last response has not come yet", direction(*is_read))]
+    TagReused {
+        /// Whether it is a read.
+        is_read: bool,
+        /// The tag.
+        tag: u16,
+    },
+    /// A tag of another job.
+    #[error("a {} used tag {tag:#05x}, but the job's epoch is {epoch}", direction(*is_read))]
+    WrongEpoch {
+        /// Whether it is a read.
+        is_read: bool,
+        /// The tag.
+        tag: u16,
+        /// The job's epoch.
+        epoch: u8,
+    },
+    /// More requests outstanding than agreed.
+    #[error("more than {MAX_OUTSTANDING} {}s outstanding", direction(*is_read))]
+    TooMany {
+        /// Whether they are reads.
+        is_read: bool,
+    },
+    /// A request without a job.
+    #[error("a {} request while no job runs", direction(*is_read))]
+    Idle {
+        /// Whether it is a read.
+        is_read: bool,
+    },
+    /// An access to a line that is not the job's.
+    #[error(transparent)]
+    Memory(#[from] Violation),
+    /// Done while requests were outstanding.
+    #[error("done with {reads} reads and {writes} writes outstanding")]
+    DoneEarly {
+        /// Reads without a response.
+        reads: u32,
+        /// Writes without a response.
+        writes: u32,
+    },
+    /// Done and still busy.
+    #[error("done and busy at once")]
+    DoneAndBusy,
+    /// Done, without an error code, but not all was written.
+    #[error("done, but line {0:#x} of the destination was never written")]
+    Unwritten(u64),
+}
+
+fn direction(is_read: bool) -> &'static str {
+    if is_read { "read" } else { "write" }
+}
+
+/// One direction of the port.
+#[derive(Debug)]
+struct Half {
+    is_read: bool,
+    /// The cycle in which each outstanding tag was accepted, and whether that was before the last reset.
+    since: Box<[Option<(u64, u32)>; TAGS]>,
+    /// Outstanding, but for what a reset forgot.
+    outstanding: u32,
+    /// Resets so far.
+    resets: u32,
+}
+
+impl Half {
+    fn new(is_read: bool) -> Self {
+        Self { is_read, since: Box::new([None; TAGS]), outstanding: 0, resets: 0 }
+    }
+
+    fn accepted(&mut self, cycle: u64, tag: u16, epoch: u8) -> Result<(), ProtocolError> {
+        let is_read = self.is_read;
+        if u16::from(epoch) != tag >> SLOT_BITS {
+            return Err(ProtocolError::WrongEpoch { is_read, tag, epoch });
+        }
+        let since = &mut self.since[usize::from(tag) % TAGS];
+        if since.is_some() {
+            return Err(ProtocolError::TagReused { is_read, tag });
+        }
+        *since = Some((cycle, self.resets));
+        self.outstanding += 1;
+        if self.outstanding > MAX_OUTSTANDING {
+            return Err(ProtocolError::TooMany { is_read });
+        }
+        Ok(())
+    }
+
+    fn answered(&mut self, tag: u16) {
+        if let Some((_, resets)) = self.since[usize::from(tag) % TAGS].take() {
+            self.outstanding -= u32::from(resets == self.resets);
+        }
+    }
+
+    fn forget(&mut self) {
+        self.outstanding = 0;
+        self.resets += 1;
+    }
+
+    fn oldest(&self) -> Option<(bool, u16, u64)> {
+        let waiting = (0..).zip(self.since.iter()).filter_map(|(tag, entry)| Some((tag, (*entry)?)));
+        let of_now = waiting.filter(|(_, (_, resets))| *resets == self.resets);
+        of_now.min_by_key(|(_, (cycle, _))| *cycle).map(|(tag, (cycle, _))| (self.is_read, tag, cycle))
+    }
+}
+
+/// The state that the checks need.
+#[derive(Debug)]
+pub(super) struct Monitor {
+    reads: Half,
+    writes: Half,
+    epoch: u8,
+    /// Requests of the last cycle that were not accepted.
+    pending: Requests,
+    violations: u64,
+}
+
+impl Default for Monitor {
+    fn default() -> Self {
+        Self { reads: Half::new(true), writes: Half::new(false), epoch: 0, pending: Requests::default(), violations: 0 }
+    }
+}
+
+impl Monitor {
+    /// The AFU is reset: it owes nothing, but what the link owes it still comes.
+    pub(super) fn forget(&mut self) {
+        self.reads.forget();
+        self.writes.forget();
+        self.pending = Requests::default();
+    }
+
+    /// A job of this epoch begins; memory counts violations anew.
+    pub(super) fn begin(&mut self, epoch: u8) {
+        // What a job that gave up still waits for is no longer this one's.
+        self.forget();
+        self.epoch = epoch;
+        self.violations = 0;
+    }
+
+    /// Responses.
+    pub(super) fn answered(&mut self, replies: &Replies) {
+        if let Some(read) = &replies.read {
+            self.reads.answered(read.tag);
+        }
+        if let Some(write) = &replies.write {
+            self.writes.answered(write.tag);
+        }
+    }
+
+    /// Checks one cycle.
+    pub(super) fn check(
+        &mut self,
+        cycle: u64,
+        requests: &Requests,
+        replies: &Replies,
+        busy: bool,
+        memory: &Memory,
+    ) -> Result<(), DriveError> {
+        self.check_requests(cycle, requests, replies, busy, memory).map_err(|what| DriveError::Protocol { cycle, what })
+    }
+
+    fn check_requests(
+        &mut self,
+        cycle: u64,
+        requests: &Requests,
+        replies: &Replies,
+        busy: bool,
+        memory: &Memory,
+    ) -> Result<(), ProtocolError> {
+        // A tag is free from the cycle after its response on.
+        if let Some(read) = &requests.read {
+            if !busy {
+                return Err(ProtocolError::Idle { is_read: true });
+            }
+            if replies.read_ready {
+                self.reads.accepted(cycle, read.tag, self.epoch)?;
+            }
+        }
+        if let Some(write) = &requests.write {
+            if !busy {
+                return Err(ProtocolError::Idle { is_read: false });
+            }
+            if replies.write_ready {
+                self.writes.accepted(cycle, write.tag, self.epoch)?;
+            }
+        }
+        if self.pending.read.is_some() && self.pending.read != requests.read {
+            return Err(ProtocolError::Unstable { is_read: true });
+        }
+        if self.pending.write.is_some() && self.pending.write != requests.write {
+            return Err(ProtocolError::Unstable { is_read: false });
+        }
+        self.pending.read = requests.read.filter(|_| !replies.read_ready);
+        self.pending.write = requests.write.filter(|_| !replies.write_ready);
+        self.answered(replies);
+        if memory.violation_count() > self.violations {
+            self.violations = memory.violation_count();
+            if let Some(&violation) = memory.violations().last() {
+                return Err(violation.into());
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks the end of a job.
+    pub(super) fn at_done(&self, cycle: u64, error: u8, busy: bool, memory: &Memory) -> Result<(), DriveError> {
+        let fail = |what| Err(DriveError::Protocol { cycle, what });
+        if busy {
+            return fail(ProtocolError::DoneAndBusy);
+        }
+        let (reads, writes) = (self.reads.outstanding, self.writes.outstanding);
+        if error != WATCHDOG && (reads, writes) != (0, 0) {
+            return fail(ProtocolError::DoneEarly { reads, writes });
+        }
+        match memory.first_unwritten() {
+            Some(address) if error == 0 => fail(ProtocolError::Unwritten(address)),
+            _ => Ok(()),
+        }
+    }
+
+    /// The request that waits longest: whether it is a read, its tag, and the cycle in which it was accepted.
+    pub(super) fn oldest(&self) -> Option<(bool, u16, u64)> {
+        self.reads.oldest().into_iter().chain(self.writes.oldest()).min_by_key(|(_, _, cycle)| *cycle)
+    }
+}
