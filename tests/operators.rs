@@ -3,7 +3,7 @@
 
 mod support;
 
-use contact_afu::hdl::{DelayModel, Evaluator, Module, Op};
+use contact_afu::hdl::{DelayModel, Evaluator, Module, Op, Pin};
 use contact_afu::number::{Format, Subnormals};
 use contact_afu::operator::{Operator, build, pipelined};
 use std::sync::Arc;
@@ -31,6 +31,8 @@ struct Bench {
     operator: Operator,
     format: Format,
     evaluator: Evaluator,
+    a: Pin,
+    result: Pin,
 }
 
 impl Bench {
@@ -39,7 +41,15 @@ impl Bench {
     }
 
     fn of(operator: Operator, format: Format, module: &Arc<Module>) -> Self {
-        Self { operator, format, evaluator: Evaluator::new(module, &[]).unwrap() }
+        let evaluator = Evaluator::new(module, &[]).unwrap();
+        let [a, result] = ["a", "result"].map(|port| evaluator.pin(port).unwrap());
+        Self { operator, format, evaluator, a, result }
+    }
+
+    /// The word for one operand of at most 64 bits, without a look-up.
+    fn raw(&mut self, a: u64) -> u64 {
+        self.evaluator.write(self.a, a);
+        self.evaluator.read(self.result)
     }
 
     /// What the hardware gives, and what it should.
@@ -156,6 +166,29 @@ fn other_formats() {
             randomly(Operator::Convert { to: format }, to, count);
         }
     }
+}
+
+/// Digit recurrences have no table whose entries could be sampled: every significand of binary32 is tried, under an
+/// even and an odd exponent for the root, against the machine's own arithmetic.
+#[test]
+fn every_significand_of_root_and_reciprocal() {
+    support::halves(1 << 24, |part| {
+        let mut root = Bench::new(Operator::Sqrt, Format::WIDE);
+        let mut inverse = Bench::new(Operator::Recip, Format::WIDE);
+        // Binary32 and wide have the same fraction; the biases differ by 384.
+        let wide = |word: u32| u64::from(word) + (384 << 23);
+        let check = |bench: &mut Bench, value: f32, wanted: f32| {
+            let got = bench.raw(wide(value.to_bits()));
+            assert!(got == wide(wanted.to_bits()), "{:?} of {value:e}: {got:#x}, not {wanted:e}", bench.operator);
+        };
+        for word in part.map(|number| (127 << 23) + number as u32) {
+            let value = f32::from_bits(word);
+            check(&mut root, value, value.sqrt());
+            if word < 128 << 23 {
+                check(&mut inverse, value, 1.0 / value);
+            }
+        }
+    });
 }
 
 /// Cut for any clock an operator computes the same, new operands in every cycle.

@@ -18,10 +18,12 @@ pub struct OperatorUse {
 }
 
 /// A kernel's latency, operators and delays.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct KernelReport {
     /// Cycles from inputs to outputs.
     pub latency: u32,
+    /// The clock, in MHz, that the slowest operator attains by the delay model it was cut with.
+    pub clock_mhz: Option<f64>,
     /// The operators in use, by name.
     pub operators: Vec<OperatorUse>,
     /// Bits kept in delays between operators: width times cycles, summed.
@@ -49,7 +51,9 @@ impl KernelReport {
             Op::Delay { cycles } => u64::from(cycles) * u64::from(node.width),
             _ => 0,
         });
-        Self { latency: kernel.latency, operators, delay_bits: delay_bits.sum() }
+        let timings = kernel.instances.iter().filter_map(|instance| instance.module.timing.as_ref());
+        let clock_mhz = timings.map(|timing| timing.clock_mhz).reduce(f64::min);
+        Self { latency: kernel.latency, clock_mhz, operators, delay_bits: delay_bits.sum() }
     }
 }
 
