@@ -6,6 +6,8 @@
 //! looked at, so the arrival times of its operands are still right, and the time behind it is known; the sweep from
 //! the inputs is its mirror image.
 
+use std::collections::BTreeSet;
+
 use crate::hdl::delay_model::DelayModel;
 use crate::hdl::module::{Module, NodeId, Op};
 
@@ -195,6 +197,7 @@ impl<'a> Plan<'a> {
             Sweep::Later => {
                 self.time_arrivals();
                 for id in (0..count).rev().map(NodeId) {
+                    self.gather_fields(id);
                     self.improve(id, sweep);
                     self.follow(id);
                 }
@@ -244,6 +247,43 @@ impl<'a> Plan<'a> {
             Sweep::Earlier => range.filter(possible).min_by_key(|stage| bits(*stage)),
         };
         self.stage[index] = chosen.unwrap_or(now);
+    }
+
+    /// Moves all fields taken from one value later together, where holding the value is cheaper than holding them
+    /// apart: one at a time none would begin. Part of the sweep to later stages.
+    fn gather_fields(&mut self, id: NodeId) {
+        let is_field = |user: &&NodeId| matches!(self.module.node(**user).op, Op::Slice { .. });
+        let users = &self.users[id.index()];
+        let fields: Vec<NodeId> = users.iter().filter(is_field).copied().collect();
+        if fields.len() < 2 || self.invariant[id.index()] {
+            return;
+        }
+        let own = self.stage[id.index()];
+        let whole =
+            users.iter().filter(|user| !is_field(user)).map(|user| self.stage[user.index()]).max().unwrap_or(own);
+        let whole = if self.is_output[id.index()] { self.stages } else { whole };
+        // Where a field goes if the value is held until stage `until`.
+        let target = |field: NodeId, until: u32| {
+            let stage = self.latest(field).min(until).max(self.stage[field.index()]);
+            let before = if stage == own { self.arrival[id.index()] } else { 0.0 };
+            let fits = self.fits(before, self.delay[field.index()], self.tail_at(field, stage));
+            if fits { stage } else { self.stage[field.index()] }
+        };
+        let bits = |placed: &[u32]| -> u64 {
+            let held = placed.iter().copied().max().unwrap_or(own).max(whole) - own;
+            let apart = fields.iter().zip(placed).map(|(field, &stage)| {
+                self.bits[field.index()] * u64::from(self.needed_until(*field, None).saturating_sub(stage))
+            });
+            self.bits[id.index()] * u64::from(held) + apart.sum::<u64>()
+        };
+        let now: Vec<u32> = fields.iter().map(|field| self.stage[field.index()]).collect();
+        let until: BTreeSet<u32> = fields.iter().map(|field| self.latest(*field)).collect();
+        let placements = until.into_iter().map(|until| fields.iter().map(|field| target(*field, until)).collect());
+        let best = std::iter::once(now).chain(placements).min_by_key(|placed| bits(placed));
+        for (field, stage) in fields.iter().zip(best.unwrap_or_default()) {
+            self.stage[field.index()] = stage;
+            self.follow(*field);
+        }
     }
 
     /// The longest path of all stages. Arrivals are up to date.
