@@ -22,6 +22,9 @@ pub(super) struct Inner {
     pub errors: Vec<Error>,
 }
 
+/// The widest a value may be, in bits: far beyond any line, and a slip of the pen does not fill the memory.
+pub(super) const WIDEST: u32 = 1 << 16;
+
 /// A module under construction. Hand out [`Signal`]s by [`Graph::input`] and the like, combine them, declare
 /// outputs, and [`Graph::finish`].
 pub struct Graph {
@@ -94,6 +97,14 @@ impl Graph {
     pub fn parameter(&self, name: &str, default: u32, range: std::ops::RangeInclusive<u32>, width: u32) -> Signal<'_> {
         let place = Location::caller();
         let (min, max) = (*range.start(), *range.end());
+        if !is_identifier(name) {
+            self.error(format!("parameter `{name}` is not a Verilog identifier"), place);
+            return Signal::poison(self);
+        }
+        if self.inner.borrow().parameters.iter().any(|parameter| parameter.name == name) {
+            self.error(format!("parameter `{name}` is declared twice"), place);
+            return Signal::poison(self);
+        }
         if !range.contains(&default) || width == 0 || width < 32 && max >> width != 0 {
             self.error(
                 format!("parameter `{name}`: default {default} or its width {width} is outside {min}..={max}"),
@@ -126,6 +137,10 @@ impl Graph {
     fn check_port(&self, name: &str, width: u32, place: &'static Location<'static>) -> bool {
         if width == 0 {
             self.error(format!("port `{name}` has no bits"), place);
+            return false;
+        }
+        if width > WIDEST {
+            self.error(format!("port `{name}` has {width} bits, more than {WIDEST}"), place);
             return false;
         }
         if !is_identifier(name) {
@@ -178,6 +193,10 @@ impl Graph {
     ) -> Signal<'_> {
         if width == 0 {
             self.error(format!("{op:?} would have no bits"), place);
+            return Signal::poison(self);
+        }
+        if width > WIDEST {
+            self.error(format!("{op:?} would have {width} bits, more than {WIDEST}"), place);
             return Signal::poison(self);
         }
         let mut inner = self.inner.borrow_mut();

@@ -3,7 +3,7 @@
 use std::ops::{Add, BitAnd, BitOr, BitXor, Mul, Not, Sub};
 use std::panic::Location;
 
-use super::graph::{Graph, is_identifier};
+use super::graph::{Graph, WIDEST, is_identifier};
 use super::module::{NodeId, Op};
 
 /// A handle of one node of a [`Graph`]. A poisoned handle comes from a bad operation, which is on record in the
@@ -294,7 +294,10 @@ impl<'g> Signal<'g> {
         Self::join(&[self, lower])
     }
 
-    /// Signals side by side, the first one most significant. At least one.
+    /// Signals side by side, the first one most significant.
+    ///
+    /// # Panics
+    /// Without any signal: there is no graph in which to record it.
     #[track_caller]
     pub fn join(parts: &[Self]) -> Self {
         let place = Location::caller();
@@ -303,7 +306,7 @@ impl<'g> Signal<'g> {
         if let [only] = parts {
             return *only;
         }
-        let width = parts.iter().map(|p| p.width()).sum();
+        let width = parts.iter().map(|p| p.width()).fold(0, u32::saturating_add);
         if width <= 128 && parts.iter().all(|p| p.as_constant().is_some()) {
             let value = parts.iter().fold(0, |v, p| v << p.width() | p.as_constant().unwrap_or(0));
             return graph.constant(width, value);
@@ -316,6 +319,15 @@ impl<'g> Signal<'g> {
     pub fn repeat(self, count: u32) -> Self {
         if count == 1 || self.id.is_none() {
             return self;
+        }
+        let copies = || format!("repeat: {count} copies of `{}`, which has {} bits", self.describe(), self.width());
+        if count == 0 {
+            self.graph.error(copies(), Location::caller());
+            return Self::poison(self.graph);
+        }
+        if count.saturating_mul(self.width()) > WIDEST {
+            self.graph.error(format!("{}, are more than {WIDEST} bits", copies()), Location::caller());
+            return Self::poison(self.graph);
         }
         Self::join(&vec![self; count as usize])
     }

@@ -186,15 +186,16 @@ impl Graph {
         inputs: &[(&str, Signal<'g>)],
     ) -> Instantiated<'g> {
         let place = Location::caller();
-        let parameter = count.id().map(|id| self.node(id).op);
-        let count = match parameter {
-            Some(Op::Parameter(index)) => InstanceCount::Parameter(index),
-            _ => {
-                self.error(format!("array `{name}`: `{}` is not a parameter", count.describe()), place);
-                InstanceCount::One
-            }
-        };
-        self.instantiate(name, module, count, inputs, place)
+        let parameter = self.own("array", &[count], place).map(|ids| self.node(ids[0]).op);
+        if let Some(Op::Parameter(index)) = parameter {
+            return self.instantiate(name, module, InstanceCount::Parameter(index), inputs, place);
+        }
+        if parameter.is_some() {
+            self.error(format!("array `{name}`: `{}` is not a parameter", count.describe()), place);
+        }
+        let outputs = module.ports.iter().filter(|port| port.output);
+        let outputs = outputs.map(|port| (port.name.clone(), Signal::poison(self))).collect();
+        Instantiated { graph: self, name: name.to_owned(), outputs }
     }
 
     fn instantiate<'g>(
