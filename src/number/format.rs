@@ -74,61 +74,73 @@ impl Format {
     }
 
     /// Bits of the biased exponent.
+    #[inline]
     pub const fn exponent_bits(self) -> u32 {
         self.exponent_bits as u32
     }
 
     /// Bits of the fraction: the significand without its leading bit.
+    #[inline]
     pub const fn fraction_bits(self) -> u32 {
         self.fraction_bits as u32
     }
 
     /// Bits of the significand, the leading bit included (IEEE 754's precision p).
+    #[inline]
     pub const fn significand_bits(self) -> u32 {
         self.fraction_bits() + 1
     }
 
     /// Bits of the whole word.
+    #[inline]
     pub const fn width(self) -> u32 {
         1 + self.exponent_bits() + self.fraction_bits()
     }
 
     /// Exponent bias, which is also the largest exponent of a finite number.
+    #[inline]
     pub const fn bias(self) -> i32 {
         (1 << (self.exponent_bits - 1)) - 1
     }
 
     /// Exponent of the smallest normal number.
+    #[inline]
     pub const fn min_exponent(self) -> i32 {
         1 - self.bias()
     }
 
     /// Whether gradual underflow is kept.
+    #[inline]
     pub const fn keeps_subnormals(self) -> bool {
         matches!(self.subnormals, Subnormals::Kept)
     }
 
     /// The biased exponent of infinities and NaN: all ones.
+    #[inline]
     pub const fn special_exponent(self) -> u32 {
         (1 << self.exponent_bits) - 1
     }
 
     /// The word of +infinity.
+    #[inline]
     pub const fn infinity_bits(self) -> u128 {
         (self.special_exponent() as u128) << self.fraction_bits
     }
 
     /// The word of the canonical NaN.
+    #[inline]
     pub const fn nan_bits(self) -> u128 {
         self.infinity_bits() | 1 << (self.fraction_bits - 1)
     }
 
     /// The mask of the sign bit.
+    #[inline]
     pub const fn sign_mask(self) -> u128 {
         1 << (self.width() - 1)
     }
 
     /// The mask of the fraction field.
+    #[inline]
     pub const fn fraction_mask(self) -> u128 {
         (1 << self.fraction_bits) - 1
     }

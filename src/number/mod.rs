@@ -5,7 +5,7 @@ mod format;
 mod native;
 mod soft;
 
-pub use format::{Format, FormatError, Subnormals};
+pub use format::{EXPONENT_BITS, FRACTION_BITS, Format, FormatError, Subnormals};
 pub use soft::Soft;
 
 use std::fmt::Debug;

@@ -17,49 +17,36 @@ impl Words {
         Self { random: Xoshiro256PlusPlus::seed_from_u64(seed), exponent_bits, fraction_bits }
     }
 
-    /// A fraction: random, few bits set, or nearly all of them.
-    fn fraction(&mut self, chance: u64) -> u64 {
-        let mask = (1 << self.fraction_bits) - 1;
-        let raw = self.random.random::<u64>();
-        let one = 1 << ((raw >> 32) % u64::from(self.fraction_bits));
-        mask & match chance & 7 {
-            0 => one,
-            1 => !one,
-            2 => one - 1,
-            3 => !(one - 1),
-            _ => raw,
-        }
-    }
-
-    /// One word.
+    /// One word. Choices are looked up rather than branched on: a test makes hundreds of millions of words.
+    #[inline]
     pub fn one(&mut self) -> u128 {
-        let chance = self.random.random::<u64>();
+        let (chance, raw) = (self.random.random::<u64>(), self.random.random::<u64>());
         let special = (1 << self.exponent_bits) - 1;
-        let exponent = match chance >> 3 & 15 {
-            0 => 0,
-            1 => special,
-            2 => 1,
-            3 => special - 1,
-            4..8 => special / 2 + (chance >> 7 & 3),
-            _ => (chance >> 9) & special,
-        };
-        let fraction = if chance >> 60 == 0 { 0 } else { self.fraction(chance) };
-        let sign = chance >> 59 & 1;
+        let any = chance >> 40 & special;
+        let near_one = special / 2 + (chance >> 38 & 3);
+        let exponents = [0, special, 1, special - 1, near_one, near_one, near_one, any];
+        let exponent = if chance & 8 == 0 { any } else { exponents[(chance & 7) as usize] };
+        // Fractions: random, one bit set or cleared, or a run of bits at either end.
+        let bit = 1 << ((u64::from(raw as u32) * u64::from(self.fraction_bits)) >> 32);
+        let fractions = [bit, !bit, bit - 1, !(bit - 1), raw >> 12, raw >> 12, raw >> 12, raw >> 12];
+        let empty = u64::from(chance >> 4 & 15 == 0);
+        let fraction = fractions[(chance >> 8 & 7) as usize] & ((1 << self.fraction_bits) - 1) & empty.wrapping_sub(1);
+        let sign = chance >> 63;
         u128::from(sign << self.exponent_bits | exponent) << self.fraction_bits | u128::from(fraction)
     }
 
     /// Two words, whose exponents are near each other half of the time.
+    #[inline]
     pub fn two(&mut self) -> (u128, u128) {
-        let (a, mut b) = (self.one(), self.one());
+        let (a, b) = (self.one(), self.one());
         let chance = self.random.random::<u64>();
-        let special = (1 << self.exponent_bits) - 1;
-        if chance & 1 == 0 {
-            let exponent = (a >> self.fraction_bits) as u64 & special;
-            let reach = u64::from(self.fraction_bits) + 4;
-            let near = (exponent + (chance >> 1) % (2 * reach + 1)).saturating_sub(reach).min(special);
-            b = b & !(u128::from(special) << self.fraction_bits) | u128::from(near) << self.fraction_bits;
-        }
-        (a, b)
+        let special = (1_u64 << self.exponent_bits) - 1;
+        let exponent = (a >> self.fraction_bits) as u64 & special;
+        let reach = u64::from(self.fraction_bits) + 4;
+        let step = (u64::from(chance as u32) * (2 * reach + 1)) >> 32;
+        let near = (exponent + step).saturating_sub(reach).min(special);
+        let beside = b & !(u128::from(special) << self.fraction_bits) | u128::from(near) << self.fraction_bits;
+        (a, if chance >> 63 == 0 { b } else { beside })
     }
 }
 

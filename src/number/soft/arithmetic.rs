@@ -3,6 +3,7 @@
 use super::parts::{Class, Parts};
 
 /// a + b. An exact zero is +0 unless both terms are −0 (IEEE 754-2019, clause 6.3).
+#[inline]
 pub fn add(a: Parts, b: Parts) -> Parts {
     use Class::{Finite, Infinity, Nan, Zero};
     match (a.class, b.class) {
@@ -17,6 +18,7 @@ pub fn add(a: Parts, b: Parts) -> Parts {
     }
 }
 
+#[inline]
 fn add_finite(a: Parts, b: Parts) -> Parts {
     let a_is_larger = (a.exponent, a.significand) >= (b.exponent, b.significand);
     let (large, small) = if a_is_larger { (a, b) } else { (b, a) };
@@ -32,6 +34,7 @@ fn add_finite(a: Parts, b: Parts) -> Parts {
 }
 
 /// a · b.
+#[inline]
 pub fn multiply(a: Parts, b: Parts) -> Parts {
     use Class::{Finite, Infinity, Nan, Zero};
     let negative = a.negative != b.negative;
@@ -48,6 +51,7 @@ pub fn multiply(a: Parts, b: Parts) -> Parts {
 }
 
 /// a / b.
+#[inline]
 pub fn divide(a: Parts, b: Parts) -> Parts {
     use Class::{Finite, Infinity, Nan, Zero};
     let negative = a.negative != b.negative;
@@ -67,6 +71,7 @@ pub fn divide(a: Parts, b: Parts) -> Parts {
 }
 
 /// √a. √−0 is −0; of any other negative number it is NaN.
+#[inline]
 pub fn square_root(a: Parts) -> Parts {
     match a.class {
         Class::Zero | Class::Nan => a,
@@ -84,6 +89,7 @@ pub fn square_root(a: Parts) -> Parts {
 }
 
 /// `value` >> `shift`, with bit 0 set if any bit fell off.
+#[inline]
 fn shift_sticky(value: u64, shift: u32) -> u64 {
     if shift >= 64 {
         return u64::from(value != 0);
@@ -92,6 +98,7 @@ fn shift_sticky(value: u64, shift: u32) -> u64 {
 }
 
 /// The upper half, with bit 0 set if the lower is not zero.
+#[inline]
 fn upper_sticky(value: u128) -> u64 {
     (value >> 64) as u64 | u64::from(value as u64 != 0)
 }

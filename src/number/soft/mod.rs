@@ -67,13 +67,14 @@ impl Soft {
         self.bits & !self.format.sign_mask() > self.format.infinity_bits()
     }
 
+    #[inline]
     fn parts(self) -> Parts {
         unpack(self.format, self.bits)
     }
 
     /// An operation of two numbers of one format.
     #[inline]
-    fn with(self, other: Self, operation: fn(Parts, Parts) -> Parts) -> Self {
+    fn with(self, other: Self, operation: impl Fn(Parts, Parts) -> Parts) -> Self {
         self.must_share_format(other);
         Self { bits: pack(self.format, operation(self.parts(), other.parts())), format: self.format }
     }

@@ -49,9 +49,11 @@ impl Parts {
 /// Reads a word. A subnormal reads as zero where the format flushes them.
 #[inline]
 pub fn unpack(format: Format, bits: u128) -> Parts {
-    // A word is at most 68 bits, but its fraction fits 64.
-    let fraction = bits as u64 & format.fraction_mask() as u64;
-    let head = (bits >> format.fraction_bits()) as u32;
+    // A fraction fits 64 bits; so do nearly all words, and shifting those is cheaper.
+    let low = bits as u64;
+    let fraction = low & ((1 << format.fraction_bits()) - 1);
+    let narrow = format.width() <= u64::BITS;
+    let head = if narrow { low >> format.fraction_bits() } else { (bits >> format.fraction_bits()) as u64 } as u32;
     let biased = head & format.special_exponent();
     let negative = head > format.special_exponent();
     if biased == format.special_exponent() {
@@ -72,40 +74,45 @@ pub fn unpack(format: Format, bits: u128) -> Parts {
 /// Rounds a value to nearest, ties to even, and writes its word.
 #[inline]
 pub fn pack(format: Format, value: Parts) -> u128 {
-    let sign = if value.negative { format.sign_mask() } else { 0 };
-    match value.class {
-        Class::Nan => format.nan_bits(),
-        Class::Infinity => sign | format.infinity_bits(),
-        Class::Zero => sign,
-        Class::Finite => sign | pack_magnitude(format, value.exponent, value.significand),
+    let (biased, fraction) = match value.class {
+        Class::Nan => return format.nan_bits(),
+        Class::Infinity => (format.special_exponent(), 0),
+        Class::Zero => (0, 0),
+        Class::Finite => round(format, value.exponent, value.significand),
+    };
+    let head = u64::from(u32::from(value.negative) << format.exponent_bits() | biased);
+    // A carry out of a subnormal's fraction makes the biased exponent 1, as it should.
+    if format.width() <= u64::BITS {
+        u128::from((head << format.fraction_bits()) + fraction)
+    } else {
+        (u128::from(head) << format.fraction_bits()) + u128::from(fraction)
     }
 }
 
-fn pack_magnitude(format: Format, exponent: i32, significand: u64) -> u128 {
+/// The biased exponent and the fraction of a rounded value. The fraction of a subnormal may be one bit longer.
+#[inline]
+fn round(format: Format, exponent: i32, significand: u64) -> (u32, u64) {
     let below = format.min_exponent() - exponent;
     let dropped = 64 - format.significand_bits();
     if below > 0 && format.keeps_subnormals() {
-        // Gradual underflow: more bits are dropped. A carry out of the fraction lands in the exponent field,
-        // which then says "smallest normal", as it should.
-        return u128::from(round_shift(significand, dropped.saturating_add(below as u32)));
+        // Gradual underflow: more bits are dropped.
+        return (0, round_shift(significand, dropped.saturating_add(below as u32)));
     }
-    let mut rounded = round_shift(significand, dropped);
-    let mut exponent = exponent;
-    if rounded >> format.significand_bits() != 0 {
-        rounded >>= 1;
-        exponent += 1;
+    // A carry out of the significand leaves a fraction of zeros, under the next exponent.
+    let rounded = round_shift(significand, dropped);
+    let carry = (rounded >> format.significand_bits()) as i32;
+    let biased = exponent + carry + format.bias();
+    if biased < 1 {
+        (0, 0)
+    } else if biased >= format.special_exponent() as i32 {
+        (format.special_exponent(), 0)
+    } else {
+        (biased as u32, rounded & ((1 << format.fraction_bits()) - 1))
     }
-    if exponent < format.min_exponent() {
-        return 0;
-    }
-    if exponent > format.bias() {
-        return format.infinity_bits();
-    }
-    let biased = (exponent + format.bias()) as u128;
-    biased << format.fraction_bits() | u128::from(rounded) & format.fraction_mask()
 }
 
 /// `value` / 2^`shift`, to the nearest integer, ties to even. `shift` is at least 1; bit 0 of `value` may be sticky.
+#[inline]
 fn round_shift(value: u64, shift: u32) -> u64 {
     if shift > 64 {
         return 0; // less than a half
