@@ -44,8 +44,8 @@ pub struct Contact<T: Number> {
 /// are in the format `record`. Fields that are not asked for are zero.
 ///
 /// The order of every sum and product is part of the contract: each rounds once, and hardware, reference and peers
-/// must round alike. Touching counts as contact. A NaN distance (which finite spheres reach only by overflow) is
-/// not greater than any sum of radii, so it counts as contact too, as it does in the Open Dynamics Engine.
+/// must round alike. Touching counts as contact. So does a NaN distance, which is greater than nothing; valid spheres
+/// have one only in arithmetic so narrow that a coordinate of both becomes infinite.
 #[inline(always)]
 pub fn contact<T: Number>(
     pair: Pair<T>,
