@@ -60,7 +60,7 @@ impl<'g> Step<'g> {
     pub fn new(remainder: Signal<'g>, divisor: Signal<'g>, index: u32) -> Self {
         let width = divisor.width();
         let difference = (remainder - divisor.extend(width + 1)).named(&format!("difference_{index}"));
-        let negative = difference.msb();
+        let negative = difference.msb().named(&format!("borrow_{index}"));
         Self {
             digit: (!negative).named(&format!("digit_{index}")),
             remainder: negative

@@ -20,6 +20,7 @@ pub fn mul<'g>(a: Signal<'g>, b: Signal<'g>, format: Format) -> Signal<'g> {
         .plus(b_exponent)
         .named("exponent_sum")
         .offset(-i64::from(format.bias()))
+        .named("exponent_below_two")
         .plus_bit(at_least_two)
         .named("product_exponent");
 

@@ -47,7 +47,7 @@ fn root(radicand: Signal<'_>, count: u32) -> (Signal<'_>, Signal<'_>) {
         let one = graph.constant(2, 1);
         let trial = root.concat(one).extend(shifted.width());
         let difference = (shifted - trial).named(&format!("difference_{index}"));
-        let negative = difference.msb();
+        let negative = difference.msb().named(&format!("borrow_{index}"));
         let width = shifted.width() - 1;
         root = root.concat(!negative).named(&format!("root_{index}"));
         remainder = negative.select(shifted.low(width), difference.low(width)).named(&format!("remainder_{index}"));

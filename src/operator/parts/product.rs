@@ -13,11 +13,11 @@ const TILE: u32 = 18;
 pub fn product<'g>(a: Signal<'g>, b: Signal<'g>) -> Signal<'g> {
     let width = a.width();
     let (a, b, digit) = (digits(a), digits(b), digit_width(width));
-    let mut rows = vec![Row { offset: 0, bits: row(&a, &b, 0) }];
+    let mut rows = vec![Row { offset: 0, bits: row(&a, &b, [0, 0]) }];
     for distance in 1..a.len() {
         let offset = distance as u32 * digit;
-        rows.push(Row { offset, bits: row(&a, &b, distance) });
-        rows.push(Row { offset, bits: row(&b, &a, distance) });
+        rows.push(Row { offset, bits: row(&a, &b, [distance, 0]) });
+        rows.push(Row { offset, bits: row(&a, &b, [0, distance]) });
     }
     total(rows, 2 * width)
 }
@@ -27,9 +27,9 @@ pub fn product<'g>(a: Signal<'g>, b: Signal<'g>) -> Signal<'g> {
 pub fn square(a: Signal<'_>) -> Signal<'_> {
     let width = a.width();
     let (a, digit) = (digits(a), digit_width(width));
-    let mut rows = vec![Row { offset: 0, bits: row(&a, &a, 0) }];
+    let mut rows = vec![Row { offset: 0, bits: row(&a, &a, [0, 0]) }];
     for distance in 1..a.len() {
-        rows.push(Row { offset: distance as u32 * digit + 1, bits: row(&a, &a, distance) });
+        rows.push(Row { offset: distance as u32 * digit + 1, bits: row(&a, &a, [distance, 0]) });
     }
     total(rows, 2 * width)
 }
@@ -51,17 +51,21 @@ fn digits(value: Signal<'_>) -> Vec<Signal<'_>> {
     (0..width).step_by(digit.max(1) as usize).map(|low| value.slice(low, digit.min(width - low))).collect()
 }
 
-/// The products of digits of which `a`'s is `distance` places higher than `b`'s, side by side.
-fn row<'g>(a: &[Signal<'g>], b: &[Signal<'g>], distance: usize) -> Signal<'g> {
-    let tiles: Vec<_> = a[distance..].iter().zip(b).map(|(&a, &b)| (a * b).named("tile")).rev().collect();
-    Signal::join(&tiles).named("tiles")
+/// The products of digits from the `first` of each factor on, side by side.
+fn row<'g>(a: &[Signal<'g>], b: &[Signal<'g>], first: [usize; 2]) -> Signal<'g> {
+    let [i, j] = first;
+    let pairs = a[i..].iter().zip(&b[j..]).enumerate();
+    let tiles: Vec<_> = pairs.map(|(k, (&a, &b))| (a * b).named(&format!("tile_{}_{}", i + k, j + k))).collect();
+    let row: Vec<_> = tiles.into_iter().rev().collect();
+    Signal::join(&row).named(&format!("tiles_{i}_{j}"))
 }
 
-/// Sum of the rows: neighbours first, so that the tree is as deep as the logarithm of their number.
+/// Sum of the rows in a tree: neighbours first, and the highest ones, which leave most of the bits alone.
 fn total<'g>(mut rows: Vec<Row<'g>>, width: u32) -> Signal<'g> {
     rows.sort_by_key(|row| row.offset);
     while rows.len() > 1 {
-        rows = rows.chunks(2).map(|pair| if let [a, b] = *pair { sum(a, b, width) } else { pair[0] }).collect();
+        let pairs = rows.rchunks(2).rev();
+        rows = pairs.map(|pair| if let [a, b] = *pair { sum(a, b, width) } else { pair[0] }).collect();
     }
     let Row { offset, bits } = rows[0];
     bits.append_zeros(offset).extend(width)

@@ -71,8 +71,8 @@ pub fn round<'g>(format: Format, value: Unrounded<'g>) -> Rounded<'g> {
             (field, fraction, guard, sticky) = denormalise(format, value);
         } else {
             // Just below the smallest normal number a result can still be rounded up to it.
-            let is_saved = fraction.all() & rounds_up(fraction, guard, sticky);
-            underflow = (value.exponent.is_negative() | (value.exponent.is(0) & !is_saved)).named("underflow");
+            let becomes_normal = (fraction.all() & rounds_up(fraction, guard, sticky)).named("becomes_normal");
+            underflow = (value.exponent.is_negative() | (value.exponent.is(0) & !becomes_normal)).named("underflow");
         }
     }
     Rounded { magnitude: nearest_even(field, fraction, guard, sticky), overflow, underflow }
