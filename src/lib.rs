@@ -15,3 +15,5 @@ pub mod pairs;
 pub mod pipeline;
 pub mod report;
 pub mod tools;
+#[cfg(feature = "cosim")]
+pub mod verify;

@@ -16,9 +16,10 @@ const HOUSE: &[(&str, &[&str])] = &[
     ("afu", &["config", "pipeline", "operator", "kernel", "hdl", "number"]),
     ("link", &["number"]),
     ("cosim", &["config", "afu", "link", "pairs", "kernel", "number"]),
+    ("verify", &["cosim", "link", "pairs", "afu", "config", "kernel", "number"]),
     ("tools", &["cosim"]),
-    ("report", &["tools", "cosim", "config", "afu", "link", "pairs", "kernel", "number"]),
-    ("sweep", &["report", "cosim", "config", "afu", "link", "pairs", "kernel", "number"]),
+    ("report", &["verify", "tools", "cosim", "config", "afu", "link", "pairs", "kernel", "number"]),
+    ("sweep", &["report", "verify", "cosim", "config", "afu", "link", "pairs", "kernel", "number"]),
 ];
 
 /// Longer than this, a file is two things.

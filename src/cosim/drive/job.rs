@@ -130,6 +130,8 @@ pub struct Outcome {
     pub limit_cycles: f64,
     /// The destination lines that were written, in order; a line that was not is nothing.
     pub lines: Vec<Option<Line>>,
+    /// For each destination line the cycle of the job in which its last write was accepted.
+    pub write_cycles: Vec<Option<u64>>,
 }
 
 impl Outcome {
@@ -164,6 +166,7 @@ pub(super) struct Running {
     pub(super) last_sign: u64,
     first_data: Option<u64>,
     first_write: Option<u64>,
+    write_cycles: Vec<Option<u64>>,
 }
 
 impl Running {
@@ -177,6 +180,7 @@ impl Running {
             last_sign: cycle,
             first_data: None,
             first_write: None,
+            write_cycles: vec![None; usize::try_from(job.destination_lines).unwrap_or(0)],
         }
     }
 
@@ -187,6 +191,12 @@ impl Running {
         }
         if requests.write.is_some() {
             self.first_write.get_or_insert(cycle);
+        }
+        if let Some(write) = requests.write.filter(|_| replies.write_ready) {
+            let line = write.address.wrapping_sub(self.destination.start);
+            if let Some(written) = usize::try_from(line).ok().and_then(|line| self.write_cycles.get_mut(line)) {
+                *written = Some(cycle - self.started);
+            }
         }
         let accepted = requests.read.is_some() && replies.read_ready || requests.write.is_some() && replies.write_ready;
         if accepted || replies.read.is_some() || replies.write.is_some() {
@@ -213,6 +223,7 @@ impl Running {
             bytes_written: writes * LINE_BYTES,
             limit_cycles: link.model().limit_cycles(reads, writes),
             lines: self.destination.map(|address| link.memory.get(address).copied()).collect(),
+            write_cycles: self.write_cycles,
         }
     }
 }

@@ -1,0 +1,176 @@
+//! An AFU ready for jobs.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use super::check::{Verdict, check};
+use super::error::VerifyError;
+use super::lines;
+use crate::afu::{Afu, Layout, Spec};
+use crate::config::{self, Config};
+use crate::cosim::{CosimError, Driver, File, Job, Model, Source, Trace};
+use crate::kernel::{PairRecord, Reference};
+use crate::link::{Link, LinkModel};
+
+/// The top module of every AFU.
+const TOP: &str = "contact_afu";
+/// Its parameter that says how many SCPUs.
+const SCPUS: &str = "SCPUS";
+/// Bits of a line: what links carry.
+const LINE_BITS: u32 = 512;
+/// Cycles between two calls for progress.
+const PROGRESS_CYCLES: u64 = 4096;
+
+/// Where a model came from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Origin {
+    /// Part of this program, made of the very Verilog that was asked for.
+    BuiltIn,
+    /// Built, or found in the cache: the library.
+    Library(PathBuf),
+}
+
+/// A simulated AFU with the reference it is compared with. Any number of jobs can be run on it, each from reset.
+#[derive(Clone, Debug)]
+pub struct Bench {
+    config: Config,
+    source: Source,
+    model: Model,
+    layout: Layout,
+    reference: Reference,
+}
+
+impl Bench {
+    /// Generates the Verilog of a configuration and makes a model of it: the built-in one if that is made of the same
+    /// Verilog, else one from the cache or from Verilator.
+    ///
+    /// # Errors
+    /// When the configuration cannot be generated, a tool is missing, or one refuses.
+    pub fn new(config: &Config) -> Result<Self, VerifyError> {
+        Self::traced(config, Trace::Off)
+    }
+
+    /// [`Bench::new`] with a model that can write waveforms.
+    ///
+    /// # Errors
+    /// As `new`.
+    pub fn traced(config: &Config, trace: Trace) -> Result<Self, VerifyError> {
+        Self::of(config, generated(config)?, |source| Model::build(source, trace), trace == Trace::Off)
+    }
+
+    /// [`Bench::new`] with a model from `cache`, a folder for models, even where the built-in one would serve: what a
+    /// build takes can then be measured.
+    ///
+    /// # Errors
+    /// As `new`.
+    pub fn cached_in(config: &Config, cache: &Path) -> Result<Self, VerifyError> {
+        Self::of(config, generated(config)?, |source| Model::build_in(source, Trace::Off, cache), false)
+    }
+
+    /// The Verilog that lies in `folder`, which `afu rtl` wrote, edited or not; `scpus` overrides its manifest's number.
+    ///
+    /// # Errors
+    /// As `new`, and when the folder's manifest or file list cannot be read.
+    pub fn of_folder(folder: &Path, scpus: Option<u32>, trace: Trace) -> Result<Self, VerifyError> {
+        let in_folder = config::read(folder)?;
+        let config = Config { scpus: scpus.unwrap_or(in_folder.scpus), ..in_folder.clone() };
+        Spec::from(config.clone()).check().map_err(crate::afu::BuildError::from)?;
+        let source = with_scpus(Source::from_folder(folder, TOP)?, &config, in_folder.scpus);
+        Self::of(&config, source, |source| Model::build(source, trace), trace == Trace::Off)
+    }
+
+    fn of(
+        config: &Config,
+        source: Source,
+        build: impl FnOnce(&Source) -> Result<Model, CosimError>,
+        built_in_serves: bool,
+    ) -> Result<Self, VerifyError> {
+        let is_same = |model: &Model| source.parameters().is_empty() && model.rtl_sha256() == source.sha256();
+        let model = match Model::built_in().filter(|model| built_in_serves && is_same(model)) {
+            Some(model) => model,
+            None => build(&source)?,
+        };
+        Ok(Self {
+            config: config.clone(),
+            source,
+            model,
+            layout: Layout::new(LINE_BITS, config.contact),
+            reference: Reference::new(config.profile.format(), config.contact),
+        })
+    }
+
+    /// The AFU's configuration.
+    pub fn config(&self) -> &Config {
+        &self.config
+    }
+
+    /// Where the model came from.
+    pub fn origin(&self) -> Origin {
+        self.model.library().map_or(Origin::BuiltIn, |path| Origin::Library(path.to_owned()))
+    }
+
+    /// SHA-256 of the Verilog, in hex.
+    pub fn rtl_sha256(&self) -> String {
+        self.source.sha256()
+    }
+
+    /// Sends pairs through the AFU over a link and compares what comes back. `seed` decides the link's randomness and
+    /// what the registers hold that no reset reaches.
+    ///
+    /// # Errors
+    /// When the job does not end, or the AFU breaks the line port's protocol. Mismatches are no error.
+    pub fn run(&self, pairs: &[PairRecord], link: &LinkModel, seed: u64) -> Result<Verdict, VerifyError> {
+        self.run_with(pairs, link, seed, None, |_| {})
+    }
+
+    /// [`Bench::run`] that writes a waveform and tells, now and then, how many pairs' contacts are written.
+    ///
+    /// # Errors
+    /// As `run`, and when the waveform cannot be written.
+    pub fn run_with(
+        &self,
+        pairs: &[PairRecord],
+        link: &LinkModel,
+        seed: u64,
+        waveform: Option<&Path>,
+        mut progress: impl FnMut(u64),
+    ) -> Result<Verdict, VerifyError> {
+        let count = u32::try_from(pairs.len()).map_err(|_| VerifyError::Pairs(pairs.len()))?;
+        let source = lines::pack(&self.layout, pairs);
+        let mut job = Job::new(&source, count, self.layout.destination_lines(u64::from(count)));
+        job.scpus = Some(self.config.scpus);
+
+        let begun = Instant::now();
+        let instance = self.model.instance(seed)?;
+        if let Some(path) = waveform {
+            let half_period_ps = (500.0 * self.config.cycle_ns()).round() as u64;
+            instance.trace_open(path, half_period_ps).map_err(CosimError::from)?;
+        }
+        let mut driver = Driver::new(&instance, Link::new(link.clone(), seed)?)?;
+        driver.start(&job)?;
+        while !driver.step()? {
+            if driver.cycle().is_multiple_of(PROGRESS_CYCLES) {
+                progress(driver.link().traffic().write_responses * u64::from(self.layout.contacts_per_line()));
+            }
+        }
+        let outcome = driver.finish()?;
+        if waveform.is_some() {
+            instance.trace_close().map_err(CosimError::from)?;
+        }
+        let seconds = begun.elapsed().as_secs_f64();
+        Ok(check(&self.layout, pairs, &self.reference.run_all(pairs), outcome, seconds))
+    }
+}
+
+/// The Verilog of a configuration. The number of SCPUs is left to the parameter, so that models share what they can.
+fn generated(config: &Config) -> Result<Source, VerifyError> {
+    let scpus = Config::default().scpus;
+    Spec::from(config.clone()).check().map_err(crate::afu::BuildError::from)?;
+    let afu = Afu::generate(Spec::from(Config { scpus, ..config.clone() }))?;
+    let files = afu.verilog().into_iter().map(|(name, text)| File { name, text }).collect();
+    Ok(with_scpus(Source::new(TOP, files), config, scpus))
+}
+
+fn with_scpus(source: Source, config: &Config, default: u32) -> Source {
+    if config.scpus == default { source } else { source.parameter(SCPUS, config.scpus.into()) }
+}

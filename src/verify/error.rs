@@ -1,0 +1,30 @@
+//! Why there is no verdict.
+
+use crate::afu::BuildError;
+use crate::config::ReadError;
+use crate::cosim::CosimError;
+use crate::cosim::drive::DriveError;
+use crate::link::LinkError;
+
+/// Why there is no verdict. (A mismatch is a verdict.)
+#[derive(Debug, thiserror::Error)]
+pub enum VerifyError {
+    /// The configuration cannot be generated.
+    #[error(transparent)]
+    Generate(#[from] BuildError),
+    /// The folder's manifest cannot be read.
+    #[error(transparent)]
+    Manifest(#[from] ReadError),
+    /// There is no model: a tool is missing, or refused the Verilog.
+    #[error(transparent)]
+    Model(#[from] CosimError),
+    /// The link model is not one.
+    #[error(transparent)]
+    Link(#[from] LinkError),
+    /// The job has no end, or the AFU broke the line port's protocol.
+    #[error(transparent)]
+    Drive(#[from] DriveError),
+    /// More pairs than a job's count can say.
+    #[error("{0} pairs: a job has at most 4294967295")]
+    Pairs(usize),
+}

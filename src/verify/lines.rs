@@ -1,0 +1,155 @@
+//! Records to lines and back, by the layout.
+
+use crate::afu::Layout;
+use crate::kernel::{ContactRecord, Flow, PairRecord};
+use crate::link::Line;
+
+/// Bits of a word.
+const WORD: usize = 32;
+
+/// The source lines of pairs; what is unused of the last is zero.
+pub(super) fn pack(layout: &Layout, pairs: &[PairRecord]) -> Vec<Line> {
+    let words = layout.pair_bits() as usize / WORD;
+    let line = |pairs: &[PairRecord]| {
+        let mut line: Line = [0; 16];
+        for (slot, pair) in line.chunks_mut(words).zip(pairs) {
+            slot[..pair.0.len()].copy_from_slice(&pair.0);
+        }
+        line
+    };
+    pairs.chunks(layout.pairs_per_line() as usize).map(line).collect()
+}
+
+/// Destination lines as records.
+pub(super) struct Contacts<'a> {
+    layout: &'a Layout,
+    words: Vec<usize>,
+    lines: &'a [Option<Line>],
+}
+
+impl<'a> Contacts<'a> {
+    pub(super) fn new(layout: &'a Layout, lines: &'a [Option<Line>]) -> Self {
+        Self { layout, words: layout.contact_words(), lines }
+    }
+
+    /// The line and the place in it of a pair's contact.
+    fn place(&self, number: usize) -> (usize, usize) {
+        let per_line = self.layout.contacts_per_line() as usize;
+        (number / per_line, number % per_line)
+    }
+
+    /// The line of a pair's contact.
+    pub(super) fn line(&self, number: usize) -> usize {
+        self.place(number).0
+    }
+
+    /// A pair's contact; nothing if its line was never written. Words that are not in the record are zero. Of one-bit
+    /// records only a contact is known: it reads as real or fake.
+    pub(super) fn get(&self, number: usize) -> Option<ContactRecord> {
+        let (line, place) = self.place(number);
+        let line = self.lines.get(line)?.as_ref()?;
+        let mut record = ContactRecord::default();
+        if self.words.is_empty() {
+            let hit = line[place / WORD] >> (place % WORD) & 1 == 1;
+            record.0[7] = if hit { Flow::Real } else { Flow::Fake }.flags();
+            return Some(record);
+        }
+        let first = place * self.layout.contact_bits() as usize / WORD;
+        for (slot, &word) in self.words.iter().enumerate() {
+            record.0[word] = line[first + slot];
+        }
+        Some(record)
+    }
+
+    /// What of the reference's record is in destination memory, in the same form as [`Contacts::get`] gives it.
+    pub(super) fn seen(&self, record: ContactRecord) -> ContactRecord {
+        let mut seen = ContactRecord::default();
+        if self.words.is_empty() {
+            seen.0[7] = if record.is_contact() { Flow::Real } else { Flow::Fake }.flags();
+        }
+        for &word in &self.words {
+            seen.0[word] = record.0[word];
+        }
+        seen
+    }
+
+    /// Whether everything behind the last of `count` contacts is zero, in each slot and at the end of the last line.
+    pub(super) fn rest_is_zero(&self, count: usize) -> bool {
+        let bits = self.layout.contact_bits() as usize;
+        let used = if self.words.is_empty() { 1 } else { self.words.len() * WORD };
+        let per_line = self.layout.contacts_per_line() as usize;
+        let clean = |(number, line): (usize, &Option<Line>)| {
+            let Some(line) = line else { return true };
+            let mut rest = *line;
+            for place in 0..per_line.min(count - (number * per_line).min(count)) {
+                for bit in place * bits..place * bits + used {
+                    rest[bit / WORD] &= !(1 << (bit % WORD));
+                }
+            }
+            rest == [0; 16]
+        };
+        self.lines.iter().enumerate().all(clean)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::Fields;
+
+    fn records(count: u32) -> Vec<ContactRecord> {
+        let flow = |i: u32| Flow::ALL[i as usize % 4].flags();
+        (0..count).map(|i| ContactRecord([i, i + 1, i + 2, i + 3, i + 4, i + 5, i + 6, flow(i)])).collect()
+    }
+
+    /// Lines written word by word and bit by bit, as the design words it.
+    fn lines(layout: &Layout, fields: Fields, records: &[ContactRecord]) -> Vec<Option<Line>> {
+        let mut lines = vec![[0; 16]; records.len().div_ceil(layout.contacts_per_line() as usize)];
+        let bits = layout.contact_bits() as usize;
+        let per_line = layout.contacts_per_line() as usize;
+        for (i, record) in records.iter().enumerate() {
+            let at = i % per_line * bits;
+            if fields == Fields::HIT {
+                lines[i / per_line][at / 32] |= (record.flags() & 1) << (at % 32);
+                continue;
+            }
+            let asked = [(0..3, fields.position), (3..6, fields.normal), (6..7, fields.depth), (7..8, true)];
+            let words = asked.into_iter().filter(|(_, asked)| *asked).flat_map(|(words, _)| words);
+            for (slot, word) in words.enumerate() {
+                lines[i / per_line][at / 32 + slot] = record.0[word];
+            }
+        }
+        lines.into_iter().map(Some).collect()
+    }
+
+    #[test]
+    fn every_layout_reads_back_what_it_holds() {
+        for mask in 0..8 {
+            let fields = Fields { depth: mask & 1 != 0, normal: mask & 2 != 0, position: mask & 4 != 0 };
+            let layout = Layout::new(512, fields);
+            let records = records(1025);
+            let mut lines = lines(&layout, fields, &records);
+            let contacts = Contacts::new(&layout, &lines);
+            for (i, record) in records.iter().enumerate() {
+                assert_eq!(contacts.get(i), Some(contacts.seen(*record)), "{fields}, {i}");
+            }
+            assert!(contacts.rest_is_zero(records.len()), "{fields}");
+            assert!(!contacts.rest_is_zero(records.len() - 2), "{fields}: a record behind the last is seen");
+            let last = lines.len() - 1;
+            lines[last].as_mut().expect("written")[15] |= 1 << 31;
+            assert!(!Contacts::new(&layout, &lines).rest_is_zero(records.len()), "{fields}");
+            lines[0] = None;
+            assert_eq!(Contacts::new(&layout, &lines).get(0), None);
+        }
+    }
+
+    #[test]
+    fn pairs_lie_two_a_line() {
+        let layout = Layout::new(512, Fields::ALL);
+        let pairs: Vec<_> = (0..3).map(|i| PairRecord(std::array::from_fn(|word| 8 * i + word as u32))).collect();
+        let lines = pack(&layout, &pairs);
+        assert_eq!(lines[0], std::array::from_fn(|word| word as u32));
+        assert_eq!(lines[1], std::array::from_fn(|word| if word < 8 { 16 + word as u32 } else { 0 }));
+        assert!(pack(&layout, &[]).is_empty());
+    }
+}

@@ -1,0 +1,10 @@
+//! Pairs through a simulated AFU, and every bit of what comes back compared with the reference kernel.
+
+mod bench;
+mod check;
+mod error;
+mod lines;
+
+pub use bench::{Bench, Origin};
+pub use check::{Mismatch, Verdict};
+pub use error::VerifyError;
