@@ -7,7 +7,7 @@ use contact_afu::hdl::{DelayModel, Evaluator, Module, Op, Pin};
 use contact_afu::number::{Format, Subnormals};
 use contact_afu::operator::{Operator, build, pipelined};
 use std::sync::Arc;
-use support::Words;
+use support::{Words, corner};
 
 const ARITHMETIC: [Operator; 10] = [
     Operator::Add,
@@ -80,21 +80,6 @@ fn exhaust(operator: Operator, format: Format) {
         for b in 0..if operator.operands() == 2 { words } else { 1 } {
             bench.check(a, b);
         }
-    }
-}
-
-/// Two operands at a corner of this operator: near cancellation, near a tie, near the border of a decision.
-fn corner(operator: Operator, format: Format, words: &mut Words, count: u64) -> (u128, u128) {
-    let (a, b) = words.two();
-    let mask = format.sign_mask() | (format.sign_mask() - 1);
-    let near = |word: u128| (word + u128::from(count >> 2 & 7)).wrapping_sub(3) & mask;
-    match (count & 3, operator) {
-        (0, Operator::Add) => (a, near(a ^ format.sign_mask())),
-        (0, Operator::Sub | Operator::Greater | Operator::AtMost) => (a, near(a)),
-        (0 | 1, Operator::RootExceeds) => (near(Operator::Mul.twin(format, b, b)), b & !format.sign_mask()),
-        (0, Operator::Div) => (near(Operator::Mul.twin(format, a, b)), b),
-        (0, Operator::Sqrt) => (near(Operator::Mul.twin(format, a, a)), b),
-        _ => (a, b),
     }
 }
 

@@ -30,7 +30,8 @@ impl Afu {
         files
     }
 
-    /// SHA-256 over the Verilog's names and texts, in order: what a built model is known by.
+    /// SHA-256 over the Verilog's names and texts, in order: what a built model is known by (`cosim` computes the same
+    /// of the files it is given).
     pub fn rtl_sha256(&self) -> String {
         rtl_sha256(self.verilog().iter().map(|(name, text)| (name.as_str(), text.as_str())))
     }
@@ -113,14 +114,12 @@ impl Afu {
     }
 }
 
-/// SHA-256 over names and texts in order, as 64 hexadecimal digits.
-pub fn rtl_sha256<'a>(files: impl Iterator<Item = (&'a str, &'a str)>) -> String {
+/// SHA-256 of files, names, lengths and order included, as 64 hexadecimal digits.
+fn rtl_sha256<'a>(files: impl Iterator<Item = (&'a str, &'a str)>) -> String {
     let mut hash = Sha256::new();
-    for (name, text) in files {
-        hash.update(name.as_bytes());
-        hash.update([0]);
-        hash.update(text.as_bytes());
-        hash.update([0]);
+    for part in files.flat_map(|(name, text)| [name, text]) {
+        hash.update((part.len() as u64).to_le_bytes());
+        hash.update(part.as_bytes());
     }
     hex(&hash.finalize())
 }

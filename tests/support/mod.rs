@@ -1,6 +1,8 @@
 //! What several tests share: words that reach the corners, and work split over two threads.
 #![allow(dead_code)] // each test uses its own part
 
+use contact_afu::number::Format;
+use contact_afu::operator::Operator;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use std::thread;
@@ -56,4 +58,19 @@ pub fn halves(count: u64, work: impl Fn(std::ops::Range<u64>) + Sync) {
         scope.spawn(|| work(0..count / 2));
         work(count / 2..count);
     });
+}
+
+/// Two operands at a corner of this operator: near cancellation, near a tie, near the border of a decision.
+pub fn corner(operator: Operator, format: Format, words: &mut Words, count: u64) -> (u128, u128) {
+    let (a, b) = words.two();
+    let mask = format.sign_mask() | (format.sign_mask() - 1);
+    let near = |word: u128| (word + u128::from(count >> 2 & 7)).wrapping_sub(3) & mask;
+    match (count & 3, operator) {
+        (0, Operator::Add) => (a, near(a ^ format.sign_mask())),
+        (0, Operator::Sub | Operator::Greater | Operator::AtMost) => (a, near(a)),
+        (0 | 1, Operator::RootExceeds) => (near(Operator::Mul.twin(format, b, b)), b & !format.sign_mask()),
+        (0, Operator::Div) => (near(Operator::Mul.twin(format, a, b)), b),
+        (0, Operator::Sqrt) => (near(Operator::Mul.twin(format, a, a)), b),
+        _ => (a, b),
+    }
 }

@@ -9,7 +9,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
-use super::{Error, PREFIX, Tool, Trace};
+use super::{Error, Tool, Trace};
 
 /// Never 0, whatever the Cargo profile: a model at -O0 ran 17 times slower, and above 1 only its compilation slows.
 const OPTIMISATION: u32 = 1;
@@ -211,9 +211,9 @@ impl Classes {
 /// compiling this much.
 const UNIT_BYTES: u64 = 150_000;
 
-/// Joins many small C++ files into few translation units of about equal size (which `#include` them), the harness in the
-/// first; returns the units.
-pub(super) fn bundle(folder: &Path, names: &[String]) -> Result<Vec<PathBuf>, Error> {
+/// Joins many small C++ files into few translation units of about equal size (which `#include` them), `first` at the
+/// head of the first; returns the units.
+pub(super) fn bundle(folder: &Path, names: &[String], prefix: &str, first: &str) -> Result<Vec<PathBuf>, Error> {
     let mut files = Vec::new();
     for name in names {
         let path = folder.join(format!("{name}.cpp"));
@@ -224,7 +224,7 @@ pub(super) fn bundle(folder: &Path, names: &[String]) -> Result<Vec<PathBuf>, Er
     let total: u64 = files.iter().map(|(bytes, _)| bytes).sum();
     let units = usize::try_from(total.div_ceil(UNIT_BYTES)).unwrap_or(1).clamp(1, files.len());
     let mut filled = vec![(0u64, String::new()); units];
-    filled[0].1.push_str("#include \"harness.cpp\"\n");
+    filled[0].1.push_str(first);
     for (bytes, name) in files {
         if let Some(unit) = filled.iter_mut().min_by_key(|(filled, _)| *filled) {
             unit.0 += bytes;
@@ -233,7 +233,7 @@ pub(super) fn bundle(folder: &Path, names: &[String]) -> Result<Vec<PathBuf>, Er
     }
     let mut paths = Vec::new();
     for (index, (_, text)) in filled.iter().enumerate() {
-        let path = folder.join(format!("{PREFIX}_unit_{index}.cpp"));
+        let path = folder.join(format!("{prefix}_unit_{index}.cpp"));
         super::write(&path, text)?;
         paths.push(path);
     }

@@ -6,6 +6,7 @@
 // Each of the two users leaves some of it unused.
 #![allow(dead_code)]
 
+mod block;
 mod cache;
 mod compile;
 mod error;
@@ -78,7 +79,7 @@ pub struct Design<'a> {
 }
 
 /// Changes when the commands below change in a way the other parts of a model's key don't show.
-const RECIPE: &str = "contact-afu model 1";
+const RECIPE: &str = "contact-afu model 2";
 
 /// The class Verilator makes of the top module; `tb/harness.cpp` names it.
 const PREFIX: &str = "Vmodel";
@@ -125,26 +126,26 @@ pub fn read_file_list(list: &Path) -> Result<Vec<File>, Error> {
 
 /// The key a model is cached by: everything that could change its bytes.
 fn key(design: &Design, tool: &Tool, compiler: &Compiler, kind: &str) -> String {
+    let (rtl, arguments) = (rtl_sha256(design.files), verilator_arguments(design, design.files).join(" "));
+    let harness = [design.harness.header, design.harness.source];
+    key_of(&[RECIPE, kind, tool.sha256(), compiler.identity(), &rtl, harness[0], harness[1], &arguments])
+}
+
+fn key_of(parts: &[&str]) -> String {
     let mut hash = Sha256::new();
-    let mut add = |text: &str| {
-        hash.update((text.len() as u64).to_le_bytes());
-        hash.update(text.as_bytes());
-    };
-    add(RECIPE);
-    add(kind);
-    add(tool.sha256());
-    add(compiler.identity());
-    add(&rtl_sha256(design.files));
-    add(design.harness.header);
-    add(design.harness.source);
-    verilator_arguments(design).iter().for_each(|argument| add(argument));
+    for part in parts {
+        hash.update((part.len() as u64).to_le_bytes());
+        hash.update(part.as_bytes());
+    }
     hex(&hash.finalize())
 }
 
-fn verilator_arguments(design: &Design) -> Vec<String> {
-    // Lint errors stay errors. --output-split bounds the time one C++ file takes, so that all cores have work.
-    let fixed = ["--cc", "--no-timing", "-O3", "--output-split", "20000", "--output-split-cfuncs", "2000"];
-    let mut arguments: Vec<String> = fixed.map(str::to_owned).to_vec();
+/// Lint errors stay errors. --output-split bounds the time one C++ file takes, so that all cores have work.
+const FIXED_ARGUMENTS: [&str; 7] =
+    ["--cc", "--no-timing", "-O3", "--output-split", "20000", "--output-split-cfuncs", "2000"];
+
+fn verilator_arguments(design: &Design, files: &[File]) -> Vec<String> {
+    let mut arguments: Vec<String> = FIXED_ARGUMENTS.map(str::to_owned).to_vec();
     arguments.extend(["--prefix".to_owned(), PREFIX.to_owned(), "--top-module".to_owned(), design.top.to_owned()]);
     match design.trace {
         Trace::Off => {}
@@ -152,7 +153,7 @@ fn verilator_arguments(design: &Design) -> Vec<String> {
         Trace::Fst => arguments.push("--trace-fst".to_owned()),
     }
     arguments.extend(design.parameters.iter().map(|(name, value)| format!("-G{name}={value}")));
-    arguments.extend(design.files.iter().map(|file| file.name.clone()));
+    arguments.extend(files.iter().map(|file| file.name.clone()));
     arguments
 }
 
@@ -206,9 +207,18 @@ fn objects(
     cache: &Path,
     aside: &Path,
 ) -> Result<Vec<PathBuf>, Error> {
+    let block = block::build(design, tool, compiler, cache)?;
+    let files = block.as_ref().map(|block| block::rest(design, block));
+    let design_files = files.as_deref().unwrap_or(design.files);
     let generated = aside.join("cpp");
-    verilate(design, tool, aside, &generated)?;
-    let classes = compile::Classes::read(&generated.join(format!("{PREFIX}_classes.mk")))?;
+    let arguments = verilator_arguments(design, design_files);
+    run_verilator(&Design { files: design_files, ..*design }, tool, aside, &generated, &arguments)?;
+    let mut classes = compile::Classes::read(&generated.join(format!("{PREFIX}_classes.mk")))?;
+    if let Some(block) = &block {
+        classes.runtime.extend(block.runtime.iter().cloned());
+        classes.runtime.sort();
+        classes.runtime.dedup();
+    }
 
     let ports = ports::read(&generated.join(format!("{PREFIX}.h")))?;
     write(&generated.join("ports.inc"), &ports::include_file(&ports))?;
@@ -219,13 +229,21 @@ fn objects(
     let mut flags = compile::model_flags(tool, design.trace);
     flags.push(format!("-DAFU_TRACE={}", design.trace.number()));
     flags.push(format!("-DAFU_RTL_SHA256=\"{}\"", rtl_sha256(design.files)));
-    let sources = compile::bundle(&generated, &classes.model)?;
+    let sources = compile::bundle(&generated, &classes.model, PREFIX, "#include \"harness.cpp\"\n")?;
     objects.extend(compiler.compile_all(&sources, &flags, &generated)?);
+    objects.extend(block.into_iter().flat_map(|block| block.objects));
     Ok(objects)
 }
 
-/// Runs Verilator on `design`, in a folder `rtl` inside `aside`, so that messages name files as the caller does.
-fn verilate(design: &Design, tool: &Tool, aside: &Path, generated: &Path) -> Result<(), Error> {
+/// Runs Verilator on the files of `design`, in a folder `rtl` inside `aside`, so that messages name files as the caller
+/// does.
+fn run_verilator(
+    design: &Design,
+    tool: &Tool,
+    aside: &Path,
+    generated: &Path,
+    arguments: &[String],
+) -> Result<(), Error> {
     let rtl = aside.join("rtl");
     for file in design.files {
         let path = rtl.join(&file.name);
@@ -234,7 +252,7 @@ fn verilate(design: &Design, tool: &Tool, aside: &Path, generated: &Path) -> Res
         write(&path, &file.text)?;
     }
     let mut command = tool.command();
-    command.current_dir(&rtl).arg("--Mdir").arg(generated).args(verilator_arguments(design));
+    command.current_dir(&rtl).arg("--Mdir").arg(generated).args(arguments);
     let output = command.output().map_err(|e| Error::io("run", tool.program(), e))?;
     if output.status.success() {
         return Ok(());
@@ -251,12 +269,8 @@ fn runtime(
     cache: &Path,
 ) -> Result<Vec<PathBuf>, Error> {
     let flags = compile::runtime_flags(tool, trace);
-    let mut hash = Sha256::new();
-    for part in [RECIPE, "runtime", tool.sha256(), compiler.identity(), &names.join(" "), &flags.join(" ")] {
-        hash.update((part.len() as u64).to_le_bytes());
-        hash.update(part.as_bytes());
-    }
-    let folder = cache::once(cache, &hex(&hash.finalize()), |aside| {
+    let parts = [RECIPE, "runtime", tool.sha256(), compiler.identity(), &names.join(" "), &flags.join(" ")];
+    let folder = cache::once(cache, &key_of(&parts), |aside| {
         let sources: Vec<PathBuf> = names.iter().map(|name| tool.include().join(format!("{name}.cpp"))).collect();
         compiler.compile_all(&sources, &flags, aside).map(drop)
     })?;

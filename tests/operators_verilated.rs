@@ -1,0 +1,110 @@
+//! Every operator's Verilog, cut for 200 MHz and compiled by Verilator, against its exact twin: streams of words, one
+//! a cycle, so that the pipeline is full all the time.
+//!
+//! The share in the usual run is ten million words an operator of two operands, and every significand of square root
+//! and reciprocal; `cargo test --test operators_verilated -- --ignored` runs a hundred million each.
+#![cfg(feature = "cosim")]
+
+mod support;
+
+use std::collections::VecDeque;
+
+use contact_afu::cosim::{File, Model, Source, Trace};
+use contact_afu::hdl::DelayModel;
+use contact_afu::hdl::verilog::{Style, emit};
+use contact_afu::number::Format;
+use contact_afu::operator::{Operator, pipelined};
+use support::{Words, corner};
+
+const MHZ: f64 = 200.0;
+
+/// Streams `words` through the compiled operator and compares each result `latency` cycles later.
+fn stream(model: &Model, operator: Operator, format: Format, latency: u32, words: impl Iterator<Item = (u128, u128)>) {
+    let instance = model.instance(1).unwrap();
+    let clock = instance.clock("clk").unwrap();
+    if instance.has_port("rst") {
+        let reset = instance.input("rst", 1).unwrap();
+        reset.set(1);
+        clock.tick(2).unwrap();
+        reset.set(0);
+    }
+    let a_port = instance.input("a", format.width()).unwrap();
+    let b_port = (operator.operands() == 2).then(|| instance.input("b", format.width()).unwrap());
+    let result = instance.output("result", operator.result_bits(format)).unwrap();
+    let mut pending: VecDeque<(u128, u128)> = VecDeque::new();
+    let mut check = |(a, b): (u128, u128)| {
+        let (got, wanted) = (u128::from(result.get()), operator.twin(format, a, b));
+        assert!(got == wanted, "{} of {a:#x}, {b:#x}: {got:#x}, not {wanted:#x}", operator.module_name(format));
+    };
+    for (a, b) in words {
+        a_port.set(a as u64);
+        if let Some(port) = b_port {
+            port.set(b as u64);
+        }
+        pending.push_back((a, b));
+        clock.tick(1).unwrap();
+        if pending.len() as u32 == latency {
+            pending.pop_front().map(&mut check).unwrap();
+        }
+    }
+    while let Some(oldest) = pending.pop_front() {
+        clock.tick(1).unwrap();
+        check(oldest);
+    }
+}
+
+fn build(operator: Operator, format: Format) -> (Model, u32) {
+    let module = pipelined(operator, format, &DelayModel::default(), MHZ).unwrap();
+    let file = File { name: format!("{}.v", module.name), text: emit(&module, &Style::default()) };
+    (Model::build(&Source::new(&module.name, vec![file]), Trace::Off).unwrap(), module.latency)
+}
+
+fn randomly(operator: Operator, format: Format, count: u64) {
+    let (model, latency) = build(operator, format);
+    support::halves(count, |part| {
+        let mut words = Words::new(format.exponent_bits(), format.fraction_bits(), part.start + 1);
+        stream(&model, operator, format, latency, part.map(|number| corner(operator, format, &mut words, number)));
+    });
+}
+
+const TWO_OPERANDS: [Operator; 3] = [Operator::Add, Operator::Mul, Operator::Div];
+const OTHERS: [Operator; 6] =
+    [Operator::Sub, Operator::Halve, Operator::Greater, Operator::AtMost, Operator::RootExceeds, Operator::Recip];
+
+#[test]
+fn ten_million_of_binary32() {
+    for operator in TWO_OPERANDS {
+        randomly(operator, Format::BINARY32, 10_000_000);
+    }
+    for operator in OTHERS {
+        randomly(operator, Format::BINARY32, 1_000_000);
+    }
+    randomly(Operator::Convert { to: Format::WIDE }, Format::BINARY32, 1_000_000);
+}
+
+#[test]
+fn a_million_of_wide() {
+    for operator in TWO_OPERANDS.into_iter().chain(OTHERS).chain([Operator::Sqrt]) {
+        randomly(operator, Format::WIDE, 1_000_000);
+    }
+    randomly(Operator::Convert { to: Format::BINARY32 }, Format::WIDE, 1_000_000);
+}
+
+#[test]
+fn every_significand_of_root_and_reciprocal() {
+    let one = 127_u128 << 23;
+    for (operator, exponents) in [(Operator::Sqrt, 2), (Operator::Recip, 1)] {
+        let (model, latency) = build(operator, Format::BINARY32);
+        support::halves(exponents << 23, |part| {
+            stream(&model, operator, Format::BINARY32, latency, part.map(|number| (one + u128::from(number), 0)));
+        });
+    }
+}
+
+#[test]
+#[ignore = "some minutes"]
+fn a_hundred_million_of_binary32() {
+    for operator in TWO_OPERANDS {
+        randomly(operator, Format::BINARY32, 100_000_000);
+    }
+}
