@@ -68,3 +68,20 @@ impl From<contact_afu::report::folder::Error> for Failure {
         Self::caused(kind, error)
     }
 }
+
+#[cfg(feature = "cosim")]
+impl From<contact_afu::verify::VerifyError> for Failure {
+    fn from(error: contact_afu::verify::VerifyError) -> Self {
+        use contact_afu::cosim::CosimError;
+        use contact_afu::verify::VerifyError;
+        let kind = match error {
+            VerifyError::Generate(error) => return error.into(),
+            VerifyError::Manifest(_) | VerifyError::Link(_) | VerifyError::Pairs(_) => Kind::Usage,
+            VerifyError::Model(CosimError::MissingTool { .. }) => Kind::Tool,
+            VerifyError::Model(CosimError::Source(_)) => Kind::Usage,
+            VerifyError::Drive(_) if error.is_the_job_s() => Kind::Unmet,
+            VerifyError::Model(_) | VerifyError::Drive(_) => Kind::Other,
+        };
+        Self::caused(kind, error)
+    }
+}

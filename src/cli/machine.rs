@@ -85,6 +85,32 @@ impl One {
     }
 }
 
+#[cfg(feature = "cosim")]
+impl One {
+    /// The number of SCPUs, when it alone may be given: the rest is decided by Verilog that is there already.
+    pub fn only_scpus(&self) -> Result<Option<u32>, Failure> {
+        let Self { scpus, interval, machine: m } = self;
+        let given = [
+            ("--interval", interval.is_some()),
+            ("--profile", m.profile.is_some()),
+            ("--contact", m.contact.is_some()),
+            ("--input", m.input.is_some()),
+            ("--results", m.results.is_some()),
+            ("--shell", m.shell.is_some()),
+            ("--clock", m.clock.is_some()),
+            ("--target", m.target.is_some()),
+            ("--config", m.config.is_some()),
+        ];
+        match given.into_iter().find(|(_, given)| *given) {
+            None => Ok(*scpus),
+            Some((option, _)) => {
+                let message = format!("{option} does not go with --rtl: the Verilog's own manifest says it");
+                Err(Failure::new(Kind::Usage, message))
+            }
+        }
+    }
+}
+
 /// `--interval`: a number of cycles; `auto` is for a link model to choose, which is not built yet.
 fn interval_of(text: &str) -> Result<u32, Failure> {
     text.parse().map_err(|_| {

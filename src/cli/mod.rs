@@ -1,11 +1,19 @@
 //! The command line: a file a subcommand, which reads options, calls the library and writes what it gives.
 
 mod completions;
+#[cfg(feature = "cosim")]
+mod cosim;
 mod doctor;
 mod failure;
+#[cfg(feature = "cosim")]
+mod link;
 mod machine;
 mod output;
 mod pairs;
+#[cfg(feature = "cosim")]
+mod progress;
+#[cfg(feature = "cosim")]
+mod replay;
 mod rtl;
 
 use std::process::ExitCode;
@@ -29,6 +37,8 @@ pub struct Program {
 enum Command {
     /// Write the Verilog of an AFU with file list, FuseSoC core, constraints, template and manifest
     Rtl(rtl::Rtl),
+    #[cfg(feature = "cosim")]
+    Cosim(cosim::Cosim),
     /// Write a named set of pairs to a file
     Pairs(pairs::Pairs),
     /// Say which tools are there, what needs them, and what installs the missing ones
@@ -48,6 +58,8 @@ pub fn main() -> ExitCode {
 fn run(program: &Program) -> Result<(), Failure> {
     match &program.command {
         Command::Rtl(options) => rtl::run(options),
+        #[cfg(feature = "cosim")]
+        Command::Cosim(options) => cosim::run(options),
         Command::Pairs(options) => pairs::run(options),
         Command::Doctor(options) => doctor::run(options),
         Command::Completions(options) => completions::run(options),

@@ -42,6 +42,14 @@ pub fn load(source: &str, seed: u64) -> Result<Vec<PairRecord>, LoadError> {
     if Set::is_name(source) { Ok(source.parse::<Set>()?.pairs(seed)) } else { Ok(read_pairs(Path::new(source))?) }
 }
 
+/// Whether `file` has a name that can be written: `.csv` or `.npy`.
+///
+/// # Errors
+/// When it has not.
+pub fn check_name(file: &Path) -> Result<(), FileError> {
+    kind(file).map(drop)
+}
+
 /// The pairs of a `.csv` or `.npy` file.
 ///
 /// # Errors

@@ -12,5 +12,5 @@ mod set;
 mod table;
 
 pub use error::FileError;
-pub use file::{LoadError, load, read_contacts, read_pairs, write_contacts, write_pairs};
+pub use file::{LoadError, check_name, load, read_contacts, read_pairs, write_contacts, write_pairs};
 pub use set::{Set, SetError};

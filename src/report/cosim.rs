@@ -18,6 +18,15 @@ pub struct Job {
     pub name: String,
     /// The counts.
     pub tally: Tally,
+    /// What else went wrong: unmet checks, or why the job did not finish. Empty in a good job.
+    pub failures: Vec<String>,
+}
+
+impl Job {
+    /// Whether every record is right and nothing else went wrong.
+    pub fn passed(&self) -> bool {
+        self.tally.mismatches == 0 && self.failures.is_empty()
+    }
 }
 
 /// Everything about a run of one or more jobs through one AFU.
@@ -35,8 +44,6 @@ pub struct Run {
     pub rtl_sha256: String,
     /// The link model.
     pub link: String,
-    /// Cycles from a pair at an SCPU to its contact.
-    pub latency_cycles: u32,
     /// The jobs, in the order they ran.
     pub jobs: Vec<Job>,
 }
@@ -50,8 +57,8 @@ struct Document<'a> {
     tools: &'a BTreeMap<String, String>,
     rtl_sha256: &'a str,
     config: &'a Config,
-    latency_cycles: u32,
     clock_mhz: f64,
+    passed: bool,
     #[serde(flatten)]
     all: Figures<'a>,
     jobs: Vec<JobFigures<'a>>,
@@ -60,6 +67,8 @@ struct Document<'a> {
 #[derive(Serialize)]
 struct JobFigures<'a> {
     name: &'a str,
+    passed: bool,
+    failures: &'a [String],
     #[serde(flatten)]
     figures: Figures<'a>,
 }
@@ -73,6 +82,7 @@ struct Figures<'a> {
     cycles: u64,
     cycles_per_pair: Option<f64>,
     ns_per_pair: Option<f64>,
+    latency_cycles: Option<u64>,
     link: LinkFigures<'a>,
     host_seconds: f64,
 }
@@ -92,6 +102,11 @@ impl Run {
         self.jobs.iter().fold(Tally::default(), |sum, job| sum.plus(&job.tally))
     }
 
+    /// Whether every job passed.
+    pub fn passed(&self) -> bool {
+        self.jobs.iter().all(Job::passed)
+    }
+
     /// The report for programs. The figures at the top are those of all jobs together; `jobs` has each.
     pub fn json(&self) -> impl Serialize {
         Document {
@@ -102,11 +117,15 @@ impl Run {
             tools: &self.tools,
             rtl_sha256: &self.rtl_sha256,
             config: &self.config,
-            latency_cycles: self.latency_cycles,
             clock_mhz: self.config.clock_mhz,
+            passed: self.passed(),
             all: self.figures(&self.total()),
-            jobs: self.jobs.iter().map(|j| JobFigures { name: &j.name, figures: self.figures(&j.tally) }).collect(),
+            jobs: self.jobs.iter().map(|job| self.job_figures(job)).collect(),
         }
+    }
+
+    fn job_figures<'a>(&'a self, job: &'a Job) -> JobFigures<'a> {
+        JobFigures { name: &job.name, passed: job.passed(), failures: &job.failures, figures: self.figures(&job.tally) }
     }
 
     fn figures(&self, tally: &Tally) -> Figures<'_> {
@@ -119,6 +138,7 @@ impl Run {
             cycles: tally.cycles,
             cycles_per_pair: tally.cycles_per_pair(),
             ns_per_pair: ns(tally.cycles_per_pair()),
+            latency_cycles: tally.latency_cycles,
             link: LinkFigures {
                 name: &self.link,
                 bytes_read: tally.bytes_read,
@@ -130,12 +150,10 @@ impl Run {
         }
     }
 
-    /// The table for people: a column a job.
+    /// The table for people: what ran, and a column a job.
     pub fn table(&self) -> String {
         let heading: Vec<&str> = [""].into_iter().chain(self.jobs.iter().map(|job| job.name.as_str())).collect();
         let ns = self.config.cycle_ns();
-        let ns_title = format!("ns a pair at {} MHz", self.config.clock_mhz);
-        let latency = self.latency_cycles;
         type Show<'a> = Box<dyn Fn(&Tally) -> String + 'a>;
         let rows: Vec<(&str, Show<'_>)> = vec![
             ("pairs", Box::new(|t| grouped(t.pairs))),
@@ -147,8 +165,11 @@ impl Run {
             ("mismatches with the reference", Box::new(|t| grouped(t.mismatches))),
             ("cycles", Box::new(|t| grouped(t.cycles))),
             ("cycles a pair", Box::new(|t| figure(t.cycles_per_pair(), 3))),
-            (&ns_title, Box::new(move |t| figure(t.cycles_per_pair().map(|c| c * ns), 2))),
-            ("latency of an SCPU, cycles", Box::new(move |_| grouped(latency.into()))),
+            ("ns a pair", Box::new(move |t| figure(t.cycles_per_pair().map(|c| c * ns), 2))),
+            (
+                "latency, first pairs to first contacts, cycles",
+                Box::new(|t| t.latency_cycles.map_or("-".into(), grouped)),
+            ),
             ("link allows, cycles a pair", Box::new(|t| figure(t.limit_per_pair(), 3))),
             ("share of that reached", Box::new(|t| percent(t.efficiency()))),
             ("simulated in, seconds", Box::new(|t| format!("{:.1}", t.host_seconds))),
@@ -156,7 +177,11 @@ impl Run {
         let row = |(title, show): (&str, Show<'_>)| {
             [title.to_owned()].into_iter().chain(self.jobs.iter().map(|job| show(&job.tally))).collect::<Vec<_>>()
         };
-        table(&heading, rows.into_iter().map(row))
+        let title = format!(
+            "{} SCPUs, {} arithmetic, {}, {} MHz; link {}, seed {}",
+            self.config.scpus, self.config.profile, self.config.contact, self.config.clock_mhz, self.link, self.seed
+        );
+        format!("{title}\n{}", table(&heading, rows.into_iter().map(row)))
     }
 }
 
@@ -176,13 +201,14 @@ mod tests {
             mismatches: 0,
             cycles: 6_300,
             limit_cycles: 6_177.0,
+            latency_cycles: Some(83),
             bytes_read: 395_328,
             bytes_written: 395_328,
             host_seconds: 0.25,
         };
         let jobs = vec![
-            Job { name: "diamond:10".into(), tally },
-            Job { name: "empty.csv".into(), tally: Tally { cycles: 9, ..Tally::default() } },
+            Job { name: "diamond:10".into(), tally, failures: vec![] },
+            Job { name: "empty.csv".into(), tally: Tally { cycles: 9, ..Tally::default() }, failures: vec![] },
         ];
         Run {
             config: Config::default(),
@@ -191,7 +217,6 @@ mod tests {
             tools: BTreeMap::new(),
             rtl_sha256: "00".into(),
             link: "ideal".into(),
-            latency_cycles: 60,
             jobs,
         }
     }
@@ -219,6 +244,7 @@ mod tests {
             "ns_per_pair",
             "link",
             "host_seconds",
+            "passed",
             "jobs",
         ] {
             assert!(keys.contains(&key), "{key} is missing from {keys:?}");
@@ -232,24 +258,25 @@ mod tests {
     #[test]
     fn the_table_has_a_column_a_job() {
         expect![[r#"
-            ────────────────────────────────────────────────────────
-                                             diamond:10   empty.csv
-            ────────────────────────────────────────────────────────
-             pairs                               12 354           0
-             contacts                             2 934           0
-               real                               2 934           0
-               grazing (same centre)                  0           0
-             no contact (fake)                    9 420           0
-             invalid pairs                            0           0
-             mismatches with the reference            0           0
-             cycles                               6 300           9
-             cycles a pair                        0.510           -
-             ns a pair at 200 MHz                  2.55           -
-             latency of an SCPU, cycles              60          60
-             link allows, cycles a pair           0.500           -
-             share of that reached               98.0 %           -
-             simulated in, seconds                  0.2         0.0
-            ────────────────────────────────────────────────────────"#]]
+            10 SCPUs, wide arithmetic, hit,depth,normal,position, 200 MHz; link ideal, seed 1
+            ─────────────────────────────────────────────────────────────────────────
+                                                              diamond:10   empty.csv
+            ─────────────────────────────────────────────────────────────────────────
+             pairs                                                12 354           0
+             contacts                                              2 934           0
+               real                                                2 934           0
+               grazing (same centre)                                   0           0
+             no contact (fake)                                     9 420           0
+             invalid pairs                                             0           0
+             mismatches with the reference                             0           0
+             cycles                                                6 300           9
+             cycles a pair                                         0.510           -
+             ns a pair                                              2.55           -
+             latency, first pairs to first contacts, cycles           83           -
+             link allows, cycles a pair                            0.500           -
+             share of that reached                                98.0 %           -
+             simulated in, seconds                                   0.2         0.0
+            ─────────────────────────────────────────────────────────────────────────"#]]
         .assert_eq(&run().table());
     }
 }

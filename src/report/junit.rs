@@ -22,12 +22,13 @@ pub fn xml(run: &Run, details: &[String]) -> Result<String, Error> {
     for (number, job) in run.jobs.iter().enumerate() {
         let tally = &job.tally;
         let mut status = TestCaseStatus::success();
-        if tally.mismatches > 0 {
+        if !job.passed() {
             status = TestCaseStatus::non_success(NonSuccessKind::Failure);
-            status.set_message(format!("{} of {} records differ from the reference", tally.mismatches, tally.pairs));
-            status.set_type("mismatch");
+            let differ = format!("{} of {} records differ from the reference", tally.mismatches, tally.pairs);
+            status.set_message(job.failures.first().unwrap_or(&differ).as_str());
+            status.set_type(if tally.mismatches > 0 { "mismatch" } else { "unmet" });
             let details = details.get(number).map_or("", String::as_str);
-            status.set_description(format!("{details}\nreplay: {}", run.replay));
+            status.set_description(format!("{}\n{details}\nreplay: {}", job.failures.join("\n"), run.replay));
         }
         let mut case = TestCase::new(job.name.as_str(), status);
         case.set_classname("afu.cosim");
@@ -47,9 +48,10 @@ mod tests {
 
     #[test]
     fn a_mismatch_is_a_failed_case() {
-        let job = |name: &str, mismatches| Job {
+        let job = |name: &str, mismatches, failures: &[&str]| Job {
             name: name.to_owned(),
             tally: Tally { pairs: 5, mismatches, ..Tally::default() },
+            failures: failures.iter().map(|text| (*text).to_owned()).collect(),
         };
         let run = Run {
             config: crate::config::Config::default(),
@@ -58,12 +60,12 @@ mod tests {
             tools: Default::default(),
             rtl_sha256: String::new(),
             link: "ideal".into(),
-            latency_cycles: 1,
-            jobs: vec![job("good.csv", 0), job("bad.csv", 2)],
+            jobs: vec![job("good.csv", 0, &[]), job("bad.csv", 2, &[]), job("late.csv", 0, &["did not finish"])],
         };
         let xml = xml(&run, &[String::new(), "pair 3 <differs>".into()]).expect("written");
-        assert!(xml.contains(r#"tests="2""#) && xml.contains(r#"failures="1""#), "{xml}");
+        assert!(xml.contains(r#"tests="3""#) && xml.contains(r#"failures="2""#), "{xml}");
         assert!(xml.contains("2 of 5 records differ") && xml.contains("pair 3 &lt;differs&gt;"), "{xml}");
+        assert!(xml.contains("did not finish"), "{xml}");
         assert!(xml.contains("replay: afu cosim --seed 9"), "{xml}");
     }
 }

@@ -1,10 +1,14 @@
 //! What people and other programs read: tables, JSON, JUnit, and folders that are there whole or not at all.
 
+#[cfg(feature = "cosim")]
 pub mod cosim;
 pub mod doctor;
 pub mod folder;
+#[cfg(feature = "cosim")]
 pub mod junit;
 pub mod manifest;
+#[cfg(feature = "cosim")]
 pub mod mismatch;
 pub mod table;
+#[cfg(feature = "cosim")]
 pub mod tally;

@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::kernel::{ContactRecord, Flow};
+use crate::kernel::{Fields, Flow};
+use crate::verify::Verdict;
 
 /// Contacts and others, as the AFU's own flags tell them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -18,17 +19,6 @@ pub struct Flows {
 }
 
 impl Flows {
-    /// Counts records; flags that are no flow count nowhere (they are mismatches).
-    pub fn of(records: &[ContactRecord]) -> Self {
-        let count = |flow| records.iter().filter(|record| record.flow() == Some(flow)).count() as u64;
-        Self {
-            fake: count(Flow::Fake),
-            grazing: count(Flow::Grazing),
-            real: count(Flow::Real),
-            invalid: count(Flow::Invalid),
-        }
-    }
-
     /// Pairs that touch.
     pub fn contacts(&self) -> u64 {
         self.grazing + self.real
@@ -46,8 +36,10 @@ pub struct Tally {
     pub mismatches: u64,
     /// Clock cycles from start to done.
     pub cycles: u64,
-    /// Cycles of that in which the link was all that anyone waited for: the least it allows.
+    /// The least number of cycles the link allows for the lines that went over it.
     pub limit_cycles: f64,
+    /// Cycles from the first line of pairs to the first line of contacts; of several jobs, the first one's.
+    pub latency_cycles: Option<u64>,
     /// Bytes of the lines read.
     pub bytes_read: u64,
     /// Bytes of the lines written.
@@ -57,6 +49,29 @@ pub struct Tally {
 }
 
 impl Tally {
+    /// Of a job through an AFU with these fields.
+    pub fn of(verdict: &Verdict, fields: Fields) -> Self {
+        let flows = verdict.flows(fields);
+        let of = |flow: Flow| flows[flow as usize];
+        let outcome = &verdict.outcome;
+        Self {
+            pairs: verdict.contacts.len() as u64,
+            flows: Flows {
+                fake: of(Flow::Fake),
+                grazing: of(Flow::Grazing),
+                real: of(Flow::Real),
+                invalid: of(Flow::Invalid),
+            },
+            mismatches: verdict.mismatches.len() as u64,
+            cycles: outcome.cycles,
+            limit_cycles: outcome.limit_cycles,
+            latency_cycles: outcome.latency_cycles,
+            bytes_read: outcome.bytes_read,
+            bytes_written: outcome.bytes_written,
+            host_seconds: verdict.seconds,
+        }
+    }
+
     /// Both together.
     #[must_use]
     pub fn plus(&self, other: &Self) -> Self {
@@ -71,6 +86,7 @@ impl Tally {
             mismatches: self.mismatches + other.mismatches,
             cycles: self.cycles + other.cycles,
             limit_cycles: self.limit_cycles + other.limit_cycles,
+            latency_cycles: self.latency_cycles.or(other.latency_cycles),
             bytes_read: self.bytes_read + other.bytes_read,
             bytes_written: self.bytes_written + other.bytes_written,
             host_seconds: self.host_seconds + other.host_seconds,
@@ -100,14 +116,6 @@ fn per(amount: f64, pairs: u64) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn records_are_counted_by_their_flags() {
-        let record = |flags| ContactRecord([0, 0, 0, 0, 0, 0, 0, flags]);
-        let flows = Flows::of(&[2, 2, 5, 7, 7, 7, 8, 0, 99].map(record));
-        assert_eq!(flows, Flows { fake: 2, grazing: 1, real: 3, invalid: 1 });
-        assert_eq!(flows.contacts(), 4);
-    }
 
     #[test]
     fn a_job_of_no_pairs_has_no_figures_a_pair() {

@@ -56,3 +56,9 @@ pub fn all() -> Vec<Tool> {
         tool("Yosys", probe::yosys(), false, "tests: no latch, no multiple driver", "apt-get install yosys"),
     ]
 }
+
+/// The tools that make models, with what they say of themselves.
+pub fn simulators() -> std::collections::BTreeMap<String, String> {
+    let found = [("C++ compiler", probe::compiler()), ("Verilator", probe::verilator())];
+    found.into_iter().filter_map(|(name, found)| Some((name.to_owned(), found?))).collect()
+}

@@ -28,3 +28,10 @@ pub enum VerifyError {
     #[error("{0} pairs: a job has at most 4294967295")]
     Pairs(usize),
 }
+
+impl VerifyError {
+    /// Whether a job that began went wrong, by itself or by the AFU: it does not finish, breaks the protocol, or stops.
+    pub fn is_the_job_s(&self) -> bool {
+        matches!(self, Self::Drive(DriveError::TimedOut { .. } | DriveError::Protocol { .. }))
+    }
+}

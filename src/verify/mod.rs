@@ -2,6 +2,7 @@
 
 mod bench;
 mod check;
+pub mod corpus;
 mod error;
 mod lines;
 

@@ -1,0 +1,226 @@
+//! `afu cosim`: pairs through the simulated AFU, every bit compared with the reference kernel.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use clap::Args;
+use contact_afu::config::Config;
+use contact_afu::cosim::Trace;
+use contact_afu::kernel::PairRecord;
+use contact_afu::link::LinkModel;
+use contact_afu::report::cosim::{Job, Run};
+use contact_afu::report::tally::Tally;
+use contact_afu::report::{junit, mismatch};
+use contact_afu::verify::{Bench, Origin, Verdict, corpus};
+use contact_afu::{pairs, tools};
+
+use super::failure::{Classify, Failure, Kind};
+use super::machine::One;
+use super::{link, output, progress, replay};
+
+/// Mismatches that are told one by one, for each job.
+const TOLD: usize = 10;
+/// Where mismatching pairs go that no `--replay` takes.
+const CORPUS: &str = "afu-corpus.csv";
+
+/// Send pairs through the simulated AFU and compare every bit with the reference kernel
+///
+/// Each set or file of pairs is a job of its own: source lines into simulated memory, through the Verilated AFU over
+/// the link, and what it wrote into destination memory against the reference kernel. One table of all jobs ends it.
+#[derive(Args, Debug)]
+pub struct Cosim {
+    /// Pairs: diamond:H, random:N, or a .csv or .npy file; given several times, several jobs
+    #[arg(long, value_name = "SET|FILE", default_value = "diamond:10")]
+    pairs: Vec<String>,
+    /// Write the contacts of the only job, as they lie in destination memory: .csv or .npy
+    #[arg(long, value_name = "FILE")]
+    contacts: Option<PathBuf>,
+    /// Link between AFU and memory: ideal, late, shuffled, hostile, or a .json file of such a model
+    #[arg(long, value_name = "NAME|FILE", default_value = "ideal")]
+    link: String,
+    /// Seed of random pairs, of the link, and of registers that no reset reaches
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Write a waveform of the only job: .vcd or .fst
+    #[arg(long, value_name = "FILE")]
+    trace: Option<PathBuf>,
+    /// Write the figures as JSON (schema contact-afu/cosim/1); - is standard output
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Write a JUnit report, a test case a job; - is standard output
+    #[arg(long, value_name = "FILE")]
+    junit: Option<PathBuf>,
+    /// Simulate the Verilog in this folder, which `afu rtl` wrote; of the AFU's options only --scpus goes with it
+    #[arg(long, value_name = "DIR")]
+    rtl: Option<PathBuf>,
+    /// Corpus, a .csv of pairs that once mismatched: a job that runs first; pairs that mismatch now join it
+    ///
+    /// A corpus that does not exist yet is empty, and made by the first mismatch. Without this option, mismatching pairs
+    /// join afu-corpus.csv in the current folder.
+    #[arg(long, value_name = "FILE")]
+    replay: Option<PathBuf>,
+    #[command(flatten)]
+    one: One,
+}
+
+pub fn run(options: &Cosim) -> Result<(), Failure> {
+    let link = link::read(&options.link)?;
+    let trace = options.trace()?;
+    let jobs = options.jobs()?;
+    let bench = options.bench(trace)?;
+
+    let mut run = Run {
+        config: bench.config().clone(),
+        seed: options.seed,
+        replay: options.command(bench.config()),
+        tools: tools::simulators(),
+        rtl_sha256: bench.rtl_sha256(),
+        link: link.name.clone(),
+        jobs: Vec::new(),
+    };
+    let mut told = Vec::new();
+    let mut failed_pairs = Vec::new();
+    for (name, pairs) in jobs {
+        let (job, verdict) = options.job(&bench, &name, &pairs, &link)?;
+        let text = verdict.as_ref().map_or_else(String::new, |verdict| tell(&name, verdict));
+        if let Some(verdict) = &verdict {
+            failed_pairs.extend(verdict.mismatches.iter().map(|mismatch| mismatch.pair));
+            if let Some(path) = &options.contacts {
+                pairs::write_contacts(path, &verdict.contacts)?;
+            }
+        }
+        for line in job.failures.iter().map(|failure| format!("{name}: {failure}")).chain([text.clone()]) {
+            if !line.is_empty() {
+                eprintln!("{line}");
+            }
+        }
+        told.push(text);
+        run.jobs.push(job);
+    }
+
+    let stdout_taken = [&options.json, &options.junit].into_iter().flatten().any(|path| output::is_stdout(path));
+    output::show(&run.table(), stdout_taken)?;
+    if let Some(path) = &options.json {
+        output::json(path, &run.json())?;
+    }
+    if let Some(path) = &options.junit {
+        output::write(path, junit::xml(&run, &told).ends(Kind::Other)?.as_bytes())?;
+    }
+    options.verdict(&run, failed_pairs)
+}
+
+impl Cosim {
+    /// The jobs by name, with their pairs: all read before anything is built, so that a bad file costs no time.
+    fn jobs(&self) -> Result<Vec<(String, Vec<PairRecord>)>, Failure> {
+        let only_one = [("--contacts", &self.contacts), ("--trace", &self.trace)];
+        let jobs = self.pairs.len() + usize::from(self.replay.is_some());
+        if let Some((option, _)) = only_one.iter().find(|(_, given)| given.is_some() && jobs > 1) {
+            return Err(Failure::new(
+                Kind::Usage,
+                format!("{option} is for one job: give one --pairs and no --replay"),
+            ));
+        }
+        if let Some(path) = &self.contacts {
+            pairs::check_name(path)?;
+        }
+        let mut jobs = Vec::new();
+        if let Some(path) = &self.replay {
+            let corpus = corpus::read(path)?;
+            if !corpus.is_empty() {
+                jobs.push((path.display().to_string(), corpus));
+            }
+        }
+        for source in &self.pairs {
+            jobs.push((source.clone(), pairs::load(source, self.seed)?));
+        }
+        Ok(jobs)
+    }
+
+    fn trace(&self) -> Result<Trace, Failure> {
+        let Some(path) = &self.trace else { return Ok(Trace::Off) };
+        match path.extension().and_then(|extension| extension.to_str()) {
+            Some("vcd") => Ok(Trace::Vcd),
+            Some("fst") => Ok(Trace::Fst),
+            _ => Err(Failure::new(Kind::Usage, format!("{}: a waveform's name ends in .vcd or .fst", path.display()))),
+        }
+    }
+
+    fn bench(&self, trace: Trace) -> Result<Bench, Failure> {
+        let begun = Instant::now();
+        let spinner = progress::spinner("making the model of the AFU (Verilator and C++ compiler)");
+        let bench = match &self.rtl {
+            Some(folder) => Bench::of_folder(folder, self.one.only_scpus()?, trace),
+            None => Bench::traced(&self.one.config()?, trace),
+        };
+        spinner.finish_and_clear();
+        let bench = bench?;
+        if let Origin::Library(path) = bench.origin() {
+            let seconds = begun.elapsed().as_secs_f64();
+            eprintln!("model: {}, after {seconds:.1} s (none of this AFU is built in)", path.display());
+        }
+        Ok(bench)
+    }
+
+    /// Runs one job. One that does not finish, or breaks the protocol, is a failed job without a verdict.
+    fn job(
+        &self,
+        bench: &Bench,
+        name: &str,
+        pairs: &[PairRecord],
+        link: &LinkModel,
+    ) -> Result<(Job, Option<Verdict>), Failure> {
+        let bar = progress::bar(name, pairs.len() as u64);
+        let done = bench.run_with(pairs, link, self.seed, self.trace.as_deref(), |done| bar.set_position(done));
+        bar.finish_and_clear();
+        let name = name.to_owned();
+        match done {
+            Ok(verdict) => {
+                let tally = Tally::of(&verdict, bench.config().contact);
+                Ok((Job { name, tally, failures: verdict.unmet.clone() }, Some(verdict)))
+            }
+            Err(error) if error.is_the_job_s() => {
+                let tally = Tally { pairs: pairs.len() as u64, ..Tally::default() };
+                Ok((Job { name, tally, failures: vec![error.to_string()] }, None))
+            }
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    fn command(&self, config: &Config) -> String {
+        let mut command = match &self.rtl {
+            None => replay::Command::new("cosim", config),
+            Some(folder) => replay::Command::new("cosim", &Config::default())
+                .option("--rtl", &folder.display().to_string())
+                .option("--scpus", &config.scpus.to_string()),
+        };
+        for source in &self.pairs {
+            command = command.option("--pairs", source);
+        }
+        command.option("--link", &self.link).option("--seed", &self.seed.to_string()).line()
+    }
+
+    /// Says how it went; mismatching pairs join the corpus.
+    fn verdict(&self, run: &Run, failed: Vec<PairRecord>) -> Result<(), Failure> {
+        if run.passed() {
+            return Ok(());
+        }
+        eprintln!("replay: {}", run.replay);
+        if !failed.is_empty() {
+            let path = self.replay.as_deref().unwrap_or(Path::new(CORPUS));
+            let added = corpus::join(path, failed)?;
+            eprintln!("corpus: {} ({added} new pairs); to run it first: --replay {}", path.display(), path.display());
+        }
+        let bad = run.jobs.iter().filter(|job| !job.passed()).count();
+        let message = format!("{bad} of {} jobs failed, {} mismatches", run.jobs.len(), run.total().mismatches);
+        Err(Failure::new(Kind::Unmet, message))
+    }
+}
+
+/// The first mismatches of a job, one by one, and how many more there are.
+fn tell(job: &str, verdict: &Verdict) -> String {
+    let mut told: Vec<String> = verdict.mismatches.iter().take(TOLD).map(|found| mismatch::text(job, found)).collect();
+    if verdict.mismatches.len() > TOLD {
+        told.push(format!("({} more mismatches in {job})", verdict.mismatches.len() - TOLD));
+    }
+    told.join("\n")
+}

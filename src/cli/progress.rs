@@ -1,0 +1,25 @@
+//! What long work shows on standard error: a bar, on a terminal only.
+
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// A bar over `pairs` pairs.
+pub fn bar(title: &str, pairs: u64) -> ProgressBar {
+    let bar = ProgressBar::new(pairs);
+    // A wrong template would be a bar without one.
+    if let Ok(style) = ProgressStyle::with_template("{prefix} [{bar:30}] {human_pos} of {human_len} pairs, {eta} left")
+    {
+        bar.set_style(style.progress_chars("=> "));
+    }
+    bar.set_prefix(title.to_owned());
+    bar
+}
+
+/// A turning sign for work whose length nobody knows.
+pub fn spinner(title: &str) -> ProgressBar {
+    let spinner = ProgressBar::new_spinner();
+    spinner.set_message(title.to_owned());
+    spinner.enable_steady_tick(Duration::from_millis(200));
+    spinner
+}
