@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
 use crate::config::MANIFEST_SCHEMA;
-use crate::hdl::Module;
+use crate::pipeline::KernelReport;
 
 use super::Afu;
 
@@ -105,7 +105,7 @@ impl Afu {
                 "contacts_per_line": layout.contacts_per_line(),
             },
             "latency_cycles": self.kernel().latency,
-            "operators": operators(self.kernel()),
+            "kernel": KernelReport::of(self.kernel()),
             "rtl_sha256": self.rtl_sha256(),
             "files": hashes,
         });
@@ -133,18 +133,6 @@ fn hex(bytes: &[u8]) -> String {
         let _ = write!(text, "{byte:02x}");
         text
     })
-}
-
-/// Each operator module of a kernel: how many instances, and its latency in cycles.
-fn operators(kernel: &Module) -> Value {
-    let mut found = std::collections::BTreeMap::new();
-    for instance in &kernel.instances {
-        let entry = found.entry(instance.module.name.clone()).or_insert((0, instance.module.latency));
-        entry.0 += 1;
-    }
-    let row =
-        |(name, (instances, latency))| json!({ "module": name, "instances": instances, "latency_cycles": latency });
-    Value::Array(found.into_iter().map(row).collect())
 }
 
 fn file_list(names: &[&str]) -> String {

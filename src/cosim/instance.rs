@@ -10,7 +10,7 @@ use super::abi::{Api, raw};
 use super::error::SimulationError;
 use super::port::{Port, Wide};
 
-/// A simulated module: its ports are memory ([`Port`], [`Wide`]), its clock is [`Instance::tick`].
+/// A simulated module: its ports are memory ([`Port`], [`Wide`]), its clock is [`Clock::tick`].
 ///
 /// It may move between threads but is used by one at a time.
 #[derive(Debug)]
