@@ -30,7 +30,8 @@ fn stream(model: &Model, operator: Operator, format: Format, latency: u32, words
     }
     let a_port = instance.input("a", format.width()).unwrap();
     let b_port = (operator.operands() == 2).then(|| instance.input("b", format.width()).unwrap());
-    let result = instance.output("result", operator.result_bits(format)).unwrap();
+    let result_bits = operator.result_format(format).map_or(1, Format::width);
+    let result = instance.output("result", result_bits).unwrap();
     let mut pending: VecDeque<(u128, u128)> = VecDeque::new();
     let mut check = |(a, b): (u128, u128)| {
         let (got, wanted) = (u128::from(result.get()), operator.twin(format, a, b));
