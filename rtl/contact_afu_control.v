@@ -56,15 +56,13 @@ module contact_afu_control (
   assign busy = running | draining;
   wire accept = start & ~busy;
   wire expired = |job_watchdog & (silence >= job_watchdog);
-  wire [3:0] n0_unless_running_and_expired_unless_unless = (running & abort_job) ? 4'd1 : ((running & read_failed) ? 4'd2 : ((running & write_failed) ? 4'd3 : ((running & expired) ? 4'd4 : 4'd0)));
-  wire [3:0] cause = (|mode & accept) ? 4'd5 : n0_unless_running_and_expired_unless_unless;
+  wire [3:0] cause = (|mode & accept) ? 4'd5 : ((running & abort_job) ? 4'd1 : ((running & read_failed) ? 4'd2 : ((running & write_failed) ? 4'd3 : ((running & expired) ? 4'd4 : 4'd0))));
   assign run = running & ~begin_job;
   wire complete = run & packer_done & dispatched & link_idle;
   wire failing = |cause & ~complete;
   wire drained = draining & ~|pairs_inside & (link_idle | given_up);
   wire [8:0] entered_wide = {7'd0, entered};
   wire not_waiting = response | link_idle;
-  wire running_next = (accept & ~failing) | (running & ~complete & ~failing);
   wire [32:0] rounded_count = {1'b0, job_count} + 33'd1;
   assign lines = rounded_count[32:1];
 
@@ -92,7 +90,7 @@ module contact_afu_control (
       room <= 9'd256;
     end else begin
       cycles_busy <= accept ? 64'd0 : (cycles_busy + {63'd0, busy});
-      running <= running_next;
+      running <= (accept & ~failing) | (running & ~complete & ~failing);
       draining <= failing | (draining & ~drained);
       if (accept) job_watchdog <= watchdog;
       silence <= (not_waiting | ~busy) ? 32'd0 : (silence + 32'd1);

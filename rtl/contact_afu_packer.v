@@ -46,7 +46,6 @@ module contact_afu_packer (
   wire [767:0] merged = {256'd0, filling} | shifted;
   assign done = all_out & ~place & ~line_valid;
   wire some_invalid = invalid_0 | invalid_1;
-  wire [31:0] first_invalid_pair_next = start ? 32'hffffffff : ((some_invalid & ~|invalid_count) ? (invalid_0 ? emerged : (emerged + 32'd1)) : first_invalid_pair);
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
@@ -68,7 +67,7 @@ module contact_afu_packer (
       filling <= emptied ? 512'd0 : (full ? {256'd0, merged[767:512]} : merged[511:0]);
       contact_count <= start ? 32'd0 : (contact_count + {30'd0, {1'b0, contact_0} + {1'b0, contact_1}});
       invalid_count <= start ? 32'd0 : (invalid_count + {30'd0, {1'b0, invalid_0} + {1'b0, invalid_1}});
-      first_invalid_pair <= first_invalid_pair_next;
+      first_invalid_pair <= start ? 32'hffffffff : ((some_invalid & ~|invalid_count) ? (invalid_0 ? emerged : (emerged + 32'd1)) : first_invalid_pair);
     end
   end
 

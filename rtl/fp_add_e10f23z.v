@@ -127,56 +127,55 @@ module fp_add_e10f23z (
   wire align_by_2_loses = exponent_difference_1_1_s2 & align_by_4_1_0_any_s2;
   wire align_by_1_loses = exponent_difference_0_0_s2 & align_by_2_s2[0];
   wire aligned_sticky = (align_far_s2 ? small_significand_s1_wide_any_s2 : (align_by_16_loses_or_or_s2 | align_by_2_loses | align_by_1_loses)) & ~small_is_zero_s2;
-  wire [26:0] align_by_1_and_not_align_far_s2_wide_and_wide = {~small_is_zero_s2 ? (~align_far_s2 ? align_by_1 : 26'd0) : 26'd0, aligned_sticky};
-  wire [27:0] addend = {1'b0, align_by_1_and_not_align_far_s2_wide_and_wide};
+  wire [27:0] addend = {1'b0, {~small_is_zero_s2 ? (~align_far_s2 ? align_by_1 : 26'd0) : 26'd0, aligned_sticky}};
   wire [27:0] complemented = addend ^ {28{effective_subtraction_s2}};
   wire [28:0] sum_and_carry_in = {augend, 1'b1} + {complemented, effective_subtraction_s2};
+  wire [27:0] sum = sum_and_carry_in[28:1];
 
   // ---- stage 3 ----
-  reg [28:0] sum_and_carry_in_s3;
+  reg [27:0] sum_s3;
   reg [9:0] large_exponent_s3;
   reg a_is_zero_and_b_is_zero_s3;
   reg is_nan_s3;
   reg large_sign_s3;
   reg effective_subtraction_s3;
   always @(posedge clk) begin
-    sum_and_carry_in_s3 <= sum_and_carry_in;
+    sum_s3 <= sum;
     large_exponent_s3 <= large_exponent_s2;
     a_is_zero_and_b_is_zero_s3 <= a_is_zero_and_b_is_zero_s2;
     is_nan_s3 <= is_nan_s2;
     large_sign_s3 <= large_sign_s2;
     effective_subtraction_s3 <= effective_subtraction_s2;
   end
-  wire sum_27_12_is_zero = ~|sum_and_carry_in_s3[28:13];
-  wire sum_11_4_is_zero = ~|sum_and_carry_in_s3[12:5];
-  wire sum_3_2_is_zero = ~|sum_and_carry_in_s3[4:3];
-  wire [1:0] sum_3_0_zeros = {sum_3_2_is_zero, sum_3_2_is_zero ? ~sum_and_carry_in_s3[2] : ~sum_and_carry_in_s3[4]};
-  wire sum_11_8_is_zero = ~|sum_and_carry_in_s3[12:9];
-  wire sum_7_6_is_zero = ~|sum_and_carry_in_s3[8:7];
-  wire [1:0] sum_7_4_zeros = {sum_7_6_is_zero, sum_7_6_is_zero ? ~sum_and_carry_in_s3[6] : ~sum_and_carry_in_s3[8]};
-  wire sum_11_10_is_zero = ~|sum_and_carry_in_s3[12:11];
-  wire [1:0] sum_11_8_zeros = {sum_11_10_is_zero, sum_11_10_is_zero ? ~sum_and_carry_in_s3[10] : ~sum_and_carry_in_s3[12]};
+  wire sum_27_12_is_zero = ~|sum_s3[27:12];
+  wire sum_11_4_is_zero = ~|sum_s3[11:4];
+  wire sum_3_2_is_zero = ~|sum_s3[3:2];
+  wire [1:0] sum_3_0_zeros = {sum_3_2_is_zero, sum_3_2_is_zero ? ~sum_s3[1] : ~sum_s3[3]};
+  wire sum_11_8_is_zero = ~|sum_s3[11:8];
+  wire sum_7_6_is_zero = ~|sum_s3[7:6];
+  wire [1:0] sum_7_4_zeros = {sum_7_6_is_zero, sum_7_6_is_zero ? ~sum_s3[5] : ~sum_s3[7]};
+  wire sum_11_10_is_zero = ~|sum_s3[11:10];
+  wire [1:0] sum_11_8_zeros = {sum_11_10_is_zero, sum_11_10_is_zero ? ~sum_s3[9] : ~sum_s3[11]};
   wire [2:0] sum_11_4_zeros = {sum_11_8_is_zero, sum_11_8_is_zero ? sum_7_4_zeros : sum_11_8_zeros};
   wire [3:0] sum_11_0_zeros = {sum_11_4_is_zero, sum_11_4_is_zero ? {1'b0, sum_3_0_zeros} : sum_11_4_zeros};
-  wire sum_27_20_is_zero = ~|sum_and_carry_in_s3[28:21];
-  wire sum_19_16_is_zero = ~|sum_and_carry_in_s3[20:17];
-  wire sum_15_14_is_zero = ~|sum_and_carry_in_s3[16:15];
-  wire [1:0] sum_15_12_zeros = {sum_15_14_is_zero, sum_15_14_is_zero ? ~sum_and_carry_in_s3[14] : ~sum_and_carry_in_s3[16]};
-  wire sum_19_18_is_zero = ~|sum_and_carry_in_s3[20:19];
-  wire [1:0] sum_19_16_zeros = {sum_19_18_is_zero, sum_19_18_is_zero ? ~sum_and_carry_in_s3[18] : ~sum_and_carry_in_s3[20]};
+  wire sum_27_20_is_zero = ~|sum_s3[27:20];
+  wire sum_19_16_is_zero = ~|sum_s3[19:16];
+  wire sum_15_14_is_zero = ~|sum_s3[15:14];
+  wire [1:0] sum_15_12_zeros = {sum_15_14_is_zero, sum_15_14_is_zero ? ~sum_s3[13] : ~sum_s3[15]};
+  wire sum_19_18_is_zero = ~|sum_s3[19:18];
+  wire [1:0] sum_19_16_zeros = {sum_19_18_is_zero, sum_19_18_is_zero ? ~sum_s3[17] : ~sum_s3[19]};
   wire [2:0] sum_19_12_zeros = {sum_19_16_is_zero, sum_19_16_is_zero ? sum_15_12_zeros : sum_19_16_zeros};
-  wire sum_27_24_is_zero = ~|sum_and_carry_in_s3[28:25];
-  wire sum_23_22_is_zero = ~|sum_and_carry_in_s3[24:23];
-  wire [1:0] sum_23_20_zeros = {sum_23_22_is_zero, sum_23_22_is_zero ? ~sum_and_carry_in_s3[22] : ~sum_and_carry_in_s3[24]};
-  wire sum_27_26_is_zero = ~|sum_and_carry_in_s3[28:27];
-  wire [1:0] sum_27_24_zeros = {sum_27_26_is_zero, sum_27_26_is_zero ? ~sum_and_carry_in_s3[26] : ~sum_and_carry_in_s3[28]};
+  wire sum_27_24_is_zero = ~|sum_s3[27:24];
+  wire sum_23_22_is_zero = ~|sum_s3[23:22];
+  wire [1:0] sum_23_20_zeros = {sum_23_22_is_zero, sum_23_22_is_zero ? ~sum_s3[21] : ~sum_s3[23]};
+  wire sum_27_26_is_zero = ~|sum_s3[27:26];
+  wire [1:0] sum_27_24_zeros = {sum_27_26_is_zero, sum_27_26_is_zero ? ~sum_s3[25] : ~sum_s3[27]};
   wire [2:0] sum_27_20_zeros = {sum_27_24_is_zero, sum_27_24_is_zero ? sum_23_20_zeros : sum_27_24_zeros};
   wire [3:0] sum_27_12_zeros = {sum_27_20_is_zero, sum_27_20_is_zero ? sum_19_12_zeros : sum_27_20_zeros};
   wire [3:0] sum_11_0_zeros_if_sum_27_12_is_zero = sum_27_12_is_zero ? sum_11_0_zeros : sum_27_12_zeros;
-  wire [27:0] sum = sum_and_carry_in_s3[28:1];
-  wire [27:0] normalise_by_16 = sum_27_12_is_zero ? {sum_and_carry_in_s3[12:1], 16'd0} : sum;
+  wire [27:0] normalise_by_16 = sum_27_12_is_zero ? {sum_s3[11:0], 16'd0} : sum_s3;
   wire [27:0] normalise_by_8 = sum_11_0_zeros_if_sum_27_12_is_zero[3] ? {normalise_by_16[19:0], 8'd0} : normalise_by_16;
-  wire sum_is_zero = ~|sum;
+  wire sum_is_zero = ~|sum_s3;
   wire is_exact_zero = sum_is_zero | a_is_zero_and_b_is_zero_s3;
   wire sign = large_sign_s3 & ~(is_exact_zero & effective_subtraction_s3) & ~is_nan_s3;
 
@@ -205,11 +204,12 @@ module fp_add_e10f23z (
   wire [27:0] normalise_by_4 = sum_11_0_zeros_if_sum_27_12_is_zero_s4[2] ? {normalise_by_8_s4[23:0], 4'd0} : normalise_by_8_s4;
   wire [27:0] normalise_by_2 = sum_11_0_zeros_if_sum_27_12_is_zero_s4[1] ? {normalise_by_4[25:0], 2'd0} : normalise_by_4;
   wire [27:0] normalise_by_1 = sum_11_0_zeros_if_sum_27_12_is_zero_s4[0] ? {normalise_by_2[26:0], 1'b0} : normalise_by_2;
+  wire [23:0] significand = normalise_by_1[27:4];
   wire [4:0] sum_27_0_zeros = {sum_27_12_is_zero_s4, sum_11_0_zeros_if_sum_27_12_is_zero_s4};
   wire [10:0] normalised_exponent = large_exponent_s3_wide_plus_1_s4 - {5'd0, {1'b0, sum_27_0_zeros}};
   wire guard = normalise_by_1[3];
   wire sticky = |normalise_by_1[2:0];
-  wire round_up = guard & (sticky | normalise_by_1[4]);
+  wire round_up = guard & (sticky | significand[0]);
   wire overflow = ~normalised_exponent[10] & (normalised_exponent[10] | &normalised_exponent[9:0]);
   wire is_infinity = a_is_infinity_or_b_is_infinity_s4 | (overflow & ~is_exact_zero_s4);
 
@@ -220,10 +220,10 @@ module fp_add_e10f23z (
   reg is_exact_zero_s5;
   reg normalised_exponent_10_10_s5;
   reg normalised_exponent_equals_0_s5;
-  reg normalise_by_1_26_4_all_s5;
+  reg significand_22_0_all_s5;
   reg round_up_s5;
   reg [9:0] normalised_exponent_9_0_s5;
-  reg [22:0] normalise_by_1_26_4_s5;
+  reg [22:0] significand_22_0_s5;
   always @(posedge clk) begin
     sign_s5 <= sign_s4;
     is_nan_s5 <= is_nan_s4;
@@ -231,18 +231,18 @@ module fp_add_e10f23z (
     is_exact_zero_s5 <= is_exact_zero_s4;
     normalised_exponent_10_10_s5 <= normalised_exponent[10];
     normalised_exponent_equals_0_s5 <= normalised_exponent == 11'd0;
-    normalise_by_1_26_4_all_s5 <= &normalise_by_1[26:4];
+    significand_22_0_all_s5 <= &significand[22:0];
     round_up_s5 <= round_up;
     normalised_exponent_9_0_s5 <= normalised_exponent[9:0];
-    normalise_by_1_26_4_s5 <= normalise_by_1[26:4];
+    significand_22_0_s5 <= significand[22:0];
   end
   wire is_nan_s5_or_is_infinity_s5 = is_nan_s5 | is_infinity_s5;
-  wire becomes_normal = normalise_by_1_26_4_all_s5 & round_up_s5;
+  wire becomes_normal = significand_22_0_all_s5 & round_up_s5;
   wire underflow = normalised_exponent_10_10_s5 | (normalised_exponent_equals_0_s5 & ~becomes_normal);
   wire is_zero = is_exact_zero_s5 | underflow;
   wire is_special = is_nan_s5_or_is_infinity_s5 | is_zero;
   wire [32:0] special_magnitude = {{10{is_nan_s5_or_is_infinity_s5}}, {is_nan_s5, 22'd0}};
-  wire [32:0] truncated = {normalised_exponent_9_0_s5, normalise_by_1_26_4_s5};
+  wire [32:0] truncated = {normalised_exponent_9_0_s5, significand_22_0_s5};
   wire [32:0] rounded = truncated + {32'd0, round_up_s5};
   wire [32:0] magnitude = is_special ? special_magnitude : rounded;
 
@@ -252,7 +252,7 @@ module fp_add_e10f23z (
   end
 
   // Bits that nothing needs.
-  wire unused = &{1'b0, normalise_by_1[27], sum_and_carry_in_s3[0]};
+  wire unused = &{1'b0, significand[23], sum_and_carry_in[0]};
 
 endmodule
 

@@ -24,14 +24,14 @@ module fp_at_most_e10f23z (
   wire [22:0] a_fraction = a[22:0];
   wire [32:0] a_magnitude = {a_exponent, a_fraction};
   wire b_magnitude_is_smaller = b_magnitude < a_magnitude;
-  wire not_a_sign_and_b_sign_or = (~a_sign & b_sign) | (~a_sign & ~b_sign & b_magnitude_is_smaller);
   wire same_magnitude = a_magnitude == b_magnitude;
+  wire not_a_sign_and_b_sign_or_or = (~a_sign & b_sign) | (~a_sign & ~b_sign & b_magnitude_is_smaller) | (a_sign & b_sign & ~b_magnitude_is_smaller & ~same_magnitude);
   wire a_hidden = |a_exponent;
   wire a_is_zero = ~a_hidden;
   wire b_hidden = |b_exponent;
   wire b_is_zero = ~b_hidden;
   wire both_zero = a_is_zero & b_is_zero;
-  wire is_greater = (not_a_sign_and_b_sign_or | (a_sign & b_sign & ~b_magnitude_is_smaller & ~same_magnitude)) & ~both_zero;
+  wire is_greater = not_a_sign_and_b_sign_or_or & ~both_zero;
   wire a_is_special = &a_exponent;
   wire a_is_nan = a_is_special & |a_fraction;
   wire b_is_special = &b_exponent;

@@ -25,7 +25,7 @@ module fp_halve_e10f23z (
   wire a_is_nan_or_a_is_infinity = a_is_nan | a_is_infinity;
   wire a_hidden = |a_exponent;
   wire a_is_zero = ~a_hidden;
-  wire half_is_normal = |a[32:24];
+  wire half_is_normal = |a_exponent[9:1];
   wire is_zero = a_is_zero | ~half_is_normal;
   wire is_special = a_is_nan_or_a_is_infinity | is_zero;
   wire [32:0] special_magnitude = {{10{a_is_nan_or_a_is_infinity}}, {a_is_nan, 22'd0}};

@@ -15,13 +15,13 @@ module fp_mul_e10f23z (
 );
 
   // ---- stage 0 ----
-  wire [23:0] tile_0_0 = {12'd0, a[11:0]} * {12'd0, b[11:0]};
-  wire [22:0] b_fraction = b[22:0];
-  wire [23:0] b_significand = {1'b1, b_fraction};
-  wire [23:0] tile_0_1 = {12'd0, a[11:0]} * {12'd0, b_significand[23:12]};
   wire [22:0] a_fraction = a[22:0];
+  wire [22:0] b_fraction = b[22:0];
+  wire [23:0] tile_0_0 = {12'd0, a_fraction[11:0]} * {12'd0, b_fraction[11:0]};
+  wire [23:0] b_significand = {1'b1, b_fraction};
+  wire [23:0] tile_0_1 = {12'd0, a_fraction[11:0]} * {12'd0, b_significand[23:12]};
   wire [23:0] a_significand = {1'b1, a_fraction};
-  wire [23:0] tile_1_0 = {12'd0, a_significand[23:12]} * {12'd0, b[11:0]};
+  wire [23:0] tile_1_0 = {12'd0, a_significand[23:12]} * {12'd0, b_fraction[11:0]};
   wire [23:0] tile_1_1 = {12'd0, a_significand[23:12]} * {12'd0, b_significand[23:12]};
   wire [47:0] tiles_0_0 = {tile_1_1, tile_0_0};
   wire [9:0] a_exponent = a[32:23];
@@ -92,9 +92,10 @@ module fp_mul_e10f23z (
   wire [47:0] normalised = product_at_least_two ? product : {product[46:0], 1'b0};
   wire guard = normalised[23];
   wire sticky = |normalised[22:0];
-  wire round_up = guard & (sticky | normalised[24]);
+  wire [23:0] significand = normalised[47:24];
+  wire round_up = guard & (sticky | significand[0]);
   wire [11:0] product_exponent = exponent_below_two_s2 + {10'd0, {1'b0, product_at_least_two}};
-  wire becomes_normal = &normalised[46:24] & round_up;
+  wire becomes_normal = &significand[22:0] & round_up;
   wire overflow = ~product_exponent[11] & (|product_exponent[11:10] | &product_exponent[9:0]);
   wire is_infinity = a_is_infinity_or_b_is_infinity_s2 | (overflow & ~a_is_zero_or_b_is_zero_s2);
 
@@ -106,7 +107,7 @@ module fp_mul_e10f23z (
   reg product_exponent_11_11_s3;
   reg product_exponent_equals_0_and_s3;
   reg [9:0] product_exponent_9_0_s3;
-  reg [22:0] normalised_46_24_s3;
+  reg [22:0] significand_22_0_s3;
   reg round_up_s3;
   always @(posedge clk) begin
     sign_s3 <= sign_s2;
@@ -116,7 +117,7 @@ module fp_mul_e10f23z (
     product_exponent_11_11_s3 <= product_exponent[11];
     product_exponent_equals_0_and_s3 <= (product_exponent == 12'd0) & ~becomes_normal;
     product_exponent_9_0_s3 <= product_exponent[9:0];
-    normalised_46_24_s3 <= normalised[46:24];
+    significand_22_0_s3 <= significand[22:0];
     round_up_s3 <= round_up;
   end
   wire is_nan_s3_or_is_infinity_s3 = is_nan_s3 | is_infinity_s3;
@@ -124,7 +125,7 @@ module fp_mul_e10f23z (
   wire is_zero = a_is_zero_or_b_is_zero_s3 | underflow;
   wire is_special = is_nan_s3_or_is_infinity_s3 | is_zero;
   wire [32:0] special_magnitude = {{10{is_nan_s3_or_is_infinity_s3}}, {is_nan_s3, 22'd0}};
-  wire [32:0] truncated = {product_exponent_9_0_s3, normalised_46_24_s3};
+  wire [32:0] truncated = {product_exponent_9_0_s3, significand_22_0_s3};
   wire [32:0] rounded = truncated + {32'd0, round_up_s3};
   wire [32:0] magnitude = is_special ? special_magnitude : rounded;
 
@@ -134,7 +135,7 @@ module fp_mul_e10f23z (
   end
 
   // Bits that nothing needs.
-  wire unused = &{1'b0, normalised[47], b_significand[11:0], a_significand[11:0], tiles_0_0[11:0]};
+  wire unused = &{1'b0, significand[23], b_significand[11:0], a_significand[11:0], tiles_0_0[11:0]};
 
 endmodule
 

@@ -554,12 +554,13 @@ module fp_recip_e10f23z (
   wire digit_23 = ~borrow_23_s15;
   wire digit_24 = ~borrow_24;
   wire [24:0] quotient = {1'b1, digit_2, digit_3, digit_4, digit_5, digit_6, digit_7, digit_8, digit_9, digit_10, digit_11, digit_12, digit_13, digit_14, digit_15, digit_16, digit_17, digit_18, digit_19, digit_20, digit_21, digit_22, digit_23, digit_24, digit_25};
+  wire [23:0] significand = quotient[24:1];
 
   // ---- stage 16 ----
   (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
   reg [9:0] quotient_exponent_9_0_s16_line [0:15];
   reg [9:0] quotient_exponent_9_0_s16;
-  reg [22:0] quotient_23_1_s16;
+  reg [22:0] significand_22_0_s16;
   reg digit_25_s16;
   (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
   reg a_is_infinity_s16_line [0:15];
@@ -573,7 +574,7 @@ module fp_recip_e10f23z (
   always @(posedge clk) begin
     quotient_exponent_9_0_s16_line[delay_16] <= quotient_exponent[9:0];
     quotient_exponent_9_0_s16 <= quotient_exponent_9_0_s16_line[delay_16_next];
-    quotient_23_1_s16 <= quotient[23:1];
+    significand_22_0_s16 <= significand[22:0];
     digit_25_s16 <= digit_25;
     a_is_infinity_s16_line[delay_16] <= a_is_infinity;
     a_is_infinity_s16 <= a_is_infinity_s16_line[delay_16_next];
@@ -582,9 +583,9 @@ module fp_recip_e10f23z (
     quotient_exponent_equals_0_s16_line[delay_16] <= quotient_exponent == 11'd0;
     quotient_exponent_equals_0_s16 <= quotient_exponent_equals_0_s16_line[delay_16_next];
   end
-  wire [32:0] truncated = {quotient_exponent_9_0_s16, quotient_23_1_s16};
+  wire [32:0] truncated = {quotient_exponent_9_0_s16, significand_22_0_s16};
   wire [32:0] rounded = truncated + {32'd0, digit_25_s16};
-  wire becomes_normal = &quotient_23_1_s16 & digit_25_s16;
+  wire becomes_normal = &significand_22_0_s16 & digit_25_s16;
   wire underflow = quotient_exponent_10_10_s16 | (quotient_exponent_equals_0_s16 & ~becomes_normal);
   wire is_zero = a_is_infinity_s16 | underflow;
 
@@ -624,7 +625,7 @@ module fp_recip_e10f23z (
   // Bits that nothing needs.
   wire unused = &{1'b0, difference_25[23:0], remainder_21_wide_s14[24], remainder_18_wide_s12[24],
     remainder_15_wide_s10[24], remainder_12_wide_s8[24], remainder_9_wide_s6[24],
-    remainder_6_wide_s4[24], remainder_3_wide_s2[24], quotient[0], quotient[24]};
+    remainder_6_wide_s4[24], remainder_3_wide_s2[24], quotient[0], significand[23]};
 
 endmodule
 

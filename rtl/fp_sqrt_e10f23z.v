@@ -48,7 +48,8 @@ module fp_sqrt_e10f23z (
   end
 
   // ---- stage 0 ----
-  wire exponent_is_odd = ~a[23];
+  wire [9:0] a_exponent = a[32:23];
+  wire exponent_is_odd = ~a_exponent[0];
   wire [22:0] a_fraction = a[22:0];
   wire [23:0] a_significand = {1'b1, a_fraction};
   wire [24:0] radicand = exponent_is_odd ? {a_significand, 1'b0} : {1'b0, a_significand};
@@ -62,8 +63,8 @@ module fp_sqrt_e10f23z (
   wire [4:0] remainder_1_wide = {remainder_1, radicand[20:19]};
   wire [4:0] difference_2 = remainder_1_wide - {1'b0, {root_1, 2'd1}};
   wire borrow_2 = difference_2[4];
-  wire [9:0] a_exponent = a[32:23];
   wire [11:0] a_exponent_wide_wide_plus_511 = {1'b0, {1'b0, a_exponent}} + 12'd511;
+  wire [10:0] root_exponent = a_exponent_wide_wide_plus_511[11:1];
   wire a_hidden = |a_exponent;
   wire a_is_special = &a_exponent;
   wire a_fraction_any = |a_fraction;
@@ -390,8 +391,8 @@ module fp_sqrt_e10f23z (
   reg a_hidden_s14_line [0:13];
   reg a_hidden_s14;
   (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg [9:0] a_exponent_wide_wide_plus_511_10_1_s14_line [0:13];
-  reg [9:0] a_exponent_wide_wide_plus_511_10_1_s14;
+  reg [9:0] root_exponent_9_0_s14_line [0:13];
+  reg [9:0] root_exponent_9_0_s14;
   reg [22:0] root_23_22_0_s14;
   reg borrow_24_s14;
   always @(posedge clk) begin
@@ -403,8 +404,8 @@ module fp_sqrt_e10f23z (
     a_is_infinity_s14 <= a_is_infinity_s14_line[delay_14_next];
     a_hidden_s14_line[delay_14] <= a_hidden;
     a_hidden_s14 <= a_hidden_s14_line[delay_14_next];
-    a_exponent_wide_wide_plus_511_10_1_s14_line[delay_14] <= a_exponent_wide_wide_plus_511[10:1];
-    a_exponent_wide_wide_plus_511_10_1_s14 <= a_exponent_wide_wide_plus_511_10_1_s14_line[delay_14_next];
+    root_exponent_9_0_s14_line[delay_14] <= root_exponent[9:0];
+    root_exponent_9_0_s14 <= root_exponent_9_0_s14_line[delay_14_next];
     root_23_22_0_s14 <= root_23[22:0];
     borrow_24_s14 <= borrow_24;
   end
@@ -412,7 +413,7 @@ module fp_sqrt_e10f23z (
   wire a_is_zero = ~a_hidden_s14;
   wire is_special = is_nan_s14_or_a_is_infinity_s14 | a_is_zero;
   wire [32:0] special_magnitude = {{10{is_nan_s14_or_a_is_infinity_s14}}, {is_nan_s14, 22'd0}};
-  wire [32:0] truncated = {a_exponent_wide_wide_plus_511_10_1_s14, root_23_22_0_s14};
+  wire [32:0] truncated = {root_exponent_9_0_s14, root_23_22_0_s14};
   wire guard = ~borrow_24_s14;
   wire [32:0] rounded = truncated + {32'd0, guard};
   wire [32:0] magnitude = is_special ? special_magnitude : rounded;
@@ -425,7 +426,7 @@ module fp_sqrt_e10f23z (
   // Bits that nothing needs.
   wire unused = &{1'b0, remainder_22_wide_s13[25], difference_24[25:0], remainder_19_wide_s11[22],
     remainder_16_wide_s9[19], remainder_13_wide_s7[16], radicand_wide[23:0], radicand_wide[49:26],
-    a_exponent_wide_wide_plus_511[0], a_exponent_wide_wide_plus_511[11]};
+    a_exponent_wide_wide_plus_511[0], root_exponent[10]};
 
 endmodule
 

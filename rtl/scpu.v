@@ -27,7 +27,7 @@ module scpu (
   end
 
   // ---- state ----
-  (* ram_style = "block", ramstyle = "M20K, no_rw_check" *)
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
   reg invalid_out_line [0:74];
   reg invalid_out;
 
@@ -54,18 +54,17 @@ module scpu (
   wire [31:0] y2 = pair[191:160];
   wire [31:0] z2 = pair[223:192];
   wire [31:0] r2 = pair[255:224];
-  wire x1_not_finite = &pair[30:23];
-  wire y1_not_finite = &pair[62:55];
-  wire z1_not_finite = &pair[94:87];
-  wire r1_not_finite = &pair[126:119];
-  wire r1_negative = pair[127] & |pair[126:96];
-  wire x2_not_finite = &pair[158:151];
-  wire y2_not_finite = &pair[190:183];
-  wire z2_not_finite = &pair[222:215];
-  wire x1_not_finite_or_y1_not_finite_or_or_or = x1_not_finite | y1_not_finite | z1_not_finite | r1_not_finite | r1_negative | x2_not_finite | y2_not_finite | z2_not_finite;
-  wire r2_not_finite = &pair[254:247];
-  wire r2_negative = pair[255] & |pair[254:224];
-  wire invalid = x1_not_finite_or_y1_not_finite_or_or_or | r2_not_finite | r2_negative;
+  wire x1_not_finite = &x1[30:23];
+  wire y1_not_finite = &y1[30:23];
+  wire z1_not_finite = &z1[30:23];
+  wire r1_not_finite = &r1[30:23];
+  wire r1_negative = r1[31] & |r1[30:0];
+  wire x2_not_finite = &x2[30:23];
+  wire y2_not_finite = &y2[30:23];
+  wire z2_not_finite = &z2[30:23];
+  wire r2_not_finite = &r2[30:23];
+  wire r2_negative = r2[31] & |r2[30:0];
+  wire invalid = x1_not_finite | y1_not_finite | z1_not_finite | r1_not_finite | r1_negative | x2_not_finite | y2_not_finite | z2_not_finite | r2_not_finite | r2_negative;
 
   // ---- at the clock edge ----
   always @(posedge clk) begin

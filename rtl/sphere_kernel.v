@@ -163,245 +163,58 @@ module sphere_kernel (
     end
   end
 
-  // ---- state ----
-  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg hit_line [0:3];
-  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg hit_early_s71_line [0:9];
-  reg hit_early_s71;
-  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg hit_early_s61_line [0:15];
-  reg hit_early_s61;
-  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg hit_early_s45_line [0:4];
-  reg hit_early_s45;
-  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg valid_s40_line [0:39];
-  reg valid_s40;
-  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg [33:0] dz_squared_s18_line [0:5];
-  reg [33:0] dz_squared_s18;
-  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg [33:0] radius_sum_s39_line [0:30];
-  reg [33:0] radius_sum_s39;
-  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg grazing_line [0:3];
-  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg grazing_early_s71_line [0:9];
-  reg grazing_early_s71;
-  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg grazing_early_s61_line [0:20];
-  reg grazing_early_s61;
-  reg [33:0] position_x_e10f23z_s72;
-  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg [33:0] x1_e10f23z_s71_line [0:5];
-  reg [33:0] x1_e10f23z_s71;
-  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg [33:0] x1_e10f23z_s65_line [0:62];
-  reg [33:0] x1_e10f23z_s65;
-  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg [33:0] dx_s57_line [0:48];
-  reg [33:0] dx_s57;
-  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg [33:0] offset_s61_line [0:14];
-  reg [33:0] offset_s61;
-  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg [33:0] r2_e10f23z_minus_r1_e10f23z_s39_line [0:30];
-  reg [33:0] r2_e10f23z_minus_r1_e10f23z_s39;
-  reg [33:0] position_y_e10f23z_s72;
-  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg [33:0] y1_e10f23z_s71_line [0:5];
-  reg [33:0] y1_e10f23z_s71;
-  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg [33:0] y1_e10f23z_s65_line [0:62];
-  reg [33:0] y1_e10f23z_s65;
-  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg [33:0] dy_s57_line [0:48];
-  reg [33:0] dy_s57;
-  reg [33:0] position_z_e10f23z_s72;
-  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg [33:0] z1_e10f23z_s71_line [0:5];
-  reg [33:0] z1_e10f23z_s71;
-  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg [33:0] z1_e10f23z_s65_line [0:62];
-  reg [33:0] z1_e10f23z_s65;
-  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg [33:0] dz_s57_line [0:48];
-  reg [33:0] dz_s57;
-  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg [31:0] normal_x_line [0:9];
-  reg [33:0] normal_x_e10f23z_s62;
-  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg [31:0] normal_y_line [0:9];
-  reg [33:0] normal_y_e10f23z_s62;
-  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg [31:0] normal_z_line [0:9];
-  reg [33:0] normal_z_e10f23z_s62;
-  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg [31:0] depth_line [0:25];
-  reg [33:0] depth_e10f23z_s46;
-
-  // ---- outputs of instances ----
-  wire distance_above_radius_sum;
-  wire [33:0] distance;
-  wire [33:0] distance_squared;
-  wire [33:0] dx_squared_plus_dy_squared;
-  wire [33:0] dx_squared;
-  wire [33:0] dx;
+  // ---- stage 0 ----
   wire [33:0] x1_e10f23z;
+  fp_convert_e8f23_to_e10f23z convert_x1_e10f23z (
+    .clk    (clk),
+    .a      (x1),
+    .result (x1_e10f23z)
+  );
   wire [33:0] x2_e10f23z;
-  wire [33:0] dy_squared;
-  wire [33:0] dy;
+  fp_convert_e8f23_to_e10f23z convert_x2_e10f23z (
+    .clk    (clk),
+    .a      (x2),
+    .result (x2_e10f23z)
+  );
   wire [33:0] y1_e10f23z;
+  fp_convert_e8f23_to_e10f23z convert_y1_e10f23z (
+    .clk    (clk),
+    .a      (y1),
+    .result (y1_e10f23z)
+  );
   wire [33:0] y2_e10f23z;
-  wire [33:0] dz_squared;
-  wire [33:0] dz;
+  fp_convert_e8f23_to_e10f23z convert_y2_e10f23z (
+    .clk    (clk),
+    .a      (y2),
+    .result (y2_e10f23z)
+  );
   wire [33:0] z1_e10f23z;
+  fp_convert_e8f23_to_e10f23z convert_z1_e10f23z (
+    .clk    (clk),
+    .a      (z1),
+    .result (z1_e10f23z)
+  );
   wire [33:0] z2_e10f23z;
-  wire [33:0] radius_sum;
+  fp_convert_e8f23_to_e10f23z convert_z2_e10f23z (
+    .clk    (clk),
+    .a      (z2),
+    .result (z2_e10f23z)
+  );
   wire [33:0] r1_e10f23z;
+  fp_convert_e8f23_to_e10f23z convert_r1_e10f23z (
+    .clk    (clk),
+    .a      (r1),
+    .result (r1_e10f23z)
+  );
   wire [33:0] r2_e10f23z;
-  wire distance_at_most_0;
-  wire [31:0] position_x;
-  wire [33:0] x1_e10f23z_plus_nx_times_offset;
-  wire [33:0] nx_times_offset;
-  wire [33:0] nx;
-  wire [33:0] inverse_distance;
-  wire [33:0] offset;
-  wire [33:0] r2_e10f23z_minus_r1_e10f23z_minus_distance;
-  wire [33:0] r2_e10f23z_minus_r1_e10f23z;
-  wire [31:0] position_y;
-  wire [33:0] y1_e10f23z_plus_ny_times_offset;
-  wire [33:0] ny_times_offset;
-  wire [33:0] ny;
-  wire [31:0] position_z;
-  wire [33:0] z1_e10f23z_plus_nz_times_offset;
-  wire [33:0] nz_times_offset;
-  wire [33:0] nz;
-  wire [31:0] normal_x_early;
-  wire [31:0] normal_y_early;
-  wire [31:0] normal_z_early;
-  wire [31:0] depth_early;
-  wire [33:0] radius_sum_minus_distance;
-
-  // ---- logic ----
-  wire hit_early = valid_s40 & ~distance_above_radius_sum;
-  wire grazing_early = hit_early & distance_at_most_0;
-  wire [33:0] position_x_e10f23z_chosen = grazing_early_s71 ? x1_e10f23z_s71 : x1_e10f23z_plus_nx_times_offset;
-  wire [33:0] hit_early_s71_wide = {34{hit_early_s71}};
-  wire [33:0] position_x_e10f23z = position_x_e10f23z_chosen & hit_early_s71_wide;
-  wire [33:0] position_y_e10f23z_chosen = grazing_early_s71 ? y1_e10f23z_s71 : y1_e10f23z_plus_ny_times_offset;
-  wire [33:0] position_y_e10f23z = position_y_e10f23z_chosen & hit_early_s71_wide;
-  wire [33:0] position_z_e10f23z_chosen = grazing_early_s71 ? z1_e10f23z_s71 : z1_e10f23z_plus_nz_times_offset;
-  wire [33:0] position_z_e10f23z = position_z_e10f23z_chosen & hit_early_s71_wide;
-  wire [33:0] normal_x_e10f23z_chosen = grazing_early_s61 ? 34'hff800000 : nx;
-  wire [33:0] hit_early_s61_wide = {34{hit_early_s61}};
-  wire [33:0] normal_x_e10f23z = normal_x_e10f23z_chosen & hit_early_s61_wide;
-  wire [33:0] not_grazing_early_s61_wide = {34{~grazing_early_s61}};
-  wire [33:0] normal_y_e10f23z_chosen = ny & not_grazing_early_s61_wide;
-  wire [33:0] normal_y_e10f23z = normal_y_e10f23z_chosen & hit_early_s61_wide;
-  wire [33:0] normal_z_e10f23z_chosen = nz & not_grazing_early_s61_wide;
-  wire [33:0] normal_z_e10f23z = normal_z_e10f23z_chosen & hit_early_s61_wide;
-  wire [33:0] depth_e10f23z = hit_early_s45 ? radius_sum_minus_distance : 34'd0;
-
-  // ---- at the clock edge ----
-  always @(posedge clk) begin
-    hit_line[delay_4] <= hit_early_s71;
-    hit <= hit_line[delay_4_next];
-    hit_early_s71_line[delay_10] <= hit_early_s61;
-    hit_early_s71 <= hit_early_s71_line[delay_10_next];
-    hit_early_s61_line[delay_16] <= hit_early_s45;
-    hit_early_s61 <= hit_early_s61_line[delay_16_next];
-    hit_early_s45_line[delay_5] <= hit_early;
-    hit_early_s45 <= hit_early_s45_line[delay_5_next];
-    valid_s40_line[delay_40] <= valid;
-    valid_s40 <= valid_s40_line[delay_40_next];
-    dz_squared_s18_line[delay_6] <= dz_squared;
-    dz_squared_s18 <= dz_squared_s18_line[delay_6_next];
-    radius_sum_s39_line[delay_31] <= radius_sum;
-    radius_sum_s39 <= radius_sum_s39_line[delay_31_next];
-    grazing_line[delay_4] <= grazing_early_s71;
-    grazing <= grazing_line[delay_4_next];
-    grazing_early_s71_line[delay_10] <= grazing_early_s61;
-    grazing_early_s71 <= grazing_early_s71_line[delay_10_next];
-    grazing_early_s61_line[delay_21] <= grazing_early;
-    grazing_early_s61 <= grazing_early_s61_line[delay_21_next];
-    position_x_e10f23z_s72 <= position_x_e10f23z;
-    x1_e10f23z_s71_line[delay_6] <= x1_e10f23z_s65;
-    x1_e10f23z_s71 <= x1_e10f23z_s71_line[delay_6_next];
-    x1_e10f23z_s65_line[delay_63] <= x1_e10f23z;
-    x1_e10f23z_s65 <= x1_e10f23z_s65_line[delay_63_next];
-    dx_s57_line[delay_49] <= dx;
-    dx_s57 <= dx_s57_line[delay_49_next];
-    offset_s61_line[delay_15] <= offset;
-    offset_s61 <= offset_s61_line[delay_15_next];
-    r2_e10f23z_minus_r1_e10f23z_s39_line[delay_31] <= r2_e10f23z_minus_r1_e10f23z;
-    r2_e10f23z_minus_r1_e10f23z_s39 <= r2_e10f23z_minus_r1_e10f23z_s39_line[delay_31_next];
-    position_y_e10f23z_s72 <= position_y_e10f23z;
-    y1_e10f23z_s71_line[delay_6] <= y1_e10f23z_s65;
-    y1_e10f23z_s71 <= y1_e10f23z_s71_line[delay_6_next];
-    y1_e10f23z_s65_line[delay_63] <= y1_e10f23z;
-    y1_e10f23z_s65 <= y1_e10f23z_s65_line[delay_63_next];
-    dy_s57_line[delay_49] <= dy;
-    dy_s57 <= dy_s57_line[delay_49_next];
-    position_z_e10f23z_s72 <= position_z_e10f23z;
-    z1_e10f23z_s71_line[delay_6] <= z1_e10f23z_s65;
-    z1_e10f23z_s71 <= z1_e10f23z_s71_line[delay_6_next];
-    z1_e10f23z_s65_line[delay_63] <= z1_e10f23z;
-    z1_e10f23z_s65 <= z1_e10f23z_s65_line[delay_63_next];
-    dz_s57_line[delay_49] <= dz;
-    dz_s57 <= dz_s57_line[delay_49_next];
-    normal_x_line[delay_10] <= normal_x_early;
-    normal_x <= normal_x_line[delay_10_next];
-    normal_x_e10f23z_s62 <= normal_x_e10f23z;
-    normal_y_line[delay_10] <= normal_y_early;
-    normal_y <= normal_y_line[delay_10_next];
-    normal_y_e10f23z_s62 <= normal_y_e10f23z;
-    normal_z_line[delay_10] <= normal_z_early;
-    normal_z <= normal_z_line[delay_10_next];
-    normal_z_e10f23z_s62 <= normal_z_e10f23z;
-    depth_line[delay_26] <= depth_early;
-    depth <= depth_line[delay_26_next];
-    depth_e10f23z_s46 <= depth_e10f23z;
-  end
-
-  fp_greater_e10f23z greater_distance_above_radius_sum (
+  fp_convert_e8f23_to_e10f23z convert_r2_e10f23z (
     .clk    (clk),
-    .a      (distance),
-    .b      (radius_sum_s39),
-    .result (distance_above_radius_sum)
+    .a      (r2),
+    .result (r2_e10f23z)
   );
 
-  fp_sqrt_e10f23z sqrt_distance (
-    .clk    (clk),
-    .rst    (rst),
-    .a      (distance_squared),
-    .result (distance)
-  );
-
-  fp_add_e10f23z add_distance_squared (
-    .clk    (clk),
-    .rst    (rst),
-    .a      (dx_squared_plus_dy_squared),
-    .b      (dz_squared_s18),
-    .result (distance_squared)
-  );
-
-  fp_add_e10f23z add_dx_squared_plus_dy_squared (
-    .clk    (clk),
-    .rst    (rst),
-    .a      (dx_squared),
-    .b      (dy_squared),
-    .result (dx_squared_plus_dy_squared)
-  );
-
-  fp_mul_e10f23z mul_dx_squared (
-    .clk    (clk),
-    .a      (dx),
-    .b      (dx),
-    .result (dx_squared)
-  );
-
+  // ---- stage 2 ----
+  wire [33:0] dx;
   fp_sub_e10f23z sub_dx (
     .clk    (clk),
     .rst    (rst),
@@ -409,26 +222,7 @@ module sphere_kernel (
     .b      (x2_e10f23z),
     .result (dx)
   );
-
-  fp_convert_e8f23_to_e10f23z convert_x1_e10f23z (
-    .clk    (clk),
-    .a      (x1),
-    .result (x1_e10f23z)
-  );
-
-  fp_convert_e8f23_to_e10f23z convert_x2_e10f23z (
-    .clk    (clk),
-    .a      (x2),
-    .result (x2_e10f23z)
-  );
-
-  fp_mul_e10f23z mul_dy_squared (
-    .clk    (clk),
-    .a      (dy),
-    .b      (dy),
-    .result (dy_squared)
-  );
-
+  wire [33:0] dy;
   fp_sub_e10f23z sub_dy (
     .clk    (clk),
     .rst    (rst),
@@ -436,26 +230,7 @@ module sphere_kernel (
     .b      (y2_e10f23z),
     .result (dy)
   );
-
-  fp_convert_e8f23_to_e10f23z convert_y1_e10f23z (
-    .clk    (clk),
-    .a      (y1),
-    .result (y1_e10f23z)
-  );
-
-  fp_convert_e8f23_to_e10f23z convert_y2_e10f23z (
-    .clk    (clk),
-    .a      (y2),
-    .result (y2_e10f23z)
-  );
-
-  fp_mul_e10f23z mul_dz_squared (
-    .clk    (clk),
-    .a      (dz),
-    .b      (dz),
-    .result (dz_squared)
-  );
-
+  wire [33:0] dz;
   fp_sub_e10f23z sub_dz (
     .clk    (clk),
     .rst    (rst),
@@ -463,19 +238,7 @@ module sphere_kernel (
     .b      (z2_e10f23z),
     .result (dz)
   );
-
-  fp_convert_e8f23_to_e10f23z convert_z1_e10f23z (
-    .clk    (clk),
-    .a      (z1),
-    .result (z1_e10f23z)
-  );
-
-  fp_convert_e8f23_to_e10f23z convert_z2_e10f23z (
-    .clk    (clk),
-    .a      (z2),
-    .result (z2_e10f23z)
-  );
-
+  wire [33:0] radius_sum;
   fp_add_e10f23z add_radius_sum (
     .clk    (clk),
     .rst    (rst),
@@ -483,75 +246,7 @@ module sphere_kernel (
     .b      (r2_e10f23z),
     .result (radius_sum)
   );
-
-  fp_convert_e8f23_to_e10f23z convert_r1_e10f23z (
-    .clk    (clk),
-    .a      (r1),
-    .result (r1_e10f23z)
-  );
-
-  fp_convert_e8f23_to_e10f23z convert_r2_e10f23z (
-    .clk    (clk),
-    .a      (r2),
-    .result (r2_e10f23z)
-  );
-
-  fp_at_most_e10f23z at_most_distance_at_most_0 (
-    .clk    (clk),
-    .a      (distance),
-    .b      (34'd0),
-    .result (distance_at_most_0)
-  );
-
-  fp_convert_e10f23z_to_e8f23 convert_position_x (
-    .clk    (clk),
-    .a      (position_x_e10f23z_s72),
-    .result (position_x)
-  );
-
-  fp_add_e10f23z add_x1_e10f23z_plus_nx_times_offset (
-    .clk    (clk),
-    .rst    (rst),
-    .a      (x1_e10f23z_s65),
-    .b      (nx_times_offset),
-    .result (x1_e10f23z_plus_nx_times_offset)
-  );
-
-  fp_mul_e10f23z mul_nx_times_offset (
-    .clk    (clk),
-    .a      (nx),
-    .b      (offset_s61),
-    .result (nx_times_offset)
-  );
-
-  fp_mul_e10f23z mul_nx (
-    .clk    (clk),
-    .a      (dx_s57),
-    .b      (inverse_distance),
-    .result (nx)
-  );
-
-  fp_recip_e10f23z recip_inverse_distance (
-    .clk    (clk),
-    .rst    (rst),
-    .a      (distance),
-    .result (inverse_distance)
-  );
-
-  fp_halve_e10f23z halve_offset (
-    .clk    (clk),
-    .a      (r2_e10f23z_minus_r1_e10f23z_minus_distance),
-    .result (offset)
-  );
-
-  fp_sub_e10f23z sub_r2_e10f23z_minus_r1_e10f23z_minus_distance (
-    .clk    (clk),
-    .rst    (rst),
-    .a      (r2_e10f23z_minus_r1_e10f23z_s39),
-    .b      (distance),
-    .result (r2_e10f23z_minus_r1_e10f23z_minus_distance)
-  );
-
+  wire [33:0] r2_e10f23z_minus_r1_e10f23z;
   fp_sub_e10f23z sub_r2_e10f23z_minus_r1_e10f23z (
     .clk    (clk),
     .rst    (rst),
@@ -560,12 +255,298 @@ module sphere_kernel (
     .result (r2_e10f23z_minus_r1_e10f23z)
   );
 
-  fp_convert_e10f23z_to_e8f23 convert_position_y (
+  // ---- stage 8 ----
+  wire [33:0] dx_squared;
+  fp_mul_e10f23z mul_dx_squared (
     .clk    (clk),
-    .a      (position_y_e10f23z_s72),
-    .result (position_y)
+    .a      (dx),
+    .b      (dx),
+    .result (dx_squared)
+  );
+  wire [33:0] dy_squared;
+  fp_mul_e10f23z mul_dy_squared (
+    .clk    (clk),
+    .a      (dy),
+    .b      (dy),
+    .result (dy_squared)
+  );
+  wire [33:0] dz_squared;
+  fp_mul_e10f23z mul_dz_squared (
+    .clk    (clk),
+    .a      (dz),
+    .b      (dz),
+    .result (dz_squared)
   );
 
+  // ---- stage 12 ----
+  wire [33:0] dx_squared_plus_dy_squared;
+  fp_add_e10f23z add_dx_squared_plus_dy_squared (
+    .clk    (clk),
+    .rst    (rst),
+    .a      (dx_squared),
+    .b      (dy_squared),
+    .result (dx_squared_plus_dy_squared)
+  );
+
+  // ---- stage 18 ----
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [33:0] dz_squared_s18_line [0:5];
+  reg [33:0] dz_squared_s18;
+  always @(posedge clk) begin
+    dz_squared_s18_line[delay_6] <= dz_squared;
+    dz_squared_s18 <= dz_squared_s18_line[delay_6_next];
+  end
+  wire [33:0] distance_squared;
+  fp_add_e10f23z add_distance_squared (
+    .clk    (clk),
+    .rst    (rst),
+    .a      (dx_squared_plus_dy_squared),
+    .b      (dz_squared_s18),
+    .result (distance_squared)
+  );
+
+  // ---- stage 24 ----
+  wire [33:0] distance;
+  fp_sqrt_e10f23z sqrt_distance (
+    .clk    (clk),
+    .rst    (rst),
+    .a      (distance_squared),
+    .result (distance)
+  );
+
+  // ---- stage 39 ----
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [33:0] radius_sum_s39_line [0:30];
+  reg [33:0] radius_sum_s39;
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [33:0] r2_e10f23z_minus_r1_e10f23z_s39_line [0:30];
+  reg [33:0] r2_e10f23z_minus_r1_e10f23z_s39;
+  always @(posedge clk) begin
+    radius_sum_s39_line[delay_31] <= radius_sum;
+    radius_sum_s39 <= radius_sum_s39_line[delay_31_next];
+    r2_e10f23z_minus_r1_e10f23z_s39_line[delay_31] <= r2_e10f23z_minus_r1_e10f23z;
+    r2_e10f23z_minus_r1_e10f23z_s39 <= r2_e10f23z_minus_r1_e10f23z_s39_line[delay_31_next];
+  end
+  wire distance_above_radius_sum;
+  fp_greater_e10f23z greater_distance_above_radius_sum (
+    .clk    (clk),
+    .a      (distance),
+    .b      (radius_sum_s39),
+    .result (distance_above_radius_sum)
+  );
+  wire distance_at_most_0;
+  fp_at_most_e10f23z at_most_distance_at_most_0 (
+    .clk    (clk),
+    .a      (distance),
+    .b      (34'd0),
+    .result (distance_at_most_0)
+  );
+  wire [33:0] inverse_distance;
+  fp_recip_e10f23z recip_inverse_distance (
+    .clk    (clk),
+    .rst    (rst),
+    .a      (distance),
+    .result (inverse_distance)
+  );
+  wire [33:0] r2_e10f23z_minus_r1_e10f23z_minus_distance;
+  fp_sub_e10f23z sub_r2_e10f23z_minus_r1_e10f23z_minus_distance (
+    .clk    (clk),
+    .rst    (rst),
+    .a      (r2_e10f23z_minus_r1_e10f23z_s39),
+    .b      (distance),
+    .result (r2_e10f23z_minus_r1_e10f23z_minus_distance)
+  );
+  wire [33:0] radius_sum_minus_distance;
+  fp_sub_e10f23z sub_radius_sum_minus_distance (
+    .clk    (clk),
+    .rst    (rst),
+    .a      (radius_sum_s39),
+    .b      (distance),
+    .result (radius_sum_minus_distance)
+  );
+
+  // ---- stage 40 ----
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg valid_s40_line [0:39];
+  reg valid_s40;
+  always @(posedge clk) begin
+    valid_s40_line[delay_40] <= valid;
+    valid_s40 <= valid_s40_line[delay_40_next];
+  end
+  wire hit_early = valid_s40 & ~distance_above_radius_sum;
+  wire grazing_early = hit_early & distance_at_most_0;
+
+  // ---- stage 45 ----
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg hit_early_s45_line [0:4];
+  reg hit_early_s45;
+  always @(posedge clk) begin
+    hit_early_s45_line[delay_5] <= hit_early;
+    hit_early_s45 <= hit_early_s45_line[delay_5_next];
+  end
+  wire [33:0] depth_e10f23z = hit_early_s45 ? radius_sum_minus_distance : 34'd0;
+  wire [33:0] offset;
+  fp_halve_e10f23z halve_offset (
+    .clk    (clk),
+    .a      (r2_e10f23z_minus_r1_e10f23z_minus_distance),
+    .result (offset)
+  );
+
+  // ---- stage 46 ----
+  reg [33:0] depth_e10f23z_s46;
+  always @(posedge clk) begin
+    depth_e10f23z_s46 <= depth_e10f23z;
+  end
+  wire [31:0] depth_early;
+  fp_convert_e10f23z_to_e8f23 convert_depth_early (
+    .clk    (clk),
+    .a      (depth_e10f23z_s46),
+    .result (depth_early)
+  );
+
+  // ---- stage 57 ----
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [33:0] dx_s57_line [0:48];
+  reg [33:0] dx_s57;
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [33:0] dy_s57_line [0:48];
+  reg [33:0] dy_s57;
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [33:0] dz_s57_line [0:48];
+  reg [33:0] dz_s57;
+  always @(posedge clk) begin
+    dx_s57_line[delay_49] <= dx;
+    dx_s57 <= dx_s57_line[delay_49_next];
+    dy_s57_line[delay_49] <= dy;
+    dy_s57 <= dy_s57_line[delay_49_next];
+    dz_s57_line[delay_49] <= dz;
+    dz_s57 <= dz_s57_line[delay_49_next];
+  end
+  wire [33:0] nx;
+  fp_mul_e10f23z mul_nx (
+    .clk    (clk),
+    .a      (dx_s57),
+    .b      (inverse_distance),
+    .result (nx)
+  );
+  wire [33:0] ny;
+  fp_mul_e10f23z mul_ny (
+    .clk    (clk),
+    .a      (dy_s57),
+    .b      (inverse_distance),
+    .result (ny)
+  );
+  wire [33:0] nz;
+  fp_mul_e10f23z mul_nz (
+    .clk    (clk),
+    .a      (dz_s57),
+    .b      (inverse_distance),
+    .result (nz)
+  );
+
+  // ---- stage 61 ----
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg hit_early_s61_line [0:15];
+  reg hit_early_s61;
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg grazing_early_s61_line [0:20];
+  reg grazing_early_s61;
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [33:0] offset_s61_line [0:14];
+  reg [33:0] offset_s61;
+  always @(posedge clk) begin
+    hit_early_s61_line[delay_16] <= hit_early_s45;
+    hit_early_s61 <= hit_early_s61_line[delay_16_next];
+    grazing_early_s61_line[delay_21] <= grazing_early;
+    grazing_early_s61 <= grazing_early_s61_line[delay_21_next];
+    offset_s61_line[delay_15] <= offset;
+    offset_s61 <= offset_s61_line[delay_15_next];
+  end
+  wire [33:0] normal_x_e10f23z_chosen = grazing_early_s61 ? 34'hff800000 : nx;
+  wire [33:0] hit_early_s61_wide = {34{hit_early_s61}};
+  wire [33:0] normal_x_e10f23z = normal_x_e10f23z_chosen & hit_early_s61_wide;
+  wire [33:0] not_grazing_early_s61_wide = {34{~grazing_early_s61}};
+  wire [33:0] normal_y_e10f23z_chosen = ny & not_grazing_early_s61_wide;
+  wire [33:0] normal_y_e10f23z = normal_y_e10f23z_chosen & hit_early_s61_wide;
+  wire [33:0] normal_z_e10f23z_chosen = nz & not_grazing_early_s61_wide;
+  wire [33:0] normal_z_e10f23z = normal_z_e10f23z_chosen & hit_early_s61_wide;
+  wire [33:0] nx_times_offset;
+  fp_mul_e10f23z mul_nx_times_offset (
+    .clk    (clk),
+    .a      (nx),
+    .b      (offset_s61),
+    .result (nx_times_offset)
+  );
+  wire [33:0] ny_times_offset;
+  fp_mul_e10f23z mul_ny_times_offset (
+    .clk    (clk),
+    .a      (ny),
+    .b      (offset_s61),
+    .result (ny_times_offset)
+  );
+  wire [33:0] nz_times_offset;
+  fp_mul_e10f23z mul_nz_times_offset (
+    .clk    (clk),
+    .a      (nz),
+    .b      (offset_s61),
+    .result (nz_times_offset)
+  );
+
+  // ---- stage 62 ----
+  reg [33:0] normal_x_e10f23z_s62;
+  reg [33:0] normal_y_e10f23z_s62;
+  reg [33:0] normal_z_e10f23z_s62;
+  always @(posedge clk) begin
+    normal_x_e10f23z_s62 <= normal_x_e10f23z;
+    normal_y_e10f23z_s62 <= normal_y_e10f23z;
+    normal_z_e10f23z_s62 <= normal_z_e10f23z;
+  end
+  wire [31:0] normal_x_early;
+  fp_convert_e10f23z_to_e8f23 convert_normal_x_early (
+    .clk    (clk),
+    .a      (normal_x_e10f23z_s62),
+    .result (normal_x_early)
+  );
+  wire [31:0] normal_y_early;
+  fp_convert_e10f23z_to_e8f23 convert_normal_y_early (
+    .clk    (clk),
+    .a      (normal_y_e10f23z_s62),
+    .result (normal_y_early)
+  );
+  wire [31:0] normal_z_early;
+  fp_convert_e10f23z_to_e8f23 convert_normal_z_early (
+    .clk    (clk),
+    .a      (normal_z_e10f23z_s62),
+    .result (normal_z_early)
+  );
+
+  // ---- stage 65 ----
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [33:0] x1_e10f23z_s65_line [0:62];
+  reg [33:0] x1_e10f23z_s65;
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [33:0] y1_e10f23z_s65_line [0:62];
+  reg [33:0] y1_e10f23z_s65;
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [33:0] z1_e10f23z_s65_line [0:62];
+  reg [33:0] z1_e10f23z_s65;
+  always @(posedge clk) begin
+    x1_e10f23z_s65_line[delay_63] <= x1_e10f23z;
+    x1_e10f23z_s65 <= x1_e10f23z_s65_line[delay_63_next];
+    y1_e10f23z_s65_line[delay_63] <= y1_e10f23z;
+    y1_e10f23z_s65 <= y1_e10f23z_s65_line[delay_63_next];
+    z1_e10f23z_s65_line[delay_63] <= z1_e10f23z;
+    z1_e10f23z_s65 <= z1_e10f23z_s65_line[delay_63_next];
+  end
+  wire [33:0] x1_e10f23z_plus_nx_times_offset;
+  fp_add_e10f23z add_x1_e10f23z_plus_nx_times_offset (
+    .clk    (clk),
+    .rst    (rst),
+    .a      (x1_e10f23z_s65),
+    .b      (nx_times_offset),
+    .result (x1_e10f23z_plus_nx_times_offset)
+  );
+  wire [33:0] y1_e10f23z_plus_ny_times_offset;
   fp_add_e10f23z add_y1_e10f23z_plus_ny_times_offset (
     .clk    (clk),
     .rst    (rst),
@@ -573,27 +554,7 @@ module sphere_kernel (
     .b      (ny_times_offset),
     .result (y1_e10f23z_plus_ny_times_offset)
   );
-
-  fp_mul_e10f23z mul_ny_times_offset (
-    .clk    (clk),
-    .a      (ny),
-    .b      (offset_s61),
-    .result (ny_times_offset)
-  );
-
-  fp_mul_e10f23z mul_ny (
-    .clk    (clk),
-    .a      (dy_s57),
-    .b      (inverse_distance),
-    .result (ny)
-  );
-
-  fp_convert_e10f23z_to_e8f23 convert_position_z (
-    .clk    (clk),
-    .a      (position_z_e10f23z_s72),
-    .result (position_z)
-  );
-
+  wire [33:0] z1_e10f23z_plus_nz_times_offset;
   fp_add_e10f23z add_z1_e10f23z_plus_nz_times_offset (
     .clk    (clk),
     .rst    (rst),
@@ -602,51 +563,97 @@ module sphere_kernel (
     .result (z1_e10f23z_plus_nz_times_offset)
   );
 
-  fp_mul_e10f23z mul_nz_times_offset (
+  // ---- stage 71 ----
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg hit_early_s71_line [0:9];
+  reg hit_early_s71;
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg grazing_early_s71_line [0:9];
+  reg grazing_early_s71;
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [33:0] x1_e10f23z_s71_line [0:5];
+  reg [33:0] x1_e10f23z_s71;
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [33:0] y1_e10f23z_s71_line [0:5];
+  reg [33:0] y1_e10f23z_s71;
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [33:0] z1_e10f23z_s71_line [0:5];
+  reg [33:0] z1_e10f23z_s71;
+  always @(posedge clk) begin
+    hit_early_s71_line[delay_10] <= hit_early_s61;
+    hit_early_s71 <= hit_early_s71_line[delay_10_next];
+    grazing_early_s71_line[delay_10] <= grazing_early_s61;
+    grazing_early_s71 <= grazing_early_s71_line[delay_10_next];
+    x1_e10f23z_s71_line[delay_6] <= x1_e10f23z_s65;
+    x1_e10f23z_s71 <= x1_e10f23z_s71_line[delay_6_next];
+    y1_e10f23z_s71_line[delay_6] <= y1_e10f23z_s65;
+    y1_e10f23z_s71 <= y1_e10f23z_s71_line[delay_6_next];
+    z1_e10f23z_s71_line[delay_6] <= z1_e10f23z_s65;
+    z1_e10f23z_s71 <= z1_e10f23z_s71_line[delay_6_next];
+  end
+  wire [33:0] position_x_e10f23z_chosen = grazing_early_s71 ? x1_e10f23z_s71 : x1_e10f23z_plus_nx_times_offset;
+  wire [33:0] hit_early_s71_wide = {34{hit_early_s71}};
+  wire [33:0] position_x_e10f23z = position_x_e10f23z_chosen & hit_early_s71_wide;
+  wire [33:0] position_y_e10f23z_chosen = grazing_early_s71 ? y1_e10f23z_s71 : y1_e10f23z_plus_ny_times_offset;
+  wire [33:0] position_y_e10f23z = position_y_e10f23z_chosen & hit_early_s71_wide;
+  wire [33:0] position_z_e10f23z_chosen = grazing_early_s71 ? z1_e10f23z_s71 : z1_e10f23z_plus_nz_times_offset;
+  wire [33:0] position_z_e10f23z = position_z_e10f23z_chosen & hit_early_s71_wide;
+
+  // ---- stage 72 ----
+  reg [33:0] position_x_e10f23z_s72;
+  reg [33:0] position_y_e10f23z_s72;
+  reg [33:0] position_z_e10f23z_s72;
+  always @(posedge clk) begin
+    position_x_e10f23z_s72 <= position_x_e10f23z;
+    position_y_e10f23z_s72 <= position_y_e10f23z;
+    position_z_e10f23z_s72 <= position_z_e10f23z;
+  end
+  wire [31:0] position_x;
+  fp_convert_e10f23z_to_e8f23 convert_position_x (
     .clk    (clk),
-    .a      (nz),
-    .b      (offset_s61),
-    .result (nz_times_offset)
+    .a      (position_x_e10f23z_s72),
+    .result (position_x)
+  );
+  wire [31:0] position_y;
+  fp_convert_e10f23z_to_e8f23 convert_position_y (
+    .clk    (clk),
+    .a      (position_y_e10f23z_s72),
+    .result (position_y)
+  );
+  wire [31:0] position_z;
+  fp_convert_e10f23z_to_e8f23 convert_position_z (
+    .clk    (clk),
+    .a      (position_z_e10f23z_s72),
+    .result (position_z)
   );
 
-  fp_mul_e10f23z mul_nz (
-    .clk    (clk),
-    .a      (dz_s57),
-    .b      (inverse_distance),
-    .result (nz)
-  );
-
-  fp_convert_e10f23z_to_e8f23 convert_normal_x_early (
-    .clk    (clk),
-    .a      (normal_x_e10f23z_s62),
-    .result (normal_x_early)
-  );
-
-  fp_convert_e10f23z_to_e8f23 convert_normal_y_early (
-    .clk    (clk),
-    .a      (normal_y_e10f23z_s62),
-    .result (normal_y_early)
-  );
-
-  fp_convert_e10f23z_to_e8f23 convert_normal_z_early (
-    .clk    (clk),
-    .a      (normal_z_e10f23z_s62),
-    .result (normal_z_early)
-  );
-
-  fp_convert_e10f23z_to_e8f23 convert_depth_early (
-    .clk    (clk),
-    .a      (depth_e10f23z_s46),
-    .result (depth_early)
-  );
-
-  fp_sub_e10f23z sub_radius_sum_minus_distance (
-    .clk    (clk),
-    .rst    (rst),
-    .a      (radius_sum_s39),
-    .b      (distance),
-    .result (radius_sum_minus_distance)
-  );
+  // ---- registered outputs ----
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg hit_line [0:3];
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg grazing_line [0:3];
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [31:0] normal_x_line [0:9];
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [31:0] normal_y_line [0:9];
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [31:0] normal_z_line [0:9];
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [31:0] depth_line [0:25];
+  always @(posedge clk) begin
+    hit_line[delay_4] <= hit_early_s71;
+    hit <= hit_line[delay_4_next];
+    grazing_line[delay_4] <= grazing_early_s71;
+    grazing <= grazing_line[delay_4_next];
+    normal_x_line[delay_10] <= normal_x_early;
+    normal_x <= normal_x_line[delay_10_next];
+    normal_y_line[delay_10] <= normal_y_early;
+    normal_y <= normal_y_line[delay_10_next];
+    normal_z_line[delay_10] <= normal_z_early;
+    normal_z <= normal_z_line[delay_10_next];
+    depth_line[delay_26] <= depth_early;
+    depth <= depth_line[delay_26_next];
+  end
 
   assign pos_x = position_x;
   assign pos_y = position_y;

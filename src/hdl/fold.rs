@@ -70,7 +70,10 @@ pub(super) fn slice(operand: Signal<'_>, low: u32, width: u32) -> Option<Signal<
             let shifted = if low >= 128 { 0 } else { value >> low };
             Some(graph.constant(width, shifted & ones(width)?))
         }
-        Op::Slice { low: inner } => Some(Signal::new(graph, node.operands[0]).slice(inner + low, width)),
+        // A field that has a name is sliced by that name.
+        Op::Slice { low: inner } if node.name.is_none() => {
+            Some(Signal::new(graph, node.operands[0]).slice(inner + low, width))
+        }
         Op::Concat => {
             let mut end = node.width;
             for part in node.operands.iter().map(|&id| Signal::new(graph, id)) {

@@ -177,7 +177,7 @@ struct Uses {
 }
 
 /// An expression of more than this many operators gets a name, so that lines stay readable.
-const LARGEST_INLINE: u32 = 6;
+const LARGEST_INLINE: u32 = 9;
 
 impl Uses {
     fn count(module: &Module) -> Self {

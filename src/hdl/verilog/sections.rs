@@ -12,6 +12,8 @@ use super::unused::unconnected;
 
 /// Up to this depth a memory goes to look-up tables, above it to block RAM.
 const DEEPEST_DISTRIBUTED: u32 = 64;
+/// A memory narrower than this would waste a block RAM.
+const NARROWEST_BLOCK: u32 = 8;
 
 pub(super) struct Sections<'a> {
     module: &'a Module,
@@ -31,10 +33,22 @@ impl<'a> Sections<'a> {
         pointers + &body
     }
 
+    /// Whether every value has its stage, so that the file can follow them in time.
     fn is_feed_forward(&self) -> bool {
-        self.module.instances.is_empty()
-            && self.module.memories.is_empty()
-            && !self.module.nodes.iter().any(|node| matches!(node.op, Op::Register { .. }))
+        let staged = |id: NodeId| match self.module.node(id).op {
+            Op::Register { .. } => false,
+            Op::InstanceOutput { instance, .. } => {
+                self.module.instances[instance].count == InstanceCount::One && stage(self.module, id).is_some()
+            }
+            _ => true,
+        };
+        self.module.memories.is_empty() && self.module.ids().all(staged)
+    }
+
+    /// The stage in which an instance takes its inputs.
+    fn begins(&self, instance: &Instance) -> u32 {
+        let inputs = instance.inputs.iter().flatten();
+        inputs.filter_map(|id| stage(self.module, *id)).max().unwrap_or(0)
     }
 
     /// A pipeline: each stage's logic, then the registers that end it.
@@ -45,7 +59,10 @@ impl<'a> Sections<'a> {
             let here = |id: &NodeId| stage(self.module, *id) == Some(number);
             let arriving: Vec<_> = self.module.ids().filter(here).filter(|id| is_register(self.module, *id)).collect();
             let logic = self.logic(self.module.ids().filter(here));
-            if arriving.is_empty() && logic.is_empty() {
+            let instances: Vec<usize> = (0..self.module.instances.len())
+                .filter(|index| self.begins(&self.module.instances[*index]) == number)
+                .collect();
+            if arriving.is_empty() && logic.is_empty() && instances.is_empty() {
                 continue;
             }
             out += &if number == last && logic.is_empty() {
@@ -55,6 +72,10 @@ impl<'a> Sections<'a> {
             };
             out += &self.registers(&arriving);
             out += &logic;
+            for index in instances {
+                out += &self.instance_outputs(index);
+                out += self.instance(&self.module.instances[index]).trim_start_matches('\n');
+            }
         }
         out
     }
@@ -371,7 +392,11 @@ fn memory_declaration(memory: &Memory) -> String {
 }
 
 fn ram(name: &str, depth: u32, width: u32) -> String {
-    let (vivado, quartus) = if depth <= DEEPEST_DISTRIBUTED { ("distributed", "MLAB") } else { ("block", "M20K") };
+    let (vivado, quartus) = if depth <= DEEPEST_DISTRIBUTED || width < NARROWEST_BLOCK {
+        ("distributed", "MLAB")
+    } else {
+        ("block", "M20K")
+    };
     format!(
         "  (* ram_style = \"{vivado}\", ramstyle = \"{quartus}, no_rw_check\" *)\n  reg {}{name} [0:{}];\n",
         range(width),
