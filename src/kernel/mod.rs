@@ -3,11 +3,13 @@
 
 pub mod batch;
 mod contact;
+mod engine;
 mod fields;
 mod record;
 mod reference;
 
 pub use contact::{Contact, Pair, contact};
+pub use engine::{Engine, EngineError};
 pub use fields::{Fields, FieldsError};
 pub use record::{ContactRecord, Flow, PAIR_FIELDS, PairRecord};
 pub use reference::Reference;
