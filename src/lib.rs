@@ -14,6 +14,8 @@ pub mod operator;
 pub mod pairs;
 pub mod pipeline;
 pub mod report;
+#[cfg(feature = "cosim")]
+pub mod sweep;
 pub mod tools;
 #[cfg(feature = "cosim")]
 pub mod verify;

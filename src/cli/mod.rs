@@ -7,6 +7,8 @@ mod doctor;
 mod failure;
 #[cfg(feature = "cosim")]
 mod link;
+#[cfg(feature = "cosim")]
+mod list;
 mod machine;
 mod output;
 mod pairs;
@@ -15,6 +17,8 @@ mod progress;
 #[cfg(feature = "cosim")]
 mod replay;
 mod rtl;
+#[cfg(feature = "cosim")]
+mod sweep;
 
 use std::process::ExitCode;
 
@@ -41,6 +45,8 @@ enum Command {
     Cosim(cosim::Cosim),
     /// Write a named set of pairs to a file
     Pairs(pairs::Pairs),
+    #[cfg(feature = "cosim")]
+    Sweep(sweep::Sweep),
     /// Say which tools are there, what needs them, and what installs the missing ones
     Doctor(doctor::Doctor),
     /// Print a shell's completion script
@@ -61,6 +67,8 @@ fn run(program: &Program) -> Result<(), Failure> {
         #[cfg(feature = "cosim")]
         Command::Cosim(options) => cosim::run(options),
         Command::Pairs(options) => pairs::run(options),
+        #[cfg(feature = "cosim")]
+        Command::Sweep(options) => sweep::run(options),
         Command::Doctor(options) => doctor::run(options),
         Command::Completions(options) => completions::run(options),
     }

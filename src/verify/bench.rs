@@ -162,6 +162,14 @@ impl Bench {
     }
 }
 
+/// SHA-256 of the Verilog that would be generated for a configuration: [`Bench::rtl_sha256`] without a model.
+///
+/// # Errors
+/// When the configuration cannot be generated.
+pub fn rtl_sha256(config: &Config) -> Result<String, VerifyError> {
+    Ok(generated(config)?.sha256())
+}
+
 /// The Verilog of a configuration. The number of SCPUs is left to the parameter, so that models share what they can.
 fn generated(config: &Config) -> Result<Source, VerifyError> {
     let scpus = Config::default().scpus;

@@ -6,6 +6,6 @@ pub mod corpus;
 mod error;
 mod lines;
 
-pub use bench::{Bench, Origin};
+pub use bench::{Bench, Origin, rtl_sha256};
 pub use check::{Mismatch, Verdict};
 pub use error::VerifyError;

@@ -1,0 +1,108 @@
+//! `afu sweep`: the same job for each number of SCPUs.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use contact_afu::config::Config;
+use contact_afu::pairs;
+use contact_afu::sweep::{Record, RecordError, SweepError, Task, fill, fingerprint};
+
+use super::failure::{Failure, Kind};
+use super::list::List;
+use super::machine::Machine;
+use super::{link, output, progress};
+
+/// Run the same job on AFUs of different sizes and compare them
+///
+/// For each: pairs a second at the clock, cycles a pair, latency, mismatches, seconds to build its model from nothing
+/// and to simulate. Rows are written as they come; the same command again resumes.
+#[derive(Args, Debug)]
+pub struct Sweep {
+    /// Numbers of SCPUs: 1,2,4 or 1..16 (16 included)
+    #[arg(long, value_name = "LIST", default_value = "1,2,3,7,10,16")]
+    scpus: List,
+    /// Cycles from one pair to the next in one SCPU: 1
+    #[arg(long, value_name = "LIST", default_value = "1")]
+    interval: List,
+    /// Pairs: diamond:H, random:N, or a .csv or .npy file
+    #[arg(long, value_name = "SET|FILE", default_value = "diamond:10")]
+    pairs: String,
+    /// Link between AFU and memory: ideal, late, shuffled, hostile, or a .json file of such a model
+    #[arg(long, value_name = "NAME|FILE", default_value = "ideal")]
+    link: String,
+    /// Seed of random pairs, of the link, and of registers that no reset reaches
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Folder to write: manifest.json (JSON of all) and sweep.csv
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Write into the folder even if afu did not make it; other files in it are left alone
+    #[arg(long)]
+    force: bool,
+    /// Write the figures as JSON too (schema contact-afu/sweep/1); - is standard output
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Synthesise each AFU too: not built yet
+    #[arg(long, hide = true)]
+    synth: bool,
+    #[command(flatten)]
+    machine: Machine,
+}
+
+pub fn run(options: &Sweep) -> Result<(), Failure> {
+    let configs = options.configs()?;
+    let link = link::read(&options.link)?;
+    let pairs = pairs::load(&options.pairs, options.seed)?;
+    let task = Task { pairs: &pairs, link: &link, seed: options.seed };
+    let base = options.machine.config()?;
+    let mut record = Record::new(&options.pairs, fingerprint(&pairs), &options.link, options.seed, &base);
+    let bar = progress::spinner("");
+    let resumed = fill(&mut record, &configs, &task, &options.out, options.force, |config| {
+        bar.set_message(format!("{} SCPUs: building the model and running it", config.scpus));
+    });
+    bar.finish_and_clear();
+    let resumed = resumed?;
+    if resumed > 0 {
+        eprintln!("{resumed} of {} rows are of an earlier run", record.rows.len());
+    }
+    let stdout_taken = options.json.as_deref().is_some_and(output::is_stdout);
+    output::show(&record.table(), stdout_taken)?;
+    if let Some(path) = &options.json {
+        output::json(path, &record)?;
+    }
+    let bad: Vec<String> = record.rows.iter().filter(|row| !row.passed()).map(|row| row.scpus.to_string()).collect();
+    if bad.is_empty() {
+        Ok(())
+    } else {
+        Err(Failure::new(Kind::Unmet, format!("mismatches with {} SCPUs", bad.join(", "))))
+    }
+}
+
+impl Sweep {
+    /// The AFUs, each known to be one that can be generated.
+    fn configs(&self) -> Result<Vec<Config>, Failure> {
+        if self.synth {
+            return Err(Failure::new(Kind::Usage, "--synth: not built yet; a sweep simulates"));
+        }
+        let base = self.machine.config()?;
+        let mut configs = Vec::new();
+        for &interval in &self.interval.0 {
+            for &scpus in &self.scpus.0 {
+                let config = Config { scpus, interval, ..base.clone() };
+                config.check()?;
+                configs.push(config);
+            }
+        }
+        Ok(configs)
+    }
+}
+
+impl From<SweepError> for Failure {
+    fn from(error: SweepError) -> Self {
+        match error {
+            SweepError::Verify(error) => error.into(),
+            SweepError::Record(RecordError::Folder(error)) => error.into(),
+            SweepError::Record(_) | SweepError::Cache(_) => Self::caused(Kind::Other, error),
+        }
+    }
+}

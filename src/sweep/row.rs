@@ -1,0 +1,104 @@
+//! One AFU's figures.
+
+use serde::{Deserialize, Serialize};
+
+use crate::config::Config;
+use crate::report::table::{figure, grouped};
+use crate::report::tally::Tally;
+use crate::verify::Verdict;
+
+/// One AFU's figures. The columns of the CSV and the keys of the JSON are these fields.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Row {
+    /// Sphere Collision Processing Units.
+    pub scpus: u32,
+    /// Cycles from one pair to the next in one SCPU.
+    pub interval: u32,
+    /// Pairs sent.
+    pub pairs: u64,
+    /// Pairs that touch.
+    pub contacts: u64,
+    /// Records that differ from the reference kernel's.
+    pub mismatches: u64,
+    /// Other checks that failed: status, counters, unused bits.
+    pub unmet: u64,
+    /// Clock cycles from start to done.
+    pub cycles: u64,
+    /// Clock cycles a pair; none without pairs.
+    pub cycles_per_pair: Option<f64>,
+    /// Pairs a second at the clock.
+    pub pairs_per_second: Option<f64>,
+    /// The share of the link's limit that was reached.
+    pub efficiency: Option<f64>,
+    /// Cycles from the first line of pairs in to the first line of contacts out.
+    pub latency_cycles: Option<u64>,
+    /// The clock, MHz.
+    pub clock_mhz: f64,
+    /// Seconds to build the model from nothing, Verilator's runtime included.
+    pub build_seconds: f64,
+    /// Seconds the simulation took.
+    pub simulation_seconds: f64,
+    /// SHA-256 of the Verilog.
+    pub rtl_sha256: String,
+}
+
+impl Row {
+    /// Of what came of a job.
+    pub(super) fn of(config: &Config, rtl_sha256: &str, verdict: &Verdict, build_seconds: f64) -> Self {
+        let tally = Tally::of(verdict, config.contact);
+        let cycles_per_pair = tally.cycles_per_pair();
+        Self {
+            scpus: config.scpus,
+            interval: config.interval,
+            pairs: tally.pairs,
+            contacts: tally.flows.contacts(),
+            mismatches: tally.mismatches,
+            unmet: verdict.unmet.len() as u64,
+            cycles: tally.cycles,
+            cycles_per_pair,
+            pairs_per_second: cycles_per_pair.map(|cycles| 1e6 * config.clock_mhz / cycles),
+            efficiency: tally.efficiency(),
+            latency_cycles: tally.latency_cycles,
+            clock_mhz: config.clock_mhz,
+            build_seconds,
+            simulation_seconds: tally.host_seconds,
+            rtl_sha256: rtl_sha256.to_owned(),
+        }
+    }
+
+    /// Whether every bit was right.
+    pub fn passed(&self) -> bool {
+        self.mismatches == 0 && self.unmet == 0
+    }
+
+    /// The heading of the table for people.
+    pub(super) const HEADING: [&'static str; 10] = [
+        "SCPUs",
+        "pairs",
+        "mismatches",
+        "cycles",
+        "cycles a pair",
+        "M pairs/s",
+        "of the link",
+        "latency",
+        "build s",
+        "simulation s",
+    ];
+
+    /// The row of the table for people.
+    pub(super) fn cells(&self) -> [String; 10] {
+        [
+            self.scpus.to_string(),
+            grouped(self.pairs),
+            grouped(self.mismatches),
+            grouped(self.cycles),
+            figure(self.cycles_per_pair, 3),
+            figure(self.pairs_per_second.map(|pairs| pairs / 1e6), 1),
+            self.efficiency.map_or_else(|| "-".to_owned(), |share| format!("{:.1} %", 100.0 * share)),
+            self.latency_cycles.map_or_else(|| "-".to_owned(), grouped),
+            format!("{:.1}", self.build_seconds),
+            format!("{:.1}", self.simulation_seconds),
+        ]
+    }
+}
