@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use contact_afu::hdl::verilog::{Style, emit};
-use contact_afu::hdl::{Graph, Module, Reset};
+use contact_afu::hdl::{Evaluator, Graph, Module, Reset};
 use expect_test::expect_file;
 
 /// One copy of an array: adds its number to a shared value where it is chosen.
@@ -55,4 +55,30 @@ fn golden_top_asynchronous_reset() {
     let text = emit(&top(), &style);
     assert!(text.contains("always @(posedge clk or negedge rst_n) begin\n    if (!rst_n) begin"), "{text}");
     assert!(!text.contains(" rst "), "{text}");
+}
+
+#[test]
+fn a_top_that_resets_itself_has_no_reset_port() {
+    let counter = Graph::new("counter");
+    let count = counter.register("count", 4, 9);
+    count.next(count.plus(1));
+    counter.output("value", *count);
+    let graph = Graph::new("board");
+    let (reset_n, soft_reset) = (graph.input("reset_n", 1), graph.input("soft_reset", 1));
+    graph.reset_by((!reset_n | soft_reset).delay(1).named("in_reset"));
+    let unit = graph.instance("unit", &counter.finish().unwrap(), &[]);
+    graph.output("value", unit.output("value"));
+    let board = graph.finish().unwrap();
+    expect_file!["golden/board.v"].assert_eq(&emit(&board, &Style::default()));
+    let low = emit(&board, &Style { reset: Reset { asynchronous: false, active_low: true }, header: vec![] });
+    assert!(low.contains("assign rst_n = ~in_reset;") && low.contains(".rst_n (rst_n)"), "{low}");
+    let mut run = Evaluator::new(&board, &[]).unwrap();
+    run.set("reset_n", 1);
+    let mut seen = Vec::new();
+    for cycle in 0..6 {
+        run.set("soft_reset", u128::from(cycle == 2));
+        run.step();
+        seen.push(run.get("value"));
+    }
+    assert_eq!(seen, [10, 11, 12, 9, 10, 11], "a cycle after the signal, the register's");
 }

@@ -85,7 +85,7 @@ impl Inner {
         let ports = self.ports.iter_mut().filter_map(|port| port.node.as_mut());
         let writes = self.memories.iter_mut().filter_map(|memory| memory.write.as_mut()).flatten();
         let inputs = self.instances.iter_mut().flat_map(|instance| &mut instance.inputs).flatten();
-        for id in operands.chain(ports).chain(writes).chain(inputs) {
+        for id in operands.chain(ports).chain(writes).chain(inputs).chain(&mut self.reset) {
             *id = to(*id);
         }
     }
@@ -113,9 +113,10 @@ impl<'a> Walk<'a> {
     }
 
     fn order(mut self) -> Result<Vec<NodeId>, NodeId> {
-        let outputs: Vec<_> = self.inner.ports.iter().filter(|p| p.output).filter_map(|p| p.node).collect();
-        for output in outputs {
-            self.visit(output)?;
+        let outputs = self.inner.ports.iter().filter(|p| p.output).filter_map(|p| p.node);
+        let roots: Vec<_> = outputs.chain(self.inner.reset).collect();
+        for root in roots {
+            self.visit(root)?;
             while let Some(id) = self.later.pop() {
                 self.visit(id)?;
             }
@@ -241,6 +242,7 @@ fn renumber(inner: Inner, order: &[NodeId]) -> Module {
         nodes,
         memories: memories.into_iter().map(|(_, memory)| memory).collect(),
         instances: instances.into_iter().map(|(_, instance)| instance).collect(),
+        reset: inner.reset.map(|id| new[&id]),
         paths: Vec::new(),
         latency: 0,
         timing: None,

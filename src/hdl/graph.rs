@@ -19,6 +19,7 @@ pub(super) struct Inner {
     pub parameters: Vec<Parameter>,
     pub memories: Vec<Memory>,
     pub instances: Vec<Instance>,
+    pub reset: Option<NodeId>,
     pub errors: Vec<Error>,
 }
 
@@ -45,6 +46,7 @@ impl Graph {
                 parameters: Vec::new(),
                 memories: Vec::new(),
                 instances: Vec::new(),
+                reset: None,
                 errors: Vec::new(),
             }),
         }
@@ -123,6 +125,20 @@ impl Graph {
     #[track_caller]
     pub fn wire(&self, name: &str, width: u32) -> Signal<'_> {
         self.fresh(Op::Wire, width, vec![], Location::caller()).named(name)
+    }
+
+    /// The module is reset, with all below it, by `active` (1 bit, high in reset) and has no reset port of its own: for
+    /// the top of a platform that has its own reset signals. Nothing may instantiate such a module.
+    #[track_caller]
+    pub fn reset_by(&self, active: Signal<'_>) {
+        let place = Location::caller();
+        let Some(ids) = self.own("reset by", &[active], place) else { return };
+        if active.width() != 1 {
+            return self.error(format!("reset by: `{}` has {} bits, not 1", active.describe(), active.width()), place);
+        }
+        if self.inner.borrow_mut().reset.replace(ids[0]).is_some() {
+            self.error("reset by: the module's reset is given twice".to_owned(), place);
+        }
     }
 
     /// Checks all that was recorded, drops what no output needs and puts the rest in order.

@@ -185,6 +185,8 @@ pub struct Module {
     pub memories: Vec<Memory>,
     /// Instances.
     pub instances: Vec<Instance>,
+    /// The value (1 bit, high in reset) that resets this module and all below it, in place of a reset port.
+    pub reset: Option<NodeId>,
     /// For each port: the inputs (port indices) an output depends on without a register between.
     pub paths: Vec<BTreeSet<usize>>,
     /// Register ranks between inputs and outputs, for a pipeline.
@@ -217,6 +219,11 @@ impl Module {
         !self.memories.is_empty()
             || self.nodes.iter().any(|n| matches!(n.op, Op::Delay { .. } | Op::Register { .. } | Op::MemoryRead { .. }))
             || self.instances.iter().any(|i| i.module.is_clocked())
+    }
+
+    /// Whether it has a reset port: something inside is reset, and not by the module itself.
+    pub fn has_reset_port(&self) -> bool {
+        self.reset.is_none() && self.is_reset()
     }
 
     /// Whether anything inside is reset.

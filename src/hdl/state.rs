@@ -206,6 +206,9 @@ impl Graph {
         inputs: &[(&str, Signal<'g>)],
         place: &'static Location<'static>,
     ) -> Instantiated<'g> {
+        if module.reset.is_some() {
+            self.error(format!("instance `{name}`: `{}` has a reset of its own, so it is a top", module.name), place);
+        }
         let signals: Vec<_> = inputs.iter().map(|(_, signal)| *signal).collect();
         let ids = self.own("instance", &signals, place);
         let mut connected = vec![None; module.ports.len()];

@@ -79,6 +79,8 @@ pub struct Evaluator {
     /// By flat node: where its words' places stand in `places`.
     nodes: Vec<u32>,
     ports: Vec<Pin>,
+    /// What resets a module that resets itself.
+    reset: Option<Pin>,
     settled: bool,
 }
 
@@ -91,7 +93,8 @@ impl Evaluator {
     pub fn new(module: &Arc<Module>, parameters: &[(&str, u32)]) -> Result<Self, EvaluateError> {
         let flat = Flat::new(module, parameter_values(module, parameters)?);
         let outputs = module.ports.iter().filter(|port| port.output);
-        let order = flat.order(outputs.filter_map(|port| port.node).map(|node| node.index()))?;
+        let roots = outputs.filter_map(|port| port.node).chain(module.reset);
+        let order = flat.order(roots.map(|node| node.index()))?;
         let lowered = Lowered::new(&flat, &order);
         let elements = state::Elements::new(&flat, &lowered)?;
         let layout = schedule::schedule(&lowered, &elements.words(&flat, &lowered));
@@ -103,8 +106,10 @@ impl Evaluator {
             let first = node.map_or(pin, |node| lowered.first[node.index()]);
             pin_at(&places, first, port.width, !port.output, results)
         });
+        let own_reset = module.reset.map(|node| pin_at(&places, lowered.first[node.index()], 1, false, results));
         let mut evaluator = Self {
             module: module.clone(),
+            reset: own_reset,
             tape: layout.tape,
             state,
             words: layout.words,
@@ -242,7 +247,11 @@ impl Evaluator {
     /// One clock edge: registers, delays and memories sample what is there now, then change together.
     pub fn step(&mut self) {
         self.settle();
+        let resets = self.reset.is_some_and(|pin| self.words[self.places[pin.first as usize] as usize] != 0);
         self.state.clock(&mut self.words, self.first_state);
+        if resets {
+            self.state.reset(&mut self.words);
+        }
         self.settled = false;
     }
 

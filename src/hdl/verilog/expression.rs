@@ -19,7 +19,7 @@ impl Expressions<'_> {
     }
 
     /// A value as an operand: in parentheses unless it is a single term.
-    fn term(&self, id: NodeId) -> String {
+    pub fn term(&self, id: NodeId) -> String {
         let text = self.value(id);
         let node = self.module.node(id);
         let in_place = |id: NodeId| self.names.declared[id.index()].is_none();

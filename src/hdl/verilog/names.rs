@@ -186,7 +186,7 @@ impl Uses {
         let memory_ports = module.memories.iter().filter_map(|m| m.write).flatten();
         let instance_inputs = module.instances.iter().flat_map(|i| i.inputs.iter().flatten().copied());
         let outputs = module.ports.iter().filter(|p| p.output).filter_map(|p| p.node);
-        for id in memory_ports.chain(instance_inputs).chain(outputs) {
+        for id in memory_ports.chain(instance_inputs).chain(outputs).chain(module.reset) {
             uses.count[id.index()] += 1;
         }
         for node in &module.nodes {

@@ -13,9 +13,12 @@ pub(super) fn print(module: &Module, style: &Style) -> String {
     let mut out = header(module, style);
     out += &interface(module, style, &names);
     out += &range_checks(module);
+    if module.reset.is_some() && module.is_reset() {
+        out += &format!("\n  // Resets all that is below.\n  wire {};\n", style.reset_port());
+    }
     let mut sections = Sections::new(module, style, &expressions);
     out += &sections.body();
-    out += &assignments(module, &names, &expressions);
+    out += &assignments(module, style, &names, &expressions);
     out += &unused(module, &names);
     out += "\nendmodule\n\n`default_nettype wire\n";
     out
@@ -52,7 +55,7 @@ fn interface(module: &Module, style: &Style, names: &Names) -> String {
     if module.is_clocked() {
         ports.push(format!("input  wire {:ranges$}clk", ""));
     }
-    if module.is_reset() {
+    if module.has_reset_port() {
         ports.push(format!("input  wire {:ranges$}{}", "", style.reset_port()));
     }
     for port in &module.ports {
@@ -98,8 +101,12 @@ fn range_checks(module: &Module) -> String {
     module.parameters.iter().map(check).collect()
 }
 
-fn assignments(module: &Module, names: &Names, expressions: &Expressions<'_>) -> String {
+fn assignments(module: &Module, style: &Style, names: &Names, expressions: &Expressions<'_>) -> String {
     let mut out = String::new();
+    if let Some(reset) = module.reset.filter(|_| module.is_reset()) {
+        let level = if style.reset.active_low { "~" } else { "" };
+        out += &format!("  assign {} = {level}{};\n", style.reset_port(), expressions.term(reset));
+    }
     for port in module.ports.iter().filter(|port| port.output) {
         let Some(id) = port.node else { continue };
         if !is_own(names, id, &port.name) {

@@ -285,7 +285,7 @@ impl<'a> Sections<'a> {
         if instance.module.is_clocked() {
             list.push((String::from("clk"), String::from("clk")));
         }
-        if instance.module.is_reset() {
+        if instance.module.has_reset_port() {
             list.push((self.style.reset_port().to_owned(), self.style.reset_port().to_owned()));
         }
         for (index, port) in instance.module.ports.iter().enumerate() {

@@ -62,7 +62,7 @@ fn used_bits(module: &Module, names: &Names) -> Vec<Vec<bool>> {
     let outputs = module.ports.iter().filter(|port| port.output).filter_map(|port| port.node);
     let memories = module.memories.iter().filter_map(|memory| memory.write).flatten();
     let inputs = module.instances.iter().flat_map(|instance| instance.inputs.iter().flatten().copied());
-    let roots: Vec<NodeId> = outputs.chain(memories).chain(inputs).collect();
+    let roots: Vec<NodeId> = outputs.chain(memories).chain(inputs).chain(module.reset).collect();
     for root in roots {
         used[root.index()].fill(true);
     }
