@@ -66,8 +66,10 @@ struct afu_instance {
     void dump() {}
 #endif
 
-    // Runs `body`; turns what it throws into -1 and a text.
+    // Runs `body`; turns what it throws into -1 and a text. What Verilator's runtime finds through the thread, such as
+    // who is to blame for a $stop, must be this instance and not the last one the thread made, which may be gone.
     template <class Body> int guarded(Body body) {
+        if (Verilated::threadContextp() != context.get()) Verilated::threadContextp(context.get());
         try {
             body();
             return 0;
@@ -93,6 +95,7 @@ namespace {
 afu_instance *create(uint64_t seed) {
     try {
         auto instance = std::make_unique<afu_instance>();
+        // Becomes the thread's context too: parts of the design that are libraries of their own are made in it.
         instance->context = std::make_unique<VerilatedContext>();
         VerilatedContext *context = instance->context.get();
         context->randReset(seed ? 2 : 0);
@@ -132,6 +135,7 @@ void destroy(afu_instance *instance) {
 #endif
     if (!instance->failed) instance->guarded([&] { instance->model->final(); });
     delete instance;
+    Verilated::threadContextp(nullptr);
 }
 
 const afu_port *ports(afu_instance *instance, uint32_t *count) {

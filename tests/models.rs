@@ -26,3 +26,15 @@ fn ports_are_found_and_carry_values() {
     assert!(afu.input("rd_rsp_tag", 9).is_err(), "the width is checked");
     assert!(afu.output("rd_rsp_tag", 10).is_err(), "the direction is checked");
 }
+
+#[test]
+fn a_generated_afu_and_its_source_have_one_hash() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("rtl");
+    let source = Source::from_folder(&folder, "contact_afu").unwrap();
+    let manifest = std::fs::read_to_string(folder.join("manifest.json")).unwrap();
+    let manifest: serde_json::Value = serde_json::from_str(&manifest).unwrap();
+    assert_eq!(manifest["rtl_sha256"], source.sha256());
+    if let Some(model) = Model::built_in() {
+        assert_eq!(model.rtl_sha256(), source.sha256());
+    }
+}

@@ -1,7 +1,11 @@
-//! The part of a design that is there many times, compiled once. The module [`BLOCK`] becomes a library of its own
-//! (Verilator's `--lib-create`), which the rest of the design calls for each instance; without this, Verilator writes
-//! the C++ of every instance anew. Its objects are cached apart, so that another number of instances compiles only the
-//! rest.
+//! The part of a design that is there many times, compiled once.
+//!
+//! Left alone, Verilator flattens every instance into the top and writes its C++ anew: sixteen units are 40 MB, which
+//! take minutes to compile and outrun every cache when they run. Two ways out, whose figures are in `docs/cosim.md`:
+//! the module [`BLOCK`] becomes a library of its own (`--lib-create`), which the rest of the design calls for each
+//! instance, and whose objects are cached apart, so that another number of instances compiles only the rest. A waveform
+//! does not reach into a library; so in a traced design the module [`SHARED`] is kept from being flattened, whose
+//! instances then share most of their functions.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,7 +15,12 @@ use super::{Design, Error, File, RECIPE, Tool, Trace, cache, key_of, rtl_sha256,
 
 /// The module: one processing unit of the AFU.
 const BLOCK: &str = "scpu";
-/// The class Verilator makes of it.
+/// The module that is kept apart in a traced design: around the block, with a register before each of its inputs. (What
+/// reaches the inputs of a module's logic directly is named after the instance, and nothing is shared.)
+const SHARED: &str = "scpu_slot";
+/// A configuration for Verilator beside the folder `rtl`: generated Verilog carries no pragmas.
+pub(super) const CONFIG_NAME: &str = "shared.vlt";
+/// The class Verilator makes of the block.
 const PREFIX: &str = "Vblock";
 
 /// A compiled block.
@@ -24,8 +33,7 @@ pub(super) struct Block {
     pub runtime: Vec<String>,
 }
 
-/// Builds the block of `design`, or finds it in `cache`; nothing where the design has none, or is traced: a waveform
-/// does not reach into a library.
+/// Builds the block of `design`, or finds it in `cache`; nothing where the design has none, or is traced.
 pub(super) fn build(design: &Design, tool: &Tool, compiler: &Compiler, cache: &Path) -> Result<Option<Block>, Error> {
     let file_name = format!("{BLOCK}.v");
     let has_block = design.files.iter().any(|file| file.name == file_name);
@@ -63,6 +71,21 @@ pub(super) fn build(design: &Design, tool: &Tool, compiler: &Compiler, cache: &P
 pub(super) fn rest(design: &Design, block: &Block) -> Vec<File> {
     let of = |file: &File| if file.name == format!("{BLOCK}.v") { block.wrapper.clone() } else { file.clone() };
     design.files.iter().map(of).collect()
+}
+
+/// What [`CONFIG_NAME`] says.
+pub(super) fn config() -> String {
+    format!("`verilator_config\nno_inline -module \"{SHARED}\"\n")
+}
+
+/// Arguments that let the instances of [`SHARED`] share their code in a traced design. The data-flow optimiser, which -O3
+/// turns on, would name intermediate values after the instance.
+pub(super) fn shared_arguments(design: &Design) -> Vec<String> {
+    let has = design.files.iter().any(|file| file.name == format!("{SHARED}.v"));
+    if !has || design.trace == Trace::Off {
+        return Vec::new();
+    }
+    vec!["-fno-dfg".to_owned(), format!("../{CONFIG_NAME}")]
 }
 
 fn arguments(design: &Design) -> Vec<String> {

@@ -84,15 +84,11 @@ const RECIPE: &str = "contact-afu model 2";
 /// The class Verilator makes of the top module; `tb/harness.cpp` names it.
 const PREFIX: &str = "Vmodel";
 
-/// SHA-256 over names and texts in order, in lower-case hex: the identity of a design, as `afu::Afu::rtl_sha256` gives
-/// it for generated ones.
+/// SHA-256 of files, names, lengths and order included, in lower-case hex: the identity of a design, as
+/// `afu::Afu::rtl_sha256` gives it for generated ones.
 pub fn rtl_sha256(files: &[File]) -> String {
-    let mut hash = Sha256::new();
-    for part in files.iter().flat_map(|file| [&file.name, &file.text]) {
-        hash.update(part.as_bytes());
-        hash.update([0]);
-    }
-    hex(&hash.finalize())
+    let parts: Vec<&str> = files.iter().flat_map(|file| [file.name.as_str(), file.text.as_str()]).collect();
+    key_of(&parts)
 }
 
 fn hex(bytes: &[u8]) -> String {
@@ -152,6 +148,7 @@ fn verilator_arguments(design: &Design, files: &[File]) -> Vec<String> {
         Trace::Vcd => arguments.push("--trace".to_owned()), // 5.006 does not know --trace-vcd
         Trace::Fst => arguments.push("--trace-fst".to_owned()),
     }
+    arguments.extend(block::shared_arguments(design));
     arguments.extend(design.parameters.iter().map(|(name, value)| format!("-G{name}={value}")));
     arguments.extend(files.iter().map(|file| file.name.clone()));
     arguments
@@ -251,6 +248,7 @@ fn run_verilator(
         fs::create_dir_all(folder).map_err(|e| Error::io("create", folder, e))?;
         write(&path, &file.text)?;
     }
+    write(&aside.join(block::CONFIG_NAME), &block::config())?;
     let mut command = tool.command();
     command.current_dir(&rtl).arg("--Mdir").arg(generated).args(arguments);
     let output = command.output().map_err(|e| Error::io("run", tool.program(), e))?;
