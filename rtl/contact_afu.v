@@ -89,10 +89,12 @@ module contact_afu #(
   wire [511:0] collector_line;
   wire collector_response;
   wire read_failed;
+  wire collector_asking;
   wire collector_idle;
   wire line_left;
   wire dispatcher_response;
   wire write_failed;
+  wire dispatcher_asking;
   wire dispatcher_idle;
   wire dispatched;
   wire packer_line_valid;
@@ -121,6 +123,7 @@ module contact_afu #(
   // ---- logic ----
   wire response = collector_response | dispatcher_response;
   wire link_idle = collector_idle & dispatcher_idle;
+  wire asking = collector_asking | dispatcher_asking;
   wire settled = cycles_since_reset == 7'd75;
   wire [1:0] group_out = settled ? travelled[8:7] : 2'd0;
   wire [6:0] turn_out = travelled[6:0];
@@ -164,6 +167,7 @@ module contact_afu #(
     .write_failed     (write_failed),
     .response         (response),
     .link_idle        (link_idle),
+    .asking           (asking),
     .packer_done      (packer_done),
     .dispatched       (dispatched),
     .entered          (entered),
@@ -208,6 +212,7 @@ module contact_afu #(
     .line           (collector_line),
     .response       (collector_response),
     .failed         (read_failed),
+    .asking         (collector_asking),
     .idle           (collector_idle)
   );
 
@@ -231,6 +236,7 @@ module contact_afu #(
     .take           (line_left),
     .response       (dispatcher_response),
     .failed         (write_failed),
+    .asking         (dispatcher_asking),
     .idle           (dispatcher_idle),
     .empty          (dispatched)
   );

@@ -27,6 +27,7 @@ module contact_afu_collector (
   output reg  [511:0] line,
   output wire         response,
   output wire         failed,
+  output wire         asking,
   output wire         idle
 );
 
@@ -86,6 +87,8 @@ module contact_afu_collector (
       outstanding <= start ? 7'd0 : ((outstanding + issue_wide) - {6'd0, response});
     end
   end
+
+  assign asking = rd_req_valid;
 
 endmodule
 

@@ -21,6 +21,7 @@ module contact_afu_control (
   input  wire        write_failed,
   input  wire        response,
   input  wire        link_idle,
+  input  wire        asking,
   input  wire        packer_done,
   input  wire        dispatched,
   input  wire [1:0]  entered,
@@ -60,9 +61,11 @@ module contact_afu_control (
   assign run = running & ~begin_job;
   wire complete = run & packer_done & dispatched & link_idle;
   wire failing = |cause & ~complete;
-  wire drained = draining & ~|pairs_inside & (link_idle | given_up);
+  wire drained = draining & ~|pairs_inside & (link_idle | (given_up & ~asking));
+  wire gives_up = busy & expired;
   wire [8:0] entered_wide = {7'd0, entered};
   wire not_waiting = response | link_idle;
+  wire [3:0] failed = failing ? cause : (accept ? 4'd0 : error);
   wire [32:0] rounded_count = {1'b0, job_count} + 33'd1;
   assign lines = rounded_count[32:1];
 
@@ -96,11 +99,11 @@ module contact_afu_control (
       silence <= (not_waiting | ~busy) ? 32'd0 : (silence + 32'd1);
       begin_job <= accept;
       pairs_inside <= (pairs_inside + entered_wide) - {7'd0, emerged};
-      given_up <= ~accept & (given_up | (busy & expired));
+      given_up <= ~accept & (given_up | gives_up);
       cycles_input <= accept ? 64'd0 : (cycles_input + {63'd0, waits_for_input & running});
       cycles_output <= accept ? 64'd0 : (cycles_output + {63'd0, waits_for_output & running});
       done <= ~accept & (done | complete | drained);
-      error <= failing ? cause : (accept ? 4'd0 : error);
+      error <= gives_up ? 4'd4 : failed;
       if (accept) job_count <= count;
       if (accept) job_epoch <= epoch;
       room <= begin_job ? 9'd256 : ((room - entered_wide) + (line_left ? 9'd2 : 9'd0));

@@ -26,6 +26,7 @@ module contact_afu_dispatcher (
   output wire         take,
   output wire         response,
   output wire         failed,
+  output wire         asking,
   output wire         idle,
   output wire         empty
 );
@@ -91,6 +92,8 @@ module contact_afu_dispatcher (
       outstanding <= start ? 7'd0 : ((outstanding + take_wide) - {6'd0, response});
     end
   end
+
+  assign asking = wr_req_valid;
 
 endmodule
 

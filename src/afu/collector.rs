@@ -75,6 +75,7 @@ pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, Errors> {
     graph.output("line", store.read(next_head).named("line"));
     graph.output("response", response);
     graph.output("failed", response & response_error);
+    graph.output("asking", request_valid.value());
     graph.output("idle", !outstanding.any() & !*request_valid);
     graph.finish()
 }

@@ -48,6 +48,7 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, Errors>
     let write_failed = graph.input("write_failed", 1);
     let response = graph.input("response", 1);
     let link_idle = graph.input("link_idle", 1);
+    let asking = graph.input("asking", 1);
     let packed = graph.input("packer_done", 1);
     let dispatched = graph.input("dispatched", 1);
     let entered = graph.input("entered", spec.group_bits());
@@ -110,13 +111,17 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, Errors>
     }
     let cause = cause.named("cause");
     let failing = (cause.any() & !complete).named("failing");
+    // Whatever else went wrong, this is what the host must know: late responses may still come, and late writes.
+    let gives_up = (busy & expired).named("gives_up");
     let given_up = graph.register("given_up", 1, 0);
-    given_up.next(!accept & (*given_up | (busy & expired)));
-    let drained = (*draining & !inside.any() & (link_idle | *given_up)).named("drained");
+    given_up.next(!accept & (*given_up | gives_up));
+    // A request on the port stays until it is accepted, even if nobody waits for its response any more.
+    let drained = (*draining & !inside.any() & (link_idle | (*given_up & !asking))).named("drained");
     running.next((accept & !failing) | (*running & !complete & !failing));
     draining.next(failing | (*draining & !drained));
     done.next(!accept & (*done | complete | drained));
-    error.next(failing.select(cause, accept.select(error.same(0), *error)));
+    let failed = failing.select(cause, accept.select(error.same(0), *error)).named("failed");
+    error.next(gives_up.select(error.same(JobError::Watchdog as u128), failed));
 
     for (name, counts) in [
         ("cycles_busy", busy),

@@ -78,6 +78,7 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, Errors>
     graph.output("take", take);
     graph.output("response", response);
     graph.output("failed", response & response_error);
+    graph.output("asking", request_valid.value());
     graph.output("idle", !outstanding.any() & !*request_valid);
     graph.output("empty", !stored.any());
     graph.finish()

@@ -57,7 +57,7 @@ pub(super) fn line_top(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>,
     // What flows back: control hears of all the others.
     let wire = |name: &str, width: u32| graph.wire(name, width);
     let (read_failed, write_failed) = (wire("read_failed", 1), wire("write_failed", 1));
-    let (response, link_idle) = (wire("response", 1), wire("link_idle", 1));
+    let (response, link_idle, asking) = (wire("response", 1), wire("link_idle", 1), wire("asking", 1));
     let (packed, dispatched) = (wire("packer_done", 1), wire("dispatched", 1));
     let (entered, emerged) = (wire("entered", group_bits), wire("emerged", group_bits));
     let (line_left, take) = (wire("line_left", 1), wire("take_line", 1));
@@ -78,6 +78,7 @@ pub(super) fn line_top(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>,
             ("write_failed", write_failed),
             ("response", response),
             ("link_idle", link_idle),
+            ("asking", asking),
             ("packer_done", packed),
             ("dispatched", dispatched),
             ("entered", entered),
@@ -171,6 +172,7 @@ pub(super) fn line_top(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>,
     read_failed.drive(collector.output("failed"));
     write_failed.drive(dispatcher.output("failed"));
     response.drive(collector.output("response") | dispatcher.output("response"));
+    asking.drive(collector.output("asking") | dispatcher.output("asking"));
     link_idle.drive(collector.output("idle") & dispatcher.output("idle"));
     packed.drive(packer.output("done"));
     dispatched.drive(dispatcher.output("empty"));

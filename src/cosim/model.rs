@@ -1,6 +1,7 @@
 //! Compiled models: the built-in one, and those built and loaded at run time.
 
 use std::env;
+use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use libloading::os::unix::{Library, RTLD_LOCAL, RTLD_NOW};
@@ -61,10 +62,10 @@ impl Model {
     fn load(path: PathBuf) -> Result<Self, CosimError> {
         let fail = |why: String| CosimError::Load { path: path.clone(), why };
         // SAFETY: the library is one that `verilate` made; its only initialisers are those of Verilator's statics.
-        let library = unsafe { Library::open(Some(&path), RTLD_NOW | RTLD_LOCAL) }.map_err(|e| fail(e.to_string()))?;
+        let library = unsafe { Library::open(Some(&path), RTLD_NOW | RTLD_LOCAL) }.map_err(|e| fail(cause(&e)))?;
         // SAFETY: the symbol is declared so in harness.h, which the library was compiled with.
         let symbol = unsafe { library.get::<unsafe extern "C" fn() -> *const raw::afu_table>(b"afu_model\0") };
-        let function = *symbol.map_err(|e| fail(e.to_string()))?;
+        let function = *symbol.map_err(|e| fail(cause(&e)))?;
         std::mem::forget(library);
         // SAFETY: as above, and the library is never unloaded now.
         let api = unsafe { Api::read(function()) };
@@ -99,6 +100,11 @@ impl Model {
     pub fn library(&self) -> Option<&Path> {
         self.library.as_deref()
     }
+}
+
+/// What the loader said: the error itself names only the call.
+fn cause(error: &libloading::Error) -> String {
+    error.source().map_or_else(|| error.to_string(), |source| format!("{error}: {source}"))
 }
 
 /// Where built models are kept: `AFU_CACHE`, else the XDG cache folder's `contact-afu`.

@@ -89,7 +89,13 @@ impl Compiler {
 
     /// Links `objects` into the shared library `model`, which exports one symbol. (Hidden visibility is not enough: the
     /// C++ library's templates declare theirs visible.)
-    pub(super) fn link_shared(&self, objects: &[PathBuf], trace: Trace, model: &Path) -> Result<(), Error> {
+    pub(super) fn link_shared(
+        &self,
+        objects: &[PathBuf],
+        tool: &Tool,
+        trace: Trace,
+        model: &Path,
+    ) -> Result<(), Error> {
         let mut command = self.tool.to_command();
         command.arg("-shared").arg("-o").arg(model).args(objects).arg("-pthread");
         if cfg!(target_os = "macos") {
@@ -101,6 +107,10 @@ impl Compiler {
         }
         if trace == Trace::Fst {
             command.arg("-lz");
+            // Verilator 5.006 brings its own copy of lz4; later ones take the system's.
+            if !tool.include().join("gtkwave/lz4.c").is_file() {
+                command.arg("-llz4");
+            }
         }
         run(&mut command, "the link of the model")
     }

@@ -164,7 +164,7 @@ pub fn shared(design: &Design, cache: &Path, target: &str) -> Result<PathBuf, Er
     let key = key(design, &tool, &compiler, "shared");
     let folder = cache::once(cache, &key, |aside| {
         let objects = objects(design, &tool, &compiler, cache, aside)?;
-        compiler.link_shared(&objects, design.trace, &aside.join(MODEL))?;
+        compiler.link_shared(&objects, &tool, design.trace, &aside.join(MODEL))?;
         cache::keep_only(aside, MODEL)
     })?;
     Ok(folder.join(MODEL))

@@ -19,6 +19,9 @@ use super::{Error, hex};
 pub struct Tool {
     program: PathBuf,
     root: PathBuf,
+    /// Whether it must be told its root. An installed one knows, and Debian's wrapper takes what it is told for a
+    /// folder that holds the binary too.
+    tell_root: bool,
     sha256: String,
 }
 
@@ -48,10 +51,8 @@ impl Tool {
         // A wheel or an unpacked archive holds bin/ and include/ side by side; an installed one knows its root.
         let beside = program.parent().and_then(Path::parent).filter(|root| has_runtime(root)).map(Path::to_owned);
         let mut command = Command::new(&program);
-        match &beside {
-            Some(root) => command.env("VERILATOR_ROOT", root),
-            None => command.env_remove("VERILATOR_ROOT"),
-        };
+        set_root(&mut command, beside.as_deref());
+        let tell_root = beside.is_some();
         // --no-timing came with version 5.
         let output = command.args(["--no-timing", "--getenv", "VERILATOR_ROOT"]).output().ok()?;
         let says = PathBuf::from(String::from_utf8_lossy(&output.stdout).trim());
@@ -62,7 +63,7 @@ impl Tool {
         for other in [program.with_file_name("verilator_bin"), root.join("include/verilated.cpp")] {
             hash.update(fs::read(other).unwrap_or_default());
         }
-        Some(Self { program, root, sha256: hex(&hash.finalize()) })
+        Some(Self { program, root, tell_root, sha256: hex(&hash.finalize()) })
     }
 
     /// The program that is run.
@@ -89,9 +90,16 @@ impl Tool {
 
     pub(super) fn command(&self) -> Command {
         let mut command = Command::new(&self.program);
-        command.env("VERILATOR_ROOT", &self.root);
+        set_root(&mut command, self.tell_root.then_some(self.root.as_path()));
         command
     }
+}
+
+fn set_root(command: &mut Command, root: Option<&Path>) {
+    match root {
+        Some(root) => command.env("VERILATOR_ROOT", root),
+        None => command.env_remove("VERILATOR_ROOT"),
+    };
 }
 
 fn missing(found: String) -> Error {
