@@ -156,3 +156,12 @@ fn no_file_names_a_registry_host_or_a_path_of_one_machine() {
     }
     assert!(found.is_empty(), "{found:#?}");
 }
+
+#[test]
+fn the_readme_shows_the_example_as_it_is() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let example = text(&root.join("examples/verify.rs"));
+    let readme = text(&root.join("README.md"));
+    assert!(readme.contains(&format!("```rust\n{example}```")), "README.md must hold examples/verify.rs verbatim");
+    assert!(example.lines().count() < 30, "an example of a test is short");
+}
