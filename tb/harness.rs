@@ -23,12 +23,22 @@ pub struct afu_table {
     pub abi: u32,
     pub trace: u32,
     pub rtl_sha256: *const ::std::os::raw::c_char,
-    pub create: ::std::option::Option<unsafe extern "C" fn(seed: u64) -> *mut afu_instance>,
+    pub create: ::std::option::Option<
+        unsafe extern "C" fn(seed: u64) -> *mut afu_instance,
+    >,
     pub destroy: ::std::option::Option<unsafe extern "C" fn(arg1: *mut afu_instance)>,
-    pub ports: ::std::option::Option<unsafe extern "C" fn(arg1: *mut afu_instance, count: *mut u32) -> *const afu_port>,
-    pub evaluate: ::std::option::Option<unsafe extern "C" fn(arg1: *mut afu_instance) -> ::std::os::raw::c_int>,
+    pub ports: ::std::option::Option<
+        unsafe extern "C" fn(arg1: *mut afu_instance, count: *mut u32) -> *const afu_port,
+    >,
+    pub evaluate: ::std::option::Option<
+        unsafe extern "C" fn(arg1: *mut afu_instance) -> ::std::os::raw::c_int,
+    >,
     pub clock: ::std::option::Option<
-        unsafe extern "C" fn(arg1: *mut afu_instance, port: u32, cycles: u64) -> ::std::os::raw::c_int,
+        unsafe extern "C" fn(
+            arg1: *mut afu_instance,
+            port: u32,
+            cycles: u64,
+        ) -> ::std::os::raw::c_int,
     >,
     pub trace_open: ::std::option::Option<
         unsafe extern "C" fn(
@@ -37,8 +47,12 @@ pub struct afu_table {
             half_period_ps: u64,
         ) -> ::std::os::raw::c_int,
     >,
-    pub trace_close: ::std::option::Option<unsafe extern "C" fn(arg1: *mut afu_instance) -> ::std::os::raw::c_int>,
-    pub error: ::std::option::Option<unsafe extern "C" fn(arg1: *mut afu_instance) -> *const ::std::os::raw::c_char>,
+    pub trace_close: ::std::option::Option<
+        unsafe extern "C" fn(arg1: *mut afu_instance) -> ::std::os::raw::c_int,
+    >,
+    pub error: ::std::option::Option<
+        unsafe extern "C" fn(arg1: *mut afu_instance) -> *const ::std::os::raw::c_char,
+    >,
 }
 unsafe extern "C" {
     pub fn afu_model() -> *const afu_table;
