@@ -103,7 +103,8 @@ impl Compiler {
         } else {
             let script = model.with_extension("map");
             super::write(&script, "{ global: afu_model; local: *; };\n")?;
-            command.arg(format!("-Wl,--version-script={}", script.display()));
+            // -z defs: what is missing is missed here, not when the model is loaded.
+            command.arg(format!("-Wl,--version-script={}", script.display())).arg("-Wl,-z,defs");
         }
         if trace == Trace::Fst {
             command.arg("-lz");
