@@ -1,13 +1,18 @@
 //! Builds the committed AFU of `rtl/` into the crate, as a Verilated model behind the C ABI of `tb/harness.h`.
 //!
 //! Nothing here fails a build: what is missing or refused is a warning, and a crate without a built-in model. (Bad
-//! Verilog must not stop the program that writes it anew.) Only OUT_DIR is written to.
+//! Verilog must not stop the program that writes it anew.) Only OUT_DIR is written to. The feature `ode` is another
+//! matter: `src/ode/build.rs`.
 
 use std::env;
 
 #[cfg(feature = "cosim")]
 #[path = "src/cosim/verilate/mod.rs"]
 mod verilate;
+
+#[cfg(feature = "ode")]
+#[path = "src/ode/build.rs"]
+mod ode;
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
@@ -16,6 +21,8 @@ fn main() {
     println!("cargo:rustc-env=AFU_TARGET={target}");
     #[cfg(feature = "cosim")]
     cosim::main(&target);
+    #[cfg(feature = "ode")]
+    ode::main();
 }
 
 #[cfg(feature = "cosim")]

@@ -10,6 +10,8 @@ pub mod hdl;
 pub mod kernel;
 pub mod link;
 pub mod number;
+#[cfg(feature = "ode")]
+pub mod ode;
 pub mod operator;
 pub mod pairs;
 pub mod pipeline;

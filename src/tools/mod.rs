@@ -53,6 +53,13 @@ pub fn all() -> Vec<Tool> {
             "tests: the same RTL in a second, four-state simulator",
             "apt-get install iverilog",
         ),
+        tool(
+            "ODE",
+            probe::header("ode/odeinit.h"),
+            false,
+            "building this program with its feature ode: the Open Dynamics Engine",
+            "apt-get install libode-dev",
+        ),
         tool("Yosys", probe::yosys(), false, "tests: no latch, no multiple driver", "apt-get install yosys"),
     ]
 }

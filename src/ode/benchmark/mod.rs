@@ -1,0 +1,154 @@
+//! The paper's benchmark: what ODE takes to collide two spheres, measured inside a simulation.
+//!
+//! [`Benchmark::run`] follows the paper's Figure 5: the diamond is simulated, every candidate pair is collided ten
+//! times, and those of the wanted kind are counted and recorded with the average, until there are enough.
+//!
+//! A clock's call costs more than what it times there. So [`Recording::figures`] times the same pairs as a whole too:
+//! a loop of ODE's calls, and the f32 kernel in batch.
+
+mod figures;
+mod timing;
+
+pub use figures::Figures;
+pub use timing::Timing;
+
+use super::dcollide::Room;
+use super::{Collider, Diamond, Error, Ode, Simulation, Sphere, Touch};
+use crate::kernel::{Flow, PairRecord};
+use std::hint::black_box;
+use std::time::Instant;
+
+/// What to measure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Benchmark {
+    /// The simulation: the paper's hMax and dSph are in it.
+    pub diamond: Diamond,
+    /// The paper's tCol, the kind of collision that counts: fake, real or grazing.
+    pub flow: Flow,
+    /// The paper's nColMax: how many of them. The simulation stops at the last.
+    pub collisions: usize,
+    /// How often each is executed, of which the average counts; 10 in the paper. At least 1.
+    pub executions: u32,
+    /// After so many steps without enough of them the simulation stops too, with an error.
+    pub most_steps: usize,
+}
+
+/// A collision of the kind that counts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Collision {
+    /// The two spheres in ODE's numbers and order, x y z and radius each.
+    pub spheres: [[f64; 4]; 2],
+    /// The average of its executions in nanoseconds, a clock's call for all of them included.
+    pub nanoseconds: f64,
+}
+
+/// What a run of the benchmark gave.
+#[derive(Clone, Debug)]
+pub struct Recording {
+    /// The collisions that count, in the order they were met.
+    pub collisions: Vec<Collision>,
+    /// Steps done before the last collision was met.
+    pub steps: usize,
+    /// What a measurement of nothing takes, in nanoseconds. Each collision's average has this, divided by the
+    /// executions, in it.
+    pub clock_ns: f64,
+}
+
+impl Benchmark {
+    /// The paper's for Figure 6: real collisions in the diamond of hMax 3 and dSph 0, each executed 10 times.
+    pub const fn paper(collisions: usize) -> Self {
+        let diamond = Diamond::new(3, 0.0);
+        Self { diamond, flow: Flow::Real, collisions, executions: 10, most_steps: 100_000 }
+    }
+
+    /// Simulates and measures.
+    ///
+    /// # Errors
+    /// When ODE runs without its own collider, a parameter is out of range, or there are too few
+    /// collisions of the kind.
+    pub fn run(&self, ode: &Ode) -> Result<Recording, Error> {
+        ode.needs(Collider::Own)?;
+        if self.flow == Flow::Invalid {
+            return Err(Error::Flow(self.flow));
+        }
+        let mut simulation = self.diamond.build(ode)?;
+        let mut collisions = Vec::new();
+        let clock_ns = timing::clock_ns();
+        while collisions.len() < self.collisions {
+            if simulation.steps() == self.most_steps {
+                let (found, wanted) = (collisions.len(), self.collisions);
+                return Err(Error::TooFew { flow: self.flow, found, wanted, steps: self.most_steps });
+            }
+            let touches = self.measure(&simulation, &mut collisions)?;
+            if collisions.len() < self.collisions {
+                simulation.advance(&touches)?;
+            }
+        }
+        Ok(Recording { collisions, steps: simulation.steps(), clock_ns })
+    }
+
+    /// Collides the candidates of a step, and records those of the kind until there are enough.
+    fn measure(&self, simulation: &Simulation, collisions: &mut Vec<Collision>) -> Result<Vec<Touch>, Error> {
+        let world = simulation.world();
+        let executions = self.executions.max(1);
+        let mut touches = Vec::new();
+        let mut room = Room::new();
+        world.near(|first, second| {
+            if collisions.len() == self.collisions {
+                return;
+            }
+            let [g1, g2] = world.geoms(first, second);
+            let mut touch = false;
+            let begin = Instant::now();
+            for _ in 0..executions {
+                // SAFETY: both live as long as the world.
+                touch = unsafe { room.ask(black_box(g1), black_box(g2)) };
+            }
+            let nanoseconds = begin.elapsed().as_nanos() as f64 / f64::from(executions);
+            let sphere = |sphere: Sphere| {
+                let [x, y, z] = world.position(sphere);
+                [x, y, z, world.radius(sphere)]
+            };
+            let spheres = [sphere(first), sphere(second)];
+            if touch {
+                // SAFETY: ODE has just said there is a contact.
+                let contact = unsafe { room.contact() };
+                touches.push(Touch { first, second, contact });
+            }
+            if flow(touch, spheres) == self.flow {
+                collisions.push(Collision { spheres, nanoseconds });
+            }
+        })?;
+        Ok(touches)
+    }
+}
+
+/// Which way a pair went through ODE's collider, which does not say. It tells coincident centres by their rounded
+/// distance, which is 0 exactly when the rounded sum of squares is.
+fn flow(touch: bool, [[x1, y1, z1, _], [x2, y2, z2, _]]: [[f64; 4]; 2]) -> Flow {
+    let (x, y, z) = (x1 - x2, y1 - y2, z1 - z2);
+    match touch {
+        false => Flow::Fake,
+        true if (x * x + y * y) + z * z <= 0.0 => Flow::Grazing,
+        true => Flow::Real,
+    }
+}
+
+impl Recording {
+    /// The paper's figure for the first `count` collisions: the sum of their averages, in nanoseconds.
+    pub fn total_ns(&self, count: usize) -> f64 {
+        self.first(count).iter().map(|collision| collision.nanoseconds).sum()
+    }
+
+    /// The first `count` collisions as the pairs that an engine gets: each number rounded to binary32 once.
+    pub fn pairs(&self, count: usize) -> Vec<PairRecord> {
+        let narrow = |sphere: [f64; 4]| sphere.map(|v| v as f32);
+        let record = |c: &Collision| PairRecord::from_spheres(narrow(c.spheres[0]), narrow(c.spheres[1]));
+        self.first(count).iter().map(record).collect()
+    }
+
+    /// The first `count` collisions, or all of them where there are fewer.
+    fn first(&self, count: usize) -> &[Collision] {
+        &self.collisions[..count.min(self.collisions.len())]
+    }
+}

@@ -1,0 +1,54 @@
+//! A world's contacts by an engine: gathered, computed in one batch, handed to ODE one by one.
+
+use super::{Collider, Contact, Error, Sphere, Touch, World, replace};
+use crate::kernel::{ContactRecord, Engine, Flow, PairRecord};
+
+impl World {
+    /// Two spheres as a record: each number rounded to binary32 once.
+    pub fn record(&self, [first, second]: [Sphere; 2]) -> PairRecord {
+        let sphere = |sphere| {
+            let [x, y, z] = self.position(sphere);
+            [x, y, z, self.radius(sphere)].map(|v| v as f32)
+        };
+        PairRecord::from_spheres(sphere(first), sphere(second))
+    }
+
+    /// Every contact there is now, by an engine in the place of ODE's collider: the candidates in one batch, rounded
+    /// to binary32, and their contacts through ODE's collider override. In the order of [`World::contacts`].
+    ///
+    /// # Errors
+    /// When ODE runs with its own collider, a sphere is lost, or the engine fails or gives what is no answer.
+    pub fn contacts_by(&self, engine: &mut dyn Engine) -> Result<Vec<Touch>, Error> {
+        self.ode.needs(Collider::Engine)?;
+        let pairs = self.candidates()?;
+        let records: Vec<_> = pairs.iter().map(|&pair| self.record(pair)).collect();
+        let answers = engine.contacts(&records).map_err(Error::Engine)?;
+        if answers.len() != pairs.len() {
+            return Err(Error::Count { pairs: pairs.len(), contacts: answers.len() });
+        }
+        let mut touches = Vec::new();
+        for (&[first, second], &answer) in pairs.iter().zip(&answers) {
+            let contact = checked(first, second, answer)?;
+            let [g1, g2] = self.geoms(first, second);
+            // SAFETY: both geoms live as long as the world.
+            if let Some(contact) = unsafe { replace::answer(g1, g2, contact) } {
+                touches.push(Touch { first, second, contact });
+            }
+        }
+        Ok(touches)
+    }
+}
+
+/// The contact that an engine's answer means.
+fn checked(first: Sphere, second: Sphere, answer: ContactRecord) -> Result<Option<Contact>, Error> {
+    let (first, second) = (first.0, second.0);
+    let flags = answer.flags();
+    if !matches!(answer.flow(), Some(flow) if flow != Flow::Invalid) {
+        return Err(Error::Flags { first, second, flags });
+    }
+    let contact = Contact::from_record(answer);
+    if contact.is_some_and(|contact| !contact.is_plausible()) {
+        return Err(Error::Contact { first, second });
+    }
+    Ok(contact)
+}

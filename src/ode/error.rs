@@ -1,0 +1,95 @@
+//! What can go wrong with ODE, its worlds, and engines in its collider's place.
+
+use super::Collider;
+use crate::kernel::{EngineError, Flow};
+
+/// Why ODE could not do what was asked.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The library did not start.
+    #[error("ODE did not start: it could not allocate what it needs for this thread")]
+    Start,
+    /// The library that was found when the program began is not the one it was built with.
+    #[error("the libode of this machine is of single precision; this program needs one of double precision")]
+    SinglePrecision,
+    /// ODE has one collider for all spheres of a process, and it is the other one.
+    #[error(
+        "ODE runs with {running} on this thread and {wanted} is asked for: first drop every `Ode` and what was made of it"
+    )]
+    OtherCollider {
+        /// The collider that is in use.
+        running: Collider,
+        /// The collider that is needed.
+        wanted: Collider,
+    },
+    /// A number that ODE would answer with an assertion, or not at all.
+    #[error("{what} is {value}: must be from {least} to {most}")]
+    Number {
+        /// What it stands for.
+        what: &'static str,
+        /// Itself.
+        value: f64,
+        /// The least allowed.
+        least: f64,
+        /// The largest allowed.
+        most: f64,
+    },
+    /// A sphere left the space that ODE's broad phase can divide, or has no place at all.
+    #[error("sphere {sphere} is lost: its position became ({}, {}, {})", .position[0], .position[1], .position[2])]
+    Lost {
+        /// Its number in its world.
+        sphere: usize,
+        /// Where it is.
+        position: [f64; 3],
+    },
+    /// A contact of a sphere with itself.
+    #[error("sphere {0} can't touch itself")]
+    Itself(usize),
+    /// A contact with a number that is beyond any sphere, or none.
+    #[error("the contact of spheres {first} and {second} has a number beyond any sphere: it would end the simulation")]
+    Contact {
+        /// Number of the first sphere.
+        first: usize,
+        /// Number of the second.
+        second: usize,
+    },
+    /// ODE's solver ran out of memory.
+    #[error("ODE could not allocate the memory for a step")]
+    Memory,
+    /// The engine failed.
+    #[error("the engine in the place of ODE's collider: {0}")]
+    Engine(#[source] EngineError),
+    /// The engine did not answer every pair, or more than every pair.
+    #[error("the engine gave {contacts} contacts for {pairs} pairs")]
+    Count {
+        /// Pairs it was given.
+        pairs: usize,
+        /// Contacts it gave.
+        contacts: usize,
+    },
+    /// The engine's flags are neither contact nor no contact.
+    #[error("the engine gave flags {flags:#x} for the pair of spheres {first} and {second}: neither contact nor none")]
+    Flags {
+        /// Number of the first sphere.
+        first: usize,
+        /// Number of the second.
+        second: usize,
+        /// The flags word.
+        flags: u32,
+    },
+    /// A simulation without enough collisions of a kind.
+    #[error("{found} {flow} collisions in {steps} steps, and {wanted} were asked for")]
+    TooFew {
+        /// The kind.
+        flow: Flow,
+        /// How many there were.
+        found: usize,
+        /// How many were to be.
+        wanted: usize,
+        /// The steps simulated.
+        steps: usize,
+    },
+    /// A kind of collision that no simulation has.
+    #[error("there are no {0} collisions of ODE: use fake, real or grazing")]
+    Flow(Flow),
+}

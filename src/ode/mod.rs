@@ -1,0 +1,37 @@
+//! The real [Open Dynamics Engine](http://www.ode.org), in double precision: worlds of spheres, its collision of two
+//! spheres, and an [`Engine`](crate::kernel::Engine) (a kernel in software, an AFU) in that collision's place.
+//!
+//! An [`Ode`] is the library, started; a [`World`] holds spheres. A step of a simulation is: [`World::add_force`],
+//! then [`World::contacts`] or [`World::contacts_by`] an engine, [`World::join`] for each contact, [`World::step`].
+//! [`Diamond`] is the paper's simulation, [`Benchmark`] the paper's measurement in it.
+//!
+//! # Licence
+//!
+//! ODE is offered under the LGPL or a BSD-style licence. This crate uses it under the BSD-style licence: it declares
+//! what ODE's installed headers declare, links the installed library and contains none of its code.
+//!
+//! > Open Dynamics Engine, Copyright (c) 2001-2007, Russell L. Smith. All rights reserved.
+//!
+//! Who passes on a program built with this feature passes on that notice, the licence's conditions and its disclaimer
+//! too (ODE's `LICENSE-BSD.TXT`; on Debian `/usr/share/doc/libode8/copyright`).
+
+mod benchmark;
+mod by_engine;
+mod contact;
+mod dcollide;
+mod diamond;
+mod error;
+mod numbers;
+mod replace;
+mod session;
+mod sphere_pair;
+mod sys;
+mod world;
+
+pub use benchmark::{Benchmark, Collision, Figures, Recording, Timing};
+pub use contact::{Contact, Surface, Touch};
+pub use diamond::{Diamond, Simulation};
+pub use error::Error;
+pub use session::{Collider, Ode};
+pub use sphere_pair::SpherePair;
+pub use world::{Sphere, World};

@@ -1,0 +1,127 @@
+//! An engine in the place of ODE's collider of two spheres.
+//!
+//! ODE asks for one pair at a time and an engine wants a batch. So a step's pairs are gathered first and computed at
+//! once; then each goes through ODE's `dCollide` all the same, whose answer lies ready here.
+
+use super::dcollide::dcollide;
+use super::{Contact, sys};
+use std::cell::Cell;
+use std::ffi::c_int;
+
+/// What `dCollide` is to say of a pair.
+#[derive(Clone, Copy)]
+struct Answer {
+    first: sys::dGeomID,
+    second: sys::dGeomID,
+    contact: Option<Contact>,
+}
+
+thread_local! {
+    static ANSWER: Cell<Option<Answer>> = const { Cell::new(None) };
+}
+
+/// Puts the answers in the place of ODE's collider, until ODE stops.
+pub(super) fn install() {
+    set(collide);
+}
+
+/// `ode` is started, and by this thread: only [`super::Ode`] and tests that hold one call this.
+fn set(collide: unsafe extern "C" fn(sys::dGeomID, sys::dGeomID, c_int, *mut sys::dContactGeom, c_int) -> c_int) {
+    let sphere = sys::dSphereClass as c_int;
+    // SAFETY: ODE is started; the function is of the type it wants.
+    unsafe { sys::dSetColliderOverride(sphere, sphere, Some(collide)) }
+}
+
+/// Sends a pair through ODE, with `contact` as the answer of the collider. What comes back is that contact, as ODE
+/// makes it of the answer.
+///
+/// # Safety
+/// `first` and `second` are two spheres that live.
+pub(super) unsafe fn answer(first: sys::dGeomID, second: sys::dGeomID, contact: Option<Contact>) -> Option<Contact> {
+    ANSWER.set(Some(Answer { first, second, contact }));
+    // SAFETY: the caller's.
+    let found = unsafe { dcollide(first, second) };
+    ANSWER.set(None);
+    found
+}
+
+/// The collider: ODE calls it from `dCollide`, which was called from [`answer`].
+///
+/// `dSetColliderOverride` of two equal classes marks the function as one that takes them in reverse: ODE swaps the
+/// geoms, calls, then negates the normal and swaps the geoms of the contact. All of it is undone here beforehand, bit
+/// for bit: negation is exact, of zeros too. It is seen by which geom comes first, and not taken for granted.
+unsafe extern "C" fn collide(
+    o1: sys::dGeomID,
+    o2: sys::dGeomID,
+    _flags: c_int,
+    contact: *mut sys::dContactGeom,
+    _skip: c_int,
+) -> c_int {
+    let Some(Answer { first, second, contact: Some(mut found) }) = ANSWER.get() else { return 0 };
+    if (o1, o2) == (second, first) {
+        found.normal = found.normal.map(|component| -component);
+    } else if (o1, o2) != (first, second) {
+        return 0;
+    }
+    // SAFETY: `dcollide` gave ODE room for one contact, and ODE gives it here.
+    unsafe { contact.write(found.raw(o1, o2)) };
+    1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ode::{Collider, Ode, World};
+
+    const GRAZING: Contact = Contact { position: [0.0; 3], normal: [1.0, 0.0, 0.0], depth: 1.0 };
+
+    /// What one would write who does not know.
+    unsafe extern "C" fn naive(
+        o1: sys::dGeomID,
+        o2: sys::dGeomID,
+        _: c_int,
+        contact: *mut sys::dContactGeom,
+        _: c_int,
+    ) -> c_int {
+        let Some(Answer { contact: Some(found), .. }) = ANSWER.get() else { return 0 };
+        // SAFETY: as in `collide`.
+        unsafe { contact.write(found.raw(o1, o2)) };
+        1
+    }
+
+    fn bits(contact: Option<Contact>) -> Option<[u64; 3]> {
+        contact.map(|contact| contact.normal.map(f64::to_bits))
+    }
+
+    #[test]
+    fn ode_turns_an_override_round_and_it_is_turned_back() {
+        let ode = Ode::start(Collider::Engine).unwrap();
+        let mut world = World::new(&ode).unwrap();
+        let [a, b] = [(); 2].map(|()| world.add_sphere([0.0; 3], 0.5, 1.0).unwrap());
+        for (a, b) in [(a, b), (b, a)] {
+            let [a, b] = world.geoms(a, b);
+            let ask = |contact| unsafe { answer(a, b, contact) };
+            set(naive);
+            assert_eq!(bits(ask(Some(GRAZING))), Some([-1.0_f64, -0.0, -0.0].map(f64::to_bits)));
+            set(collide);
+            assert_eq!(bits(ask(Some(GRAZING))), bits(Some(GRAZING)));
+            assert_eq!(ask(None), None);
+        }
+    }
+
+    /// The geoms of the contact that ODE hands out are in the order of the call.
+    #[test]
+    fn the_geoms_of_a_contact_are_in_order() {
+        let ode = Ode::start(Collider::Engine).unwrap();
+        let mut world = World::new(&ode).unwrap();
+        let [a, b] = [(); 2].map(|()| world.add_sphere([0.0; 3], 0.5, 1.0).unwrap());
+        let [a, b] = world.geoms(a, b);
+        for (a, b) in [(a, b), (b, a)] {
+            ANSWER.set(Some(Answer { first: a, second: b, contact: Some(GRAZING) }));
+            let mut found = GRAZING.raw(std::ptr::null_mut(), std::ptr::null_mut());
+            let count = unsafe { sys::dCollide(a, b, 1, &mut found, size_of::<sys::dContactGeom>() as c_int) };
+            ANSWER.set(None);
+            assert_eq!((count, found.g1, found.g2), (1, a, b));
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! ODE started and stopped.
+//!
+//! ODE keeps state for the whole process: whether it is started, which function collides two spheres, and the random
+//! numbers with which its solver reorders constraints. So one thread has it at a time; others wait for their turn.
+
+use super::{Error, replace, sys};
+use std::cell::RefCell;
+use std::fmt;
+use std::rc::{Rc, Weak};
+use std::sync::{Condvar, Mutex, PoisonError};
+
+/// What collides two spheres.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Collider {
+    /// ODE's own function.
+    Own,
+    /// An [`Engine`](crate::kernel::Engine), through ODE's collider override.
+    Engine,
+}
+
+impl fmt::Display for Collider {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Own => "its own collider",
+            Self::Engine => "an engine in its collider's place",
+        })
+    }
+}
+
+/// The library, started. It stops when the last clone and everything made of it is dropped.
+///
+/// ODE has no way to bring its own collider back but a new start, so all that live at one time have one collider.
+#[derive(Clone, Debug)]
+pub struct Ode {
+    session: Rc<Session>,
+}
+
+#[derive(Debug)]
+struct Session {
+    collider: Collider,
+}
+
+/// Whether a thread has ODE.
+static TAKEN: Mutex<bool> = Mutex::new(false);
+static RETURNED: Condvar = Condvar::new();
+
+thread_local! {
+    /// The session of this thread, if it has one.
+    static SESSION: RefCell<Weak<Session>> = const { RefCell::new(Weak::new()) };
+}
+
+impl Ode {
+    /// ODE with this collider: the running one, if this thread has it, or a new start.
+    ///
+    /// While another thread has ODE this call waits. So a thread that has it must not wait for one that wants it.
+    ///
+    /// # Errors
+    /// When this thread has ODE with another collider, or the library can't be started or is of single precision.
+    pub fn start(collider: Collider) -> Result<Self, Error> {
+        if let Some(session) = SESSION.with_borrow(Weak::upgrade) {
+            let ode = Self { session };
+            return ode.needs(collider).map(|()| ode);
+        }
+        let mut taken = TAKEN.lock().unwrap_or_else(PoisonError::into_inner);
+        while *taken {
+            taken = RETURNED.wait(taken).unwrap_or_else(PoisonError::into_inner);
+        }
+        initialise()?;
+        *taken = true;
+        let session = Rc::new(Session { collider });
+        SESSION.set(Rc::downgrade(&session));
+        if collider == Collider::Engine {
+            replace::install();
+        }
+        Ok(Self { session })
+    }
+
+    /// What collides two spheres.
+    pub fn collider(&self) -> Collider {
+        self.session.collider
+    }
+
+    /// Refuses what only the other collider can do.
+    pub(super) fn needs(&self, wanted: Collider) -> Result<(), Error> {
+        let running = self.session.collider;
+        if running == wanted { Ok(()) } else { Err(Error::OtherCollider { running, wanted }) }
+    }
+}
+
+fn initialise() -> Result<(), Error> {
+    // SAFETY: the string ends with a zero; ODE is not started, and started by this thread alone, which holds the lock.
+    unsafe {
+        if sys::dCheckConfiguration(c"ODE_double_precision".as_ptr()) == 0 {
+            return Err(Error::SinglePrecision);
+        }
+        if sys::dInitODE2(0) == 0 {
+            return Err(Error::Start);
+        }
+        if sys::dAllocateODEDataForThread(sys::dAllocateMaskAll as u32) == 0 {
+            sys::dCloseODE();
+            return Err(Error::Start);
+        }
+    }
+    Ok(())
+}
+
+impl Drop for Session {
+    fn drop(&mut self) {
+        let mut taken = TAKEN.lock().unwrap_or_else(PoisonError::into_inner);
+        // SAFETY: started in `start`, by this thread. All that is made of ODE holds an `Ode`, so nothing is left.
+        unsafe { sys::dCloseODE() };
+        *taken = false;
+        RETURNED.notify_one();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_thread_has_one_collider_at_a_time() {
+        let own = Ode::start(Collider::Own).unwrap();
+        let again = Ode::start(Collider::Own).unwrap();
+        let error = Ode::start(Collider::Engine).unwrap_err();
+        assert!(matches!(error, Error::OtherCollider { running: Collider::Own, wanted: Collider::Engine }), "{error}");
+        drop(own);
+        assert!(Ode::start(Collider::Engine).is_err(), "a clone is left");
+        drop(again);
+        assert_eq!(Ode::start(Collider::Engine).unwrap().collider(), Collider::Engine);
+    }
+
+    #[test]
+    fn threads_take_turns() {
+        let mine = Ode::start(Collider::Own).unwrap();
+        let other = std::thread::spawn(|| Ode::start(Collider::Engine).map(|ode| ode.collider()).unwrap());
+        std::thread::sleep(std::time::Duration::from_millis(20));
+        assert!(!other.is_finished());
+        drop(mine);
+        assert_eq!(other.join().unwrap(), Collider::Engine);
+    }
+}

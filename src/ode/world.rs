@@ -1,0 +1,281 @@
+//! A world of spheres: bodies that ODE moves, and the space in which it finds which are near each other.
+
+use super::contact::{Surface, Touch};
+use super::dcollide::dcollide;
+use super::numbers::{LARGEST, positive, signed, within};
+use super::{Collider, Contact, Error, Ode, sys};
+use std::any::Any;
+use std::ffi::{c_int, c_ulong, c_void};
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+
+/// A sphere of a world: which one it is, in the order they were added.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Sphere(pub(super) usize);
+
+impl Sphere {
+    /// Its number, from 0.
+    pub const fn index(self) -> usize {
+        self.0
+    }
+}
+
+#[derive(Debug)]
+struct Parts {
+    body: sys::dBodyID,
+    geom: sys::dGeomID,
+    radius: f64,
+}
+
+/// Spheres, and nothing else, without gravity.
+///
+/// Two worlds built and stepped alike give the same bits, however many others there are: each keeps its own place in
+/// the sequence of random numbers of ODE's solver.
+///
+/// # Panics
+/// Its functions panic when given a sphere of a world with more spheres.
+#[derive(Debug)]
+pub struct World {
+    id: sys::dWorldID,
+    space: sys::dSpaceID,
+    joints: sys::dJointGroupID,
+    spheres: Vec<Parts>,
+    /// Where ODE's random numbers go on.
+    seed: c_ulong,
+    /// The last of all to go.
+    pub(super) ode: Ode,
+}
+
+impl World {
+    /// A world without spheres. Its broad phase is ODE's hash space.
+    ///
+    /// # Errors
+    /// When ODE has no memory.
+    pub fn new(ode: &Ode) -> Result<Self, Error> {
+        // SAFETY: ODE is started. No space is the parent of this one.
+        let (id, space, joints) =
+            unsafe { (sys::dWorldCreate(), sys::dHashSpaceCreate(std::ptr::null_mut()), sys::dJointGroupCreate(0)) };
+        if id.is_null() || space.is_null() || joints.is_null() {
+            return Err(Error::Memory);
+        }
+        Ok(Self { id, space, joints, spheres: Vec::new(), seed: 0, ode: ode.clone() })
+    }
+
+    /// How many iterations ODE's QuickStep does; it begins with 20.
+    ///
+    /// # Errors
+    /// When there are none, or more than a million.
+    pub fn set_iterations(&mut self, iterations: u32) -> Result<(), Error> {
+        within("the number of iterations", iterations.into(), 1.0..=1e6)?;
+        // SAFETY: the world lives.
+        unsafe { sys::dWorldSetQuickStepNumIterations(self.id, iterations as c_int) };
+        Ok(())
+    }
+
+    /// Adds a sphere at rest. Its mass is that of its volume at this density.
+    ///
+    /// # Errors
+    /// When a number is out of range, or ODE has no memory.
+    pub fn add_sphere(&mut self, centre: [f64; 3], radius: f64, density: f64) -> Result<Sphere, Error> {
+        let [x, y, z] = signed("a coordinate", centre)?;
+        positive("a radius", radius)?;
+        positive("a density", density)?;
+        let sphere = Sphere(self.spheres.len());
+        // SAFETY: world and space live; `dMassSetSphere` writes the whole mass, whose numbers are in range.
+        unsafe {
+            let body = sys::dBodyCreate(self.id);
+            let geom = sys::dCreateSphere(self.space, radius);
+            if body.is_null() || geom.is_null() {
+                return Err(Error::Memory);
+            }
+            let mut mass = std::mem::zeroed();
+            sys::dMassSetSphere(&mut mass, density, radius);
+            sys::dBodySetMass(body, &mass);
+            sys::dBodySetPosition(body, x, y, z);
+            sys::dGeomSetBody(geom, body);
+            // Not an address: the near callback reads the number back.
+            sys::dGeomSetData(geom, std::ptr::without_provenance_mut(sphere.0));
+            self.spheres.push(Parts { body, geom, radius });
+        }
+        Ok(sphere)
+    }
+
+    /// Every sphere, in the order they were added.
+    pub fn spheres(&self) -> impl ExactSizeIterator<Item = Sphere> + use<> {
+        (0..self.spheres.len()).map(Sphere)
+    }
+
+    /// The centre of a sphere.
+    pub fn position(&self, sphere: Sphere) -> [f64; 3] {
+        // SAFETY: the body lives as long as the world, and a position has three numbers and one of padding.
+        unsafe { *sys::dBodyGetPosition(self.spheres[sphere.0].body).cast() }
+    }
+
+    /// The radius of a sphere.
+    pub fn radius(&self, sphere: Sphere) -> f64 {
+        self.spheres[sphere.0].radius
+    }
+
+    /// Adds to the force on a sphere's centre during the next step.
+    ///
+    /// # Errors
+    /// When a number is out of range.
+    pub fn add_force(&mut self, sphere: Sphere, force: [f64; 3]) -> Result<(), Error> {
+        let [x, y, z] = signed("a force", force)?;
+        // SAFETY: the body lives as long as the world.
+        unsafe { sys::dBodyAddForce(self.spheres[sphere.0].body, x, y, z) };
+        Ok(())
+    }
+
+    /// Calls `visit` for every two spheres whose bounding boxes touch, in ODE's order: ODE's near callback.
+    ///
+    /// Within it [`World::collide`] and [`World::join`] may be called, as in any program of ODE's.
+    ///
+    /// # Errors
+    /// When a sphere is lost: see [`World::step`].
+    pub fn near(&self, mut visit: impl FnMut(Sphere, Sphere)) -> Result<(), Error> {
+        self.all_in_reach()?;
+        let mut near = Near { visit: &mut visit, panic: None };
+        // SAFETY: the space lives; the callback gets back the pointer it is given here, while `near` lives.
+        unsafe { sys::dSpaceCollide(self.space, (&raw mut near).cast(), Some(near_callback)) };
+        if let Some(panic) = near.panic {
+            resume_unwind(panic);
+        }
+        Ok(())
+    }
+
+    /// The pairs that [`World::near`] visits.
+    ///
+    /// # Errors
+    /// When a sphere is lost: see [`World::step`].
+    pub fn candidates(&self) -> Result<Vec<[Sphere; 2]>, Error> {
+        let mut pairs = Vec::new();
+        self.near(|first, second| pairs.push([first, second]))?;
+        Ok(pairs)
+    }
+
+    /// The contact of two spheres by ODE's own collider.
+    ///
+    /// # Errors
+    /// When ODE runs without it.
+    #[inline]
+    pub fn collide(&self, first: Sphere, second: Sphere) -> Result<Option<Contact>, Error> {
+        self.ode.needs(Collider::Own)?;
+        Ok(self.dcollide(first, second))
+    }
+
+    /// Two spheres as ODE has them: they live as long as the world.
+    pub(super) fn geoms(&self, first: Sphere, second: Sphere) -> [sys::dGeomID; 2] {
+        [first, second].map(|sphere| self.spheres[sphere.0].geom)
+    }
+
+    #[inline]
+    fn dcollide(&self, first: Sphere, second: Sphere) -> Option<Contact> {
+        let [first, second] = self.geoms(first, second);
+        // SAFETY: both geoms live as long as the world.
+        unsafe { dcollide(first, second) }
+    }
+
+    /// Every contact there is now, by ODE's own collider.
+    ///
+    /// # Errors
+    /// When ODE runs without it, or a sphere is lost: see [`World::step`].
+    pub fn contacts(&self) -> Result<Vec<Touch>, Error> {
+        self.ode.needs(Collider::Own)?;
+        let mut touches = Vec::new();
+        self.near(|first, second| {
+            if let Some(contact) = self.dcollide(first, second) {
+                touches.push(Touch { first, second, contact });
+            }
+        })?;
+        Ok(touches)
+    }
+
+    /// Makes the next step part two spheres that touch: ODE's contact joint.
+    ///
+    /// # Errors
+    /// When the contact has a number that no contact here can have, or is of a sphere with itself, or a number of the surface is out of range.
+    pub fn join(&self, touch: &Touch, surface: &Surface) -> Result<(), Error> {
+        let Touch { first, second, contact } = touch;
+        let [one, other] = [first, second].map(|sphere| &self.spheres[sphere.0]);
+        if first == second {
+            return Err(Error::Itself(first.0));
+        }
+        if !contact.is_plausible() {
+            return Err(Error::Contact { first: first.0, second: second.0 });
+        }
+        within("a friction", surface.friction, 0.0..=LARGEST)?;
+        within("a bounce", surface.bounce, 0.0..=1.0)?;
+        within("a bounce's speed", surface.bounce_speed, 0.0..=LARGEST)?;
+        let contact =
+            sys::dContact { surface: surface.raw(), geom: contact.raw(one.geom, other.geom), fdir1: [0.0; 4] };
+        // SAFETY: world, joints and both bodies live; the bodies differ; ODE copies the contact.
+        unsafe {
+            let joint = sys::dJointCreateContact(self.id, self.joints, &contact);
+            if joint.is_null() {
+                return Err(Error::Memory);
+            }
+            sys::dJointAttach(joint, one.body, other.body);
+        }
+        Ok(())
+    }
+
+    /// Moves every sphere through a time, by ODE's QuickStep; afterwards there are no forces and no joints.
+    ///
+    /// # Errors
+    /// When ODE has no memory, or a sphere is then beyond what ODE's space can hold; such a world is of no more use.
+    pub fn step(&mut self, time: f64) -> Result<(), Error> {
+        positive("a step's time", time)?;
+        self.all_in_reach()?;
+        // SAFETY: world and joints live; ODE is this thread's, and so are its random numbers.
+        let done = unsafe {
+            sys::dRandSetSeed(self.seed);
+            let done = sys::dWorldQuickStep(self.id, time);
+            self.seed = sys::dRandGetSeed();
+            sys::dJointGroupEmpty(self.joints);
+            done != 0
+        };
+        if !done {
+            return Err(Error::Memory);
+        }
+        self.all_in_reach()
+    }
+
+    /// A NaN or a far sphere would end the process in ODE's broad phase.
+    fn all_in_reach(&self) -> Result<(), Error> {
+        let in_reach = |position: &[f64; 3]| position.iter().all(|v| v.abs() <= LARGEST);
+        match self.spheres().find(|&sphere| !in_reach(&self.position(sphere))) {
+            None => Ok(()),
+            Some(sphere) => Err(Error::Lost { sphere: sphere.0, position: self.position(sphere) }),
+        }
+    }
+}
+
+impl Drop for World {
+    fn drop(&mut self) {
+        // SAFETY: each was made in `new` and is destroyed once: joints first, which hang on bodies, then the space with
+        // its geoms, which do too, then the world with its bodies. ODE runs until `ode` is dropped, after this.
+        unsafe {
+            sys::dJointGroupDestroy(self.joints);
+            sys::dSpaceDestroy(self.space);
+            sys::dWorldDestroy(self.id);
+        }
+    }
+}
+
+struct Near<'a> {
+    visit: &'a mut dyn FnMut(Sphere, Sphere),
+    panic: Option<Box<dyn Any + Send>>,
+}
+
+/// # Safety
+/// `data` is a `Near` that nothing else uses meanwhile, and both geoms are of a world.
+unsafe extern "C" fn near_callback(data: *mut c_void, o1: sys::dGeomID, o2: sys::dGeomID) {
+    // SAFETY: the caller's.
+    let (near, first, second) =
+        unsafe { (&mut *data.cast::<Near>(), sys::dGeomGetData(o1).addr(), sys::dGeomGetData(o2).addr()) };
+    // No panic may pass through ODE: it waits here until ODE is done.
+    if near.panic.is_none() {
+        let visited = catch_unwind(AssertUnwindSafe(|| (near.visit)(Sphere(first), Sphere(second))));
+        near.panic = visited.err();
+    }
+}
