@@ -81,6 +81,7 @@ fn wrong_options_are_exit_2_before_anything_is_built() {
         (&["--trace", "wave.txt"], ".vcd or .fst"),
         (&["--contacts", "out.txt"], ".csv or .npy"),
         (&["--pairs", "diamond:2", "--pairs", "diamond:3", "--contacts", "out.csv"], "--contacts is for one job"),
+        (&["--json", "-", "--junit", "-"], "standard output is for one of them"),
         (&["--rtl", "absent"], "absent"),
         (&["--rtl", "absent", "--profile", "paper"], "--profile does not go with --rtl"),
         (&["--interval", "4"], "interval 4"),

@@ -120,6 +120,9 @@ impl Cosim {
                 format!("{option} is for one job: give one --pairs and no --replay"),
             ));
         }
+        if [&self.json, &self.junit].into_iter().flatten().filter(|path| output::is_stdout(path)).count() > 1 {
+            return Err(Failure::new(Kind::Usage, "--json - and --junit -: standard output is for one of them"));
+        }
         if let Some(path) = &self.contacts {
             pairs::check_name(path)?;
         }

@@ -31,7 +31,7 @@ use failure::Failure;
 /// Exit status: 0 pass; 1 a mismatch, an unmet check or a job that does not finish; 2 bad usage or input; 3 a missing
 /// tool; 4 anything else. Results go to standard output or files, progress and messages to standard error.
 #[derive(Parser, Debug)]
-#[command(name = "afu", version, max_term_width = 110)]
+#[command(name = "afu", version)]
 pub struct Program {
     #[command(subcommand)]
     command: Command,

@@ -167,7 +167,7 @@ impl Run {
             ("cycles a pair", Box::new(|t| figure(t.cycles_per_pair(), 3))),
             ("ns a pair", Box::new(move |t| figure(t.cycles_per_pair().map(|c| c * ns), 2))),
             (
-                "latency, first pairs to first contacts, cycles",
+                "latency, line in to line out, cycles",
                 Box::new(|t| t.latency_cycles.map_or("-".into(), grouped)),
             ),
             ("link allows, cycles a pair", Box::new(|t| figure(t.limit_per_pair(), 3))),
@@ -259,24 +259,24 @@ mod tests {
     fn the_table_has_a_column_a_job() {
         expect![[r#"
             10 SCPUs, wide arithmetic, hit,depth,normal,position, 200 MHz; link ideal, seed 1
-            ─────────────────────────────────────────────────────────────────────────
-                                                              diamond:10   empty.csv
-            ─────────────────────────────────────────────────────────────────────────
-             pairs                                                12 354           0
-             contacts                                              2 934           0
-               real                                                2 934           0
-               grazing (same centre)                                   0           0
-             no contact (fake)                                     9 420           0
-             invalid pairs                                             0           0
-             mismatches with the reference                             0           0
-             cycles                                                6 300           9
-             cycles a pair                                         0.510           -
-             ns a pair                                              2.55           -
-             latency, first pairs to first contacts, cycles           83           -
-             link allows, cycles a pair                            0.500           -
-             share of that reached                                98.0 %           -
-             simulated in, seconds                                   0.2         0.0
-            ─────────────────────────────────────────────────────────────────────────"#]]
+            ───────────────────────────────────────────────────────────────
+                                                    diamond:10   empty.csv
+            ───────────────────────────────────────────────────────────────
+             pairs                                      12 354           0
+             contacts                                    2 934           0
+               real                                      2 934           0
+               grazing (same centre)                         0           0
+             no contact (fake)                           9 420           0
+             invalid pairs                                   0           0
+             mismatches with the reference                   0           0
+             cycles                                      6 300           9
+             cycles a pair                               0.510           -
+             ns a pair                                    2.55           -
+             latency, line in to line out, cycles           83           -
+             link allows, cycles a pair                  0.500           -
+             share of that reached                      98.0 %           -
+             simulated in, seconds                         0.2         0.0
+            ───────────────────────────────────────────────────────────────"#]]
         .assert_eq(&run().table());
     }
 }

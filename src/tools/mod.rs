@@ -31,7 +31,7 @@ pub fn all() -> Vec<Tool> {
             "afu cosim, afu sweep: compiling a model",
             "apt-get install g++",
         ),
-        tool("Verilator", probe::verilator(), simulates, "afu cosim, afu sweep: the model itself", "./scripts/setup"),
+        tool("Verilator", probe::verilator(), simulates, "afu cosim, afu sweep: the model itself", "./scripts/setup, or apt-get install verilator"),
         tool(
             "libclang",
             probe::libclang(),
@@ -60,7 +60,7 @@ pub fn all() -> Vec<Tool> {
             "building this program with its feature ode: the Open Dynamics Engine",
             "apt-get install libode-dev",
         ),
-        tool("Yosys", probe::yosys(), false, "tests: no latch, no multiple driver", "apt-get install yosys"),
+        tool("Yosys", probe::yosys(), false, "tests: no latch, no multiple driver", "./scripts/setup --test"),
     ]
 }
 

