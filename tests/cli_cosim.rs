@@ -203,6 +203,29 @@ fn a_planted_fault_is_found_told_and_kept() {
 }
 
 #[test]
+fn a_job_that_does_not_finish_is_exit_1_and_says_what_it_waits_for() {
+    let room = room();
+    afu(room.path(), &["rtl", "--scpus", "2", "--reset", "async-low", "--out", "rtl"]).success();
+    let file = room.path().join("rtl/contact_afu_dispatcher.v");
+    let text = fs::read_to_string(&file).expect("written");
+    // Lines pile up and none is ever offered.
+    let faulty = text.replacen("wr_req_valid <= take |", "wr_req_valid <= 1'b0 & take |", 1);
+    assert_ne!(text, faulty, "the place to break is there:\n{text}");
+    fs::write(&file, faulty).expect("written");
+
+    let arguments = ["cosim", "--rtl", "rtl", "--pairs", "diamond:3", "--json", "out.json", "--junit", "out.xml"];
+    let failed = afu(room.path(), &arguments).code(1);
+    let told = said(&failed);
+    let reason = told.lines().find(|line| line.starts_with("diamond:3: the job did not finish after "));
+    let reason = reason.unwrap_or_else(|| panic!("{told}"));
+    assert!(reason.contains("waiting for the AFU") && reason.contains("66 lines read of 66"), "{reason}");
+    let report = json(room.path(), "out.json");
+    assert_eq!((&report["passed"], &report["jobs"][0]["passed"]), (&false.into(), &false.into()));
+    let junit = fs::read_to_string(room.path().join("out.xml")).expect("written");
+    assert!(junit.contains("did not finish"), "{junit}");
+}
+
+#[test]
 fn without_verilator_it_is_exit_3_and_says_the_command() {
     let room = room();
     let mut command = Command::cargo_bin("afu").expect("the program is built");
