@@ -166,10 +166,7 @@ impl Run {
             ("cycles", Box::new(|t| grouped(t.cycles))),
             ("cycles a pair", Box::new(|t| figure(t.cycles_per_pair(), 3))),
             ("ns a pair", Box::new(move |t| figure(t.cycles_per_pair().map(|c| c * ns), 2))),
-            (
-                "latency, line in to line out, cycles",
-                Box::new(|t| t.latency_cycles.map_or("-".into(), grouped)),
-            ),
+            ("latency, line in to line out, cycles", Box::new(|t| t.latency_cycles.map_or("-".into(), grouped))),
             ("link allows, cycles a pair", Box::new(|t| figure(t.limit_per_pair(), 3))),
             ("share of that reached", Box::new(|t| percent(t.efficiency()))),
             ("simulated in, seconds", Box::new(|t| format!("{:.1}", t.host_seconds))),

@@ -31,7 +31,13 @@ pub fn all() -> Vec<Tool> {
             "afu cosim, afu sweep: compiling a model",
             "apt-get install g++",
         ),
-        tool("Verilator", probe::verilator(), simulates, "afu cosim, afu sweep: the model itself", "./scripts/setup, or apt-get install verilator"),
+        tool(
+            "Verilator",
+            probe::verilator(),
+            simulates,
+            "afu cosim, afu sweep: the model itself",
+            "./scripts/setup, or apt-get install verilator",
+        ),
         tool(
             "libclang",
             probe::libclang(),
