@@ -1,0 +1,160 @@
+//! AFUs to test, jobs for them, and what memory must hold afterwards. The lines are laid out here by the words of the
+//! design, not by the `Layout` that the generator and the host share: a mistake in that one must show.
+
+use std::path::Path;
+
+use contact_afu::afu::{Afu, Spec};
+use contact_afu::config::Config;
+use contact_afu::cosim::{Driver, File, Instance, Job, Model, Outcome, Source, Trace};
+use contact_afu::kernel::{ContactRecord, Fields, Flow, PairRecord, Reference};
+use contact_afu::link::{Line, Link};
+use contact_afu::pairs::Set;
+
+/// The committed `rtl/`, for any number of SCPUs: no text is generated.
+pub fn committed(scpus: u32) -> Model {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("rtl");
+    let source = Source::from_folder(&folder, "contact_afu").unwrap().parameter("SCPUS", scpus.into());
+    Model::build(&source, Trace::Off).unwrap()
+}
+
+/// The default configuration but for the number of SCPUs.
+pub fn of(scpus: u32) -> Config {
+    Config { scpus, ..Config::default() }
+}
+
+/// A configuration by its words.
+pub fn config(scpus: u32, profile: &str, contact: &str) -> Config {
+    Config { scpus, profile: profile.parse().unwrap(), contact: contact.parse().unwrap(), ..Config::default() }
+}
+
+/// The Verilog of a configuration as generated now. The number of SCPUs is a parameter and not in the text, so that
+/// models share what is the same in them.
+pub fn source(config: &Config) -> Source {
+    let afu = Afu::generate(Spec::from(Config { scpus: Config::default().scpus, ..config.clone() })).unwrap();
+    let files = afu.verilog().into_iter().map(|(name, text)| File { name, text }).collect();
+    Source::new("contact_afu", files).parameter("SCPUS", config.scpus.into())
+}
+
+/// A model of a configuration as generated now.
+pub fn generated(config: &Config) -> Model {
+    Model::build(&source(config), Trace::Off).unwrap()
+}
+
+/// A link like a preset.
+pub fn link(name: &str, seed: u64) -> Link {
+    Link::new(name.parse().unwrap(), seed).unwrap()
+}
+
+/// A driver of `afu` over a preset link.
+pub fn driver<'a>(afu: &'a Instance, name: &str, seed: u64) -> Driver<'a> {
+    Driver::new(afu, link(name, seed)).unwrap()
+}
+
+/// Pairs for an AFU, and what must come of them.
+pub struct Case {
+    pub pairs: Vec<PairRecord>,
+    source: Vec<Line>,
+    /// The destination.
+    pub lines: Vec<Line>,
+    status: Status,
+}
+
+/// Contacts, invalid pairs, the number of the first invalid one.
+type Status = (u32, u32, Option<u32>);
+
+fn status(outcome: &Outcome) -> Status {
+    (outcome.contacts, outcome.invalid, outcome.first_invalid)
+}
+
+impl Case {
+    pub fn new(config: &Config, pairs: Vec<PairRecord>) -> Self {
+        let records = Reference::new(config.profile.format(), config.contact).run_all(&pairs);
+        let count = |test: fn(&ContactRecord) -> bool| records.iter().filter(|record| test(record)).count() as u32;
+        let is_invalid: fn(&ContactRecord) -> bool = |record| record.flow() == Some(Flow::Invalid);
+        let words: Vec<u32> = pairs.iter().flat_map(|pair| pair.0).collect();
+        Self {
+            source: lines(&words),
+            lines: destination(config.contact, &records),
+            status: (
+                count(|record| record.is_contact()),
+                count(is_invalid),
+                records.iter().position(is_invalid).map(|number| number as u32),
+            ),
+            pairs,
+        }
+    }
+
+    /// The first `count` pairs of all flows.
+    pub fn random(config: &Config, count: u64, seed: u64) -> Self {
+        Self::new(config, Set::Random(count).pairs(seed))
+    }
+
+    pub fn job(&self) -> Job<'_> {
+        Job::new(&self.source, self.pairs.len() as u32, self.lines.len() as u64)
+    }
+
+    /// Every word and every figure of a job that went well.
+    #[track_caller]
+    pub fn check(&self, outcome: &Outcome, what: &str) {
+        assert_eq!(outcome.job_error(), None, "{what}");
+        self.check_written(outcome, what);
+        assert!(outcome.lines.iter().all(Option::is_some), "{what}: a line is missing");
+        assert_eq!(status(outcome), self.status, "{what}: contacts, invalid, first invalid");
+        let bytes = |lines: &[Line]| 64 * lines.len() as u64;
+        let traffic = (outcome.bytes_read, outcome.bytes_written);
+        assert_eq!(traffic, (bytes(&self.source), bytes(&self.lines)), "{what}: each line once");
+        assert_eq!(outcome.cycles_busy + 1, outcome.cycles, "{what}: busy from the cycle after the start on");
+        assert!(outcome.cycles_input + outcome.cycles_output <= outcome.cycles_busy, "{what}: waiting for one thing");
+    }
+
+    /// Whatever was written is right; how many lines were.
+    #[track_caller]
+    pub fn check_written(&self, outcome: &Outcome, what: &str) -> usize {
+        assert_eq!(outcome.lines.len(), self.lines.len());
+        let mut written = 0;
+        for (number, (got, wanted)) in outcome.lines.iter().zip(&self.lines).enumerate() {
+            let Some(got) = got else { continue };
+            assert!(got == wanted, "{what}: line {number} of {}: {got:x?}, not {wanted:x?}", self.lines.len());
+            written += 1;
+        }
+        written
+    }
+
+    /// Whether the figures beside the lines are right.
+    pub fn status_is_right(&self, outcome: &Outcome) -> bool {
+        status(outcome) == self.status
+    }
+
+    /// Destination lines that are not what they should be.
+    pub fn wrong_lines(&self, outcome: &Outcome) -> Vec<usize> {
+        (0..self.lines.len()).filter(|&line| outcome.lines[line] != Some(self.lines[line])).collect()
+    }
+}
+
+/// Words in lines, the unused part of the last zero.
+fn lines(words: &[u32]) -> Vec<Line> {
+    let line = |words: &[u32]| std::array::from_fn(|word| words.get(word).copied().unwrap_or(0));
+    words.chunks(16).map(line).collect()
+}
+
+/// Contacts as the design lays them out: position, normal, depth, flags, those in use, padded to 1, 2, 4 or 8 words;
+/// with nothing but the hit asked for, one bit each.
+fn destination(fields: Fields, records: &[ContactRecord]) -> Vec<Line> {
+    if fields == Fields::HIT {
+        let word = |records: &[ContactRecord]| {
+            records.iter().zip(0..).fold(0, |word, (record, bit)| word | u32::from(record.is_contact()) << bit)
+        };
+        return lines(&records.chunks(32).map(word).collect::<Vec<_>>());
+    }
+    let record = |record: &ContactRecord| {
+        let mut words = Vec::new();
+        for (asked, part) in [(fields.position, 0..3), (fields.normal, 3..6), (fields.depth, 6..7), (true, 7..8)] {
+            if asked {
+                words.extend_from_slice(&record.0[part]);
+            }
+        }
+        words.resize(words.len().next_power_of_two(), 0);
+        words
+    };
+    lines(&records.iter().flat_map(record).collect::<Vec<_>>())
+}

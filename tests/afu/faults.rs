@@ -1,0 +1,193 @@
+//! Each comparison is able to fail: faults planted in the Verilog or on the link are found, and the text they are
+//! planted in is right without them.
+
+use std::fs;
+
+use contact_afu::afu::{Afu, Spec};
+use contact_afu::config::Config;
+use contact_afu::cosim::drive::{DriveError, ProtocolError};
+use contact_afu::cosim::{Driver, File, Job, Model, Outcome, Source, Trace};
+use contact_afu::link::{Direction, Fault, Link, LinkModel, Order};
+use contact_afu::pairs::Set;
+use contact_afu::verify::{Bench, Verdict};
+
+use crate::bench::{Case, committed, config, driver, of, source};
+
+/// Changes the right side of the one assignment in `text` whose line has `left` in it.
+fn change(text: &str, left: &str, right: impl Fn(&str) -> String) -> String {
+    assert_eq!(text.lines().filter(|line| line.contains(left)).count(), 1, "one line with `{left}` in\n{text}");
+    let edit = |line: &str| match line.split_once("= ").filter(|_| line.contains(left)) {
+        Some((target, value)) => format!("{target}= {};\n", right(value.trim_end_matches(';'))),
+        None => format!("{line}\n"),
+    };
+    text.lines().map(edit).collect()
+}
+
+/// The way of `afu cosim --rtl`: a folder that `afu rtl` wrote, one line of which was changed.
+fn verdict(config: &Config, file: &str, left: &str, right: impl Fn(&str) -> String) -> Verdict {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in Afu::generate(Spec::from(config.clone())).unwrap().files() {
+        let text = if name == file { change(&text, left, &right) } else { text };
+        fs::write(folder.path().join(name), text).unwrap();
+    }
+    let bench = Bench::of_folder(folder.path(), None, Trace::Off).unwrap();
+    bench.run(&Set::Random(2_000).pairs(1), &LinkModel::shuffled(), 1).unwrap()
+}
+
+#[test]
+fn a_wrong_gate_a_wrong_rounding_and_a_flipped_bit_are_mismatches() {
+    let config = config(2, "bfloat", "depth");
+    let right = verdict(&config, "fp_mul_e8f7.v", "wire round_up = ", str::to_owned);
+    assert!(right.is_good(), "without a fault: {:?} {:?}", right.mismatches.first(), right.unmet);
+    // Truncated products; a gate of another kind; the lowest bit of what a subtraction adds.
+    let truncated = verdict(&config, "fp_mul_e8f7.v", "wire round_up = ", |_| "1'b0".to_owned());
+    let gate = verdict(&config, "fp_sub_e8f7.v", "wire effective_subtraction = ", |value| value.replace('^', "|"));
+    let flipped = verdict(&config, "fp_sub_e8f7.v", " complemented = ", |value| format!("({value}) ^ 1"));
+    for (what, verdict) in [("truncated", truncated), ("gate", gate), ("flipped", flipped)] {
+        assert!(!verdict.mismatches.is_empty() && !verdict.is_good(), "{what}");
+        // And nothing else: most pairs don't meet the fault, and what they give is right.
+        assert!(verdict.mismatches.len() < 1_500, "{what}: {}", verdict.mismatches.len());
+    }
+}
+
+/// How a fault shows.
+#[derive(Debug, PartialEq)]
+enum Found {
+    Nothing,
+    /// So many destination lines differ from the reference's.
+    WrongLines(usize),
+    /// All lines are right, the figures beside them are not.
+    WrongStatus,
+    /// The job breaks the protocol or does not end.
+    Error(DriveError),
+}
+
+fn judge(case: &Case, outcome: Result<Outcome, DriveError>) -> Found {
+    match outcome {
+        Err(error) => Found::Error(error),
+        Ok(outcome) => match case.wrong_lines(&outcome).len() {
+            0 if case.status_is_right(&outcome) => Found::Nothing,
+            0 => Found::WrongStatus,
+            wrong => Found::WrongLines(wrong),
+        },
+    }
+}
+
+/// Faults of the controller. All are in one model, and a job chooses one by the top bits of its watchdog (which is so
+/// long then that it never ends a job): each wants only a line, but a model of its own would take some seconds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(u32)]
+enum Planted {
+    Nothing,
+    /// The last pair is neither taken nor missed.
+    LastPairDropped,
+    /// Each of two neighbours gets the other's result.
+    LanesSwapped,
+    /// Nobody waits for acknowledgements.
+    DoneEarly,
+    /// Responses to jobs before a reset are taken for this job's.
+    EpochIgnored,
+    /// Pairs enter whether or not there is room for their results.
+    CreditsIgnored,
+    /// Invalid pairs count in one lane only.
+    HalfCounted,
+}
+
+/// File, the assignment's line, the fault, and what is assigned then.
+const FAULTS: [(&str, &str, Planted, &str); 8] = [
+    (
+        "contact_afu_feeder.v",
+        "remaining <= start",
+        Planted::LastPairDropped,
+        "start ? (count - 32'd1) : (remaining - {30'd0, group})",
+    ),
+    ("contact_afu_packer.v", "wire all_out = ", Planted::LastPairDropped, "emerged == (count - 32'd1)"),
+    ("contact_afu.v", "slots_record_0_d1 <= ", Planted::LanesSwapped, "slots_record_1"),
+    ("contact_afu.v", "slots_record_1_d1 <= ", Planted::LanesSwapped, "slots_record_0"),
+    ("contact_afu_dispatcher.v", "assign idle = ", Planted::DoneEarly, "~wr_req_valid"),
+    ("contact_afu_collector.v", "assign response = ", Planted::EpochIgnored, "rd_rsp_valid"),
+    ("contact_afu_control.v", "room <= begin_job", Planted::CreditsIgnored, "room"),
+    (
+        "contact_afu_packer.v",
+        "invalid_count <= start",
+        Planted::HalfCounted,
+        "start ? 32'd0 : (invalid_count + {31'd0, invalid_0})",
+    ),
+];
+
+const SELECTOR_BIT: u32 = 28;
+
+fn model_of_faults(config: &Config) -> Model {
+    let mut files: Vec<File> = source(config).files().to_vec();
+    for (name, left, planted, wrong) in FAULTS {
+        let file = files.iter_mut().find(|file| file.name == name).unwrap();
+        let chosen = format!("contact_afu.control.job_watchdog[31:{SELECTOR_BIT}] == 4'd{}", planted as u32);
+        file.text = change(&file.text, left, |right| format!("({chosen}) ? ({wrong}) : ({right})"));
+    }
+    let source = Source::new("contact_afu", files).parameter("SCPUS", config.scpus.into());
+    Model::build(&source, Trace::Off).unwrap()
+}
+
+fn job<'a>(case: &'a Case, planted: Planted) -> Job<'a> {
+    Job { watchdog: (planted as u32) << SELECTOR_BIT, max_cycles: Some(20_000), ..case.job() }
+}
+
+#[test]
+fn faults_of_the_controller_are_found() {
+    let config = config(2, "e8f3z", "depth");
+    let model = model_of_faults(&config);
+    let case = Case::random(&config, 4_003, 3);
+    // Writes so slow that results wait for them in all the room there is.
+    let (read, name) = (Direction::steady(3, 0), "slow writes".to_owned());
+    let write = Direction { lines_per_cycle: 0.05, ..read };
+    let link = LinkModel { name, read, write, order: Order::InOrder, lines_per_cycle: 2.0 };
+    let run = |planted: Planted| {
+        let afu = model.instance(1).unwrap();
+        let mut driver = Driver::new(&afu, Link::new(link.clone(), 1).unwrap()).unwrap();
+        judge(&case, driver.run(&job(&case, planted)))
+    };
+    assert_eq!(run(Planted::Nothing), Found::Nothing);
+    assert_eq!(run(Planted::LastPairDropped), Found::WrongLines(1));
+    assert_eq!(run(Planted::LanesSwapped), Found::WrongLines(case.lines.len()));
+    let early = run(Planted::DoneEarly);
+    assert!(
+        matches!(early, Found::Error(DriveError::Protocol { what: ProtocolError::DoneEarly { .. }, .. })),
+        "{early:?}"
+    );
+    let crowded = run(Planted::CreditsIgnored);
+    assert!(!matches!(crowded, Found::Nothing | Found::WrongStatus), "{crowded:?}");
+    assert_eq!(run(Planted::HalfCounted), Found::WrongStatus);
+
+    // This one shows only after a reset.
+    let spoilt = Case::random(&config, 301, 4);
+    let harm_after_resets = |planted: Planted| {
+        let afu = model.instance(1).unwrap();
+        let mut driver = driver(&afu, "hostile", 1);
+        (20..400).step_by(20).any(|moment| {
+            driver.start(&job(&spoilt, planted)).unwrap();
+            (0..moment).any(|_| driver.step().unwrap());
+            driver.reset().unwrap();
+            let next = Job { destination_address: 1 << 41, ..job(&case, planted) };
+            judge(&case, driver.run(&next)) != Found::Nothing
+        })
+    };
+    assert!(!harm_after_resets(Planted::Nothing));
+    assert!(harm_after_resets(Planted::EpochIgnored));
+}
+
+/// The host's side of the same: what the link does to the data is seen in the contacts.
+#[test]
+fn faults_of_the_link_are_found() {
+    let case = Case::random(&of(3), 301, 5);
+    let afu = committed(3).instance(1).unwrap();
+    let mut driver = driver(&afu, "shuffled", 1);
+    // Two pairs a line, as many contacts: a line's number is its read's.
+    assert_eq!(judge(&case, driver.run(&case.job())), Found::Nothing);
+    for (fault, wrong) in
+        [(Fault::ReadSwapped(40), vec![40, 41]), (Fault::ReadFlipped { read: 100, bit: 22 }, vec![100])]
+    {
+        driver.link_mut().plan(&[fault]);
+        let outcome = driver.run(&case.job()).unwrap();
+        assert_eq!(case.wrong_lines(&outcome), wrong, "{fault:?}");
+    }
+}

@@ -1,0 +1,16 @@
+//! The Verilated AFU as a whole, against the reference kernel: every destination word, over every link, for every kind
+//! of record; speed; what happens after resets, aborts and faults of the link; and that faults planted in the Verilog
+//! are found.
+//!
+//! Nearly all of the time is Verilator and the C++ compiler; models are cached, so a second run takes seconds.
+#![cfg(feature = "cosim")]
+
+mod bench;
+mod faults;
+mod matrix;
+mod ports;
+mod records;
+mod recovery;
+mod speed;
+mod traces;
+mod verilators;

@@ -1,0 +1,59 @@
+//! Numbers of SCPUs, counts of pairs and links, each with each.
+
+use std::thread;
+
+use contact_afu::cosim::Model;
+use contact_afu::kernel::Fields;
+use contact_afu::link::LinkModel;
+use contact_afu::pairs::Set;
+
+use crate::bench::{Case, committed, config, driver, generated, of};
+
+/// Runs the cases over every preset, one after another on an AFU that is never reset between them.
+fn over_every_link(model: &Model, cases: &[Case], what: &str) {
+    for (link, seed) in LinkModel::PRESETS.into_iter().zip(1..) {
+        let afu = model.instance(seed).unwrap();
+        let mut driver = driver(&afu, link, seed);
+        for case in cases {
+            let outcome = driver.run(&case.job()).unwrap_or_else(|e| panic!("{what}, {link}: {e}"));
+            case.check(&outcome, &format!("{what}, {link}, {} pairs", case.pairs.len()));
+        }
+    }
+}
+
+#[test]
+fn every_word_for_every_number_of_scpus_over_every_link() {
+    let mut cases: Vec<Case> =
+        [0, 1, 2, 3, 177].into_iter().map(|count| Case::random(&of(1), count, count + 5)).collect();
+    cases.insert(3, Case::new(&of(1), Set::Diamond(10).pairs(0)));
+    assert_eq!(cases[3].pairs.len(), 12_354);
+    // Two threads, about equal work: the more SCPUs, the more to simulate.
+    thread::scope(|scope| {
+        for numbers in [[1, 7, 10], [2, 3, 16]] {
+            let cases = &cases;
+            scope.spawn(move || {
+                for scpus in numbers {
+                    over_every_link(&committed(scpus), cases, &format!("{scpus} SCPUs"));
+                }
+            });
+        }
+    });
+}
+
+/// The model that build.rs linked into the crate, on a hundred thousand pairs of all flows.
+#[test]
+fn the_built_in_afu_on_a_hundred_thousand_pairs() {
+    let model = Model::built_in().expect("the crate was built with a model");
+    let case = Case::random(&of(10), 100_000, 1);
+    let afu = model.instance(1).unwrap();
+    let outcome = driver(&afu, "ideal", 1).run(&case.job()).unwrap();
+    case.check(&outcome, "random:100000");
+}
+
+/// IEEE binary32 step by step: subnormals, infinities and NaN inside.
+#[test]
+fn the_paper_s_arithmetic() {
+    let config = config(2, "paper", &Fields::ALL.to_string());
+    let cases = [Case::random(&config, 3_001, 11), Case::new(&config, Set::Diamond(4).pairs(0))];
+    over_every_link(&generated(&config), &cases, "paper");
+}
