@@ -170,12 +170,6 @@ impl Instance {
     fn checked(&self, result: c_int) -> Result<(), SimulationError> {
         if result == 0 { Ok(()) } else { Err(SimulationError::Stopped(message(self.api, self.handle.as_ptr()))) }
     }
-
-    /// The model's table and this instance, for a C++ loop over the same ABI to compare with.
-    #[doc(hidden)]
-    pub fn as_raw(&self) -> *mut std::ffi::c_void {
-        self.handle.as_ptr().cast()
-    }
 }
 
 impl Clock<'_> {

@@ -157,7 +157,8 @@ impl Outcome {
 #[derive(Clone, Debug)]
 pub(super) struct Running {
     destination: Range<u64>,
-    pub(super) watchdog: u32,
+    /// Cycles without a sign of life after which it is given up.
+    pub(super) patience: u64,
     pub(super) max_cycles: Option<u64>,
     pub(super) started: u64,
     /// The link's traffic at the start.
@@ -170,10 +171,10 @@ pub(super) struct Running {
 }
 
 impl Running {
-    pub(super) fn new(job: &Job, cycle: u64, traffic: Traffic) -> Self {
+    pub(super) fn new(job: &Job, patience: u64, cycle: u64, traffic: Traffic) -> Self {
         Self {
             destination: job.destination_range(),
-            watchdog: job.watchdog,
+            patience,
             max_cycles: job.max_cycles,
             started: cycle,
             traffic,

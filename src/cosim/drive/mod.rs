@@ -118,7 +118,8 @@ impl<'a> Driver<'a> {
         self.epoch = (self.epoch + 1) % 16;
         self.ports.start(job, self.epoch);
         self.monitor.begin(self.epoch);
-        self.running = Some(Running::new(job, self.cycle, self.link.traffic()));
+        let patience = PATIENCE_CYCLES + self.link.model().patience_cycles() + u64::from(job.watchdog);
+        self.running = Some(Running::new(job, patience, self.cycle, self.link.traffic()));
         self.cycle_once()?;
         self.ports.started();
         Ok(())
@@ -138,8 +139,7 @@ impl<'a> Driver<'a> {
         let Some(running) = &self.running else { return Ok(true) };
         let quiet = self.cycle - running.last_sign;
         let cycles = self.cycle - running.started;
-        let patience = PATIENCE_CYCLES + self.link.model().patience_cycles() + u64::from(running.watchdog);
-        if quiet > patience || running.max_cycles.is_some_and(|most| cycles > most) {
+        if quiet > running.patience || running.max_cycles.is_some_and(|most| cycles > most) {
             return Err(self.timed_out(cycles));
         }
         Ok(false)

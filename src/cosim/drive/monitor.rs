@@ -204,6 +204,19 @@ impl Monitor {
                 self.writes.accepted(cycle, write.tag, self.epoch)?;
             }
         }
+        self.check_stable(requests, replies)?;
+        self.answered(replies);
+        if memory.violation_count() > self.violations {
+            self.violations = memory.violation_count();
+            if let Some(&violation) = memory.violations().last() {
+                return Err(violation.into());
+            }
+        }
+        Ok(())
+    }
+
+    /// A request stays as it is until it is accepted.
+    fn check_stable(&mut self, requests: &Requests, replies: &Replies) -> Result<(), ProtocolError> {
         if self.pending.read.is_some() && self.pending.read != requests.read {
             return Err(ProtocolError::Unstable { is_read: true });
         }
@@ -211,13 +224,11 @@ impl Monitor {
             return Err(ProtocolError::Unstable { is_read: false });
         }
         self.pending.read = requests.read.filter(|_| !replies.read_ready);
-        self.pending.write = requests.write.filter(|_| !replies.write_ready);
-        self.answered(replies);
-        if memory.violation_count() > self.violations {
-            self.violations = memory.violation_count();
-            if let Some(&violation) = memory.violations().last() {
-                return Err(violation.into());
-            }
+        // A write carries a line: in most cycles there is none to remember.
+        if requests.write.is_some() && !replies.write_ready {
+            self.pending.write = requests.write;
+        } else if self.pending.write.is_some() {
+            self.pending.write = None;
         }
         Ok(())
     }
