@@ -40,6 +40,13 @@ fn every_word_for_every_number_of_scpus_over_every_link() {
     });
 }
 
+/// As many as there can be: turns and lanes at the end of their range.
+#[test]
+fn sixty_four_scpus() {
+    let cases = [0, 1, 63, 64, 65, 1_001].map(|count| Case::random(&of(64), count, count));
+    over_every_link(&committed(64), &cases, "64 SCPUs");
+}
+
 /// The model that build.rs linked into the crate, on a hundred thousand pairs of all flows.
 #[test]
 fn the_built_in_afu_on_a_hundred_thousand_pairs() {

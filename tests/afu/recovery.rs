@@ -1,13 +1,13 @@
 //! Resets, aborts and faults of the link in mid-job: each ends as it should, nothing wrong is ever written, and the
 //! next job is right, also while the link still answers what an earlier one asked.
 
-use contact_afu::afu::JobError;
-use contact_afu::cosim::Driver;
+use contact_afu::afu::{Afu, JobError, Spec};
 use contact_afu::cosim::drive::{DriveError, Waiting};
-use contact_afu::cosim::{Instance, Job, Outcome};
+use contact_afu::cosim::{Driver, File, Instance, Job, Model, Outcome, Source, Trace};
+use contact_afu::hdl::Reset;
 use contact_afu::link::{Fault, LinkModel};
 
-use crate::bench::{Case, committed, driver, of};
+use crate::bench::{Case, committed, config, driver, of};
 
 const SCPUS: u32 = 3;
 
@@ -53,6 +53,25 @@ fn reset_at_any_time_and_the_next_job_is_right() {
             next.check(&outcome, &what);
         }
         assert!(stale > 0 || link == "ideal", "{link}: nothing old was ever on its way");
+    }
+}
+
+/// The other kind of reset: low, and without a clock edge. What differs from the default is in every module.
+#[test]
+fn an_asynchronous_reset_that_is_low() {
+    let config = config(2, "e8f3z", "depth");
+    let reset = Reset { asynchronous: true, active_low: true };
+    let files = Afu::generate(Spec { reset, ..Spec::from(config.clone()) }).unwrap().verilog();
+    let files = files.into_iter().map(|(name, text)| File { name, text }).collect();
+    let afu = Model::build(&Source::new("contact_afu", files), Trace::Off).unwrap().instance(5).unwrap();
+    assert!(afu.has_port("rst_n") && !afu.has_port("rst"));
+    let (spoilt, next) = (Case::random(&config, 301, 23), Case::random(&config, 57, 24));
+    let mut driver = driver(&afu, "hostile", 5);
+    for moment in [20, 90, 200] {
+        driver.start(&spoilt.job()).unwrap();
+        (0..moment).for_each(|_| assert!(!driver.step().unwrap()));
+        driver.reset().unwrap();
+        next.check(&driver.run(&elsewhere(&next)).unwrap(), "after an asynchronous reset");
     }
 }
 
