@@ -75,7 +75,7 @@ fn compare(by_hand: &Loop, scpus: u32, pairs: u32) -> Result<f64, Failure> {
     let rtl = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("rtl");
     let source = Source::from_folder(&rtl, "contact_afu")?.parameter("SCPUS", scpus.into());
     let model = Model::build(&source, Trace::Off)?;
-    let library = model.library().ok_or("the model is not in a library")?;
+    let library = model.shared_object().ok_or("the model is not in a library")?;
     let library = std::ffi::CString::new(library.to_str().ok_or("the cache's path is not UTF-8")?)?;
     // SAFETY: the text ends with a zero.
     let table = unsafe { (by_hand.open_model)(library.as_ptr()) };

@@ -20,7 +20,7 @@ const HARNESS: Harness<'static> =
 #[derive(Clone, Debug)]
 pub struct Model {
     api: Api,
-    library: Option<PathBuf>,
+    shared_object: Option<PathBuf>,
 }
 
 impl Model {
@@ -32,7 +32,7 @@ impl Model {
         let api = unsafe { Api::read(raw::afu_model()) };
         #[cfg(not(afu_built_in))]
         let api = None;
-        api.map(|api| Self { api, library: None })
+        api.map(|api| Self { api, shared_object: None })
     }
 
     /// Builds (or finds in the cache) and loads a model of `source`.
@@ -70,7 +70,7 @@ impl Model {
         // SAFETY: as above, and the library is never unloaded now.
         let api = unsafe { Api::read(function()) };
         let api = api.ok_or_else(|| fail("it is of another version of the ABI".to_owned()))?;
-        Ok(Self { api, library: Some(path) })
+        Ok(Self { api, shared_object: Some(path) })
     }
 
     /// Makes an instance. With seed 0 every bit that no reset reaches begins as zero, otherwise at random: a design
@@ -97,8 +97,8 @@ impl Model {
     }
 
     /// The library it was loaded from; nothing for the built-in model.
-    pub fn library(&self) -> Option<&Path> {
-        self.library.as_deref()
+    pub fn shared_object(&self) -> Option<&Path> {
+        self.shared_object.as_deref()
     }
 }
 

@@ -106,7 +106,7 @@ impl Bench {
 
     /// Where the model came from.
     pub fn origin(&self) -> Origin {
-        self.model.library().map_or(Origin::BuiltIn, |path| Origin::Library(path.to_owned()))
+        self.model.shared_object().map_or(Origin::BuiltIn, |path| Origin::Library(path.to_owned()))
     }
 
     /// SHA-256 of the Verilog, in hex.
