@@ -19,14 +19,19 @@ pub(super) fn once(cache: &Path, key: &str, make: impl FnOnce(&Path) -> Result<(
     let lock_path = cache.join(format!("{key}.lock"));
     let lock = File::create(&lock_path).map_err(|e| Error::io("create", &lock_path, e))?;
     lock.lock().map_err(|e| Error::io("lock", &lock_path, e))?;
-    let made = if result.is_dir() { Ok(()) } else { make_aside(cache, &result, make) };
+    let made = if result.is_dir() { Ok(()) } else { make_aside(cache, key, &result, make) };
     // A process that comes after this makes a new lock and finds the result, or after a failure tries for itself.
     let _ = fs::remove_file(&lock_path);
     made.map(|()| result)
 }
 
-fn make_aside(cache: &Path, result: &Path, make: impl FnOnce(&Path) -> Result<(), Error>) -> Result<(), Error> {
-    let aside = Aside::new(cache)?;
+fn make_aside(
+    cache: &Path,
+    key: &str,
+    result: &Path,
+    make: impl FnOnce(&Path) -> Result<(), Error>,
+) -> Result<(), Error> {
+    let aside = Aside::new(cache, key)?;
     make(&aside.0)?;
     match fs::rename(&aside.0, result) {
         // Locks only save work; where they failed and another process was faster, its result is the same.
@@ -39,11 +44,15 @@ fn make_aside(cache: &Path, result: &Path, make: impl FnOnce(&Path) -> Result<()
 struct Aside(PathBuf);
 
 impl Aside {
-    fn new(cache: &Path) -> Result<Self, Error> {
+    /// Called with the key's lock held: what lies there under this key was left by a process that was killed.
+    fn new(cache: &Path, key: &str) -> Result<Self, Error> {
         static NEXT: AtomicU64 = AtomicU64::new(0);
-        let name = format!("building-{}-{}", process::id(), NEXT.fetch_add(1, Ordering::Relaxed));
-        let path = cache.join(name);
-        let _ = fs::remove_dir_all(&path); // of a process long gone that had our number
+        let mine = format!("building-{key}-");
+        let entries = fs::read_dir(cache).map_err(|e| Error::io("read", cache, e))?;
+        for left in entries.flatten().filter(|entry| entry.file_name().to_string_lossy().starts_with(&mine)) {
+            let _ = fs::remove_dir_all(left.path());
+        }
+        let path = cache.join(format!("{mine}{}-{}", process::id(), NEXT.fetch_add(1, Ordering::Relaxed)));
         fs::create_dir(&path).map_err(|e| Error::io("create", &path, e))?;
         // Verilator and the compiler run in other folders.
         Ok(Self(path.canonicalize().map_err(|e| Error::io("read", &path, e))?))
@@ -75,4 +84,21 @@ pub(super) fn files_in(folder: &Path, extension: &str) -> Result<Vec<PathBuf>, E
     files.retain(|path| path.extension().is_some_and(|found| found == extension));
     files.sort();
     Ok(files)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_killed_build_left_goes_with_the_next_of_its_key() {
+        let cache = tempfile::tempdir().expect("a temporary folder");
+        let left = cache.path().join("building-abc-1-0");
+        let of_another = cache.path().join("building-abd-1-0");
+        fs::create_dir(&left).expect("a folder");
+        fs::create_dir(&of_another).expect("a folder");
+        let write = |folder: &Path| fs::write(folder.join("made"), "").map_err(|e| Error::io("write", folder, e));
+        let result = once(cache.path(), "abc", write).expect("made");
+        assert!(result.join("made").is_file() && !left.exists() && of_another.exists());
+    }
 }
