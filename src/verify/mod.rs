@@ -3,9 +3,11 @@
 mod bench;
 mod check;
 pub mod corpus;
+mod engine;
 mod error;
 mod lines;
 
 pub use bench::{Bench, Origin, rtl_sha256};
 pub use check::{Mismatch, Verdict};
+pub use engine::{BenchEngine, Differs, Totals};
 pub use error::VerifyError;

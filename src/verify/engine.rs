@@ -1,0 +1,69 @@
+//! The simulated AFU as an engine: one job a batch, every bit of it compared before it is believed.
+
+use super::{Bench, VerifyError};
+use crate::kernel::{ContactRecord, Engine, EngineError, PairRecord};
+use crate::link::LinkModel;
+
+/// A [`Bench`] in the place of whatever else computes contacts. Each batch is a job from reset, over the same link.
+///
+/// It is never wrong in silence: a batch with a record that differs from the reference kernel's is an error.
+#[derive(Clone, Debug)]
+pub struct BenchEngine<'a> {
+    bench: &'a Bench,
+    link: LinkModel,
+    seed: u64,
+    totals: Totals,
+}
+
+/// What an engine did so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Totals {
+    /// Jobs.
+    pub jobs: u64,
+    /// Pairs in them.
+    pub pairs: u64,
+    /// Clock cycles from start to done, all jobs together.
+    pub cycles: u64,
+}
+
+impl<'a> BenchEngine<'a> {
+    /// The AFU of `bench` behind `link`. The jobs have the seeds from `seed` on.
+    pub fn new(bench: &'a Bench, link: LinkModel, seed: u64) -> Self {
+        Self { bench, link, seed, totals: Totals::default() }
+    }
+
+    /// What it did so far.
+    pub fn totals(&self) -> Totals {
+        self.totals
+    }
+}
+
+/// A batch that the AFU did not do as the reference kernel does it.
+#[derive(Debug, thiserror::Error)]
+#[error("job {job} of the simulated AFU: {mismatches} of {pairs} records differ from the reference{}", unmet.iter().map(|text| format!("; {text}")).collect::<String>())]
+pub struct Differs {
+    /// The job's number, from 0.
+    pub job: u64,
+    /// Its pairs.
+    pub pairs: usize,
+    /// Records that differ.
+    pub mismatches: usize,
+    /// What else is not as it should be.
+    pub unmet: Vec<String>,
+}
+
+impl Engine for BenchEngine<'_> {
+    fn contacts(&mut self, pairs: &[PairRecord]) -> Result<Vec<ContactRecord>, EngineError> {
+        let job = self.totals.jobs;
+        let run = self.bench.run(pairs, &self.link, self.seed.wrapping_add(job));
+        let verdict = run.map_err(|error: VerifyError| Box::new(error) as EngineError)?;
+        if !verdict.is_good() {
+            let mismatches = verdict.mismatches.len();
+            return Err(Box::new(Differs { job, pairs: pairs.len(), mismatches, unmet: verdict.unmet }));
+        }
+        self.totals.jobs += 1;
+        self.totals.pairs += pairs.len() as u64;
+        self.totals.cycles += verdict.outcome.cycles;
+        Ok(verdict.contacts)
+    }
+}
