@@ -81,7 +81,6 @@ fn what_is_not_built_yet_or_out_of_range_is_one_line_and_exit_2() {
         (["--input", "indexed"], "input indexed"),
         (["--input", "all"], "input all"),
         (["--results", "hits"], "results hits"),
-        (["--shell", "spl2"], "shell spl2"),
         (["--shell", "axi"], "shell axi"),
         (["--target", "ecp5"], "--target ecp5"),
         (["--scpus", "0"], "0 SCPUs"),

@@ -20,6 +20,8 @@ pub enum JobError {
     Watchdog = 4,
     /// A `mode` this AFU does not have.
     Mode = 5,
+    /// More pairs than the host's buffers have lines for: told by a shell that knows their length.
+    Room = 8,
 }
 
 /// Bits of the port `error`.

@@ -8,22 +8,29 @@ use sha2::{Digest, Sha256};
 use crate::config::MANIFEST_SCHEMA;
 use crate::pipeline::KernelReport;
 
-use super::Afu;
+use super::{Afu, spl2};
+use crate::config::Shell;
+
+/// The list of the Verilog files in a generated folder, each after those it needs.
+pub const FILE_LIST: &str = "contact_afu.f";
 
 impl Afu {
     /// All files of the generated folder, the manifest last: relative path and text.
     pub fn files(&self) -> Vec<(String, String)> {
         let verilog = self.verilog();
         let names: Vec<&str> = verilog.iter().map(|(name, _)| name.as_str()).collect();
-        let beside = [
-            ("contact_afu.f", file_list(&names)),
-            ("contact_afu.core", fusesoc_core(&names)),
+        let mut beside = vec![
+            (FILE_LIST, file_list(&names)),
+            ("contact_afu.core", fusesoc_core(&names, &self.top().name)),
             ("contact_afu.sdc", self.sdc()),
             ("contact_afu.xdc", self.xdc()),
             ("contact_afu_instance.vh", self.template()),
             ("PORTS.md", self.ports()),
         ];
-        let beside = beside.map(|(name, text)| (name.to_owned(), text));
+        if self.spec().config.shell == Shell::Spl2 {
+            beside.push(("REGISTERS.md", format!("# Registers and lines of `afu_top`\n\n{}", spl2::map::markdown())));
+        }
+        let beside = beside.into_iter().map(|(name, text)| (name.to_owned(), text));
         let mut files: Vec<(String, String)> = verilog.iter().cloned().chain(beside).collect();
         let manifest = self.manifest(&files);
         files.push(("manifest.json".to_owned(), manifest));
@@ -56,9 +63,10 @@ impl Afu {
 
     fn all_ports(&self) -> Vec<(bool, u32, String)> {
         let reset = if self.spec().reset.active_low { "rst_n" } else { "rst" };
-        let implied = [(false, 1, "clk".to_owned()), (false, 1, reset.to_owned())];
+        let reset = self.top().has_reset_port().then(|| (false, 1, reset.to_owned()));
+        let implied = [(false, 1, "clk".to_owned())].into_iter().chain(reset);
         let declared = self.top().ports.iter().map(|port| (port.output, port.width, port.name.clone()));
-        implied.into_iter().chain(declared).collect()
+        implied.chain(declared).collect()
     }
 
     fn template(&self) -> String {
@@ -67,15 +75,17 @@ impl Afu {
         let lines: Vec<_> = ports.iter().map(|(_, _, name)| format!("  .{name:<widest$} ({name})")).collect();
         let scpus = self.spec().config.scpus;
         format!(
-            "// Instantiation template.\ncontact_afu #(\n  .SCPUS(32'd{scpus})\n) u_contact_afu (\n{}\n);\n",
-            lines.join(",\n")
+            "// Instantiation template.\n{top} #(\n  .SCPUS(32'd{scpus})\n) u_{top} (\n{}\n);\n",
+            lines.join(",\n"),
+            top = self.top().name
         )
     }
 
     fn ports(&self) -> String {
-        let mut out = String::from(
-            "# Ports of `contact_afu`\n\nOne clock. `SCPUS` (1 to 64) is a Verilog parameter. All outputs are registered or functions of \
+        let mut out = format!(
+            "# Ports of `{}`\n\nOne clock. `SCPUS` (1 to 64) is a Verilog parameter. All outputs are registered or functions of \
              registers.\nA line is 512 bits; word i of a line is bits 32·i+31 to 32·i; addresses count lines.\n\n| port | direction | bits | meaning |\n|---|---|---|---|\n",
+            self.top().name
         );
         for (output, width, name) in self.all_ports() {
             let direction = if output { "out" } else { "in" };
@@ -139,11 +149,11 @@ fn file_list(names: &[&str]) -> String {
     names.iter().map(|name| format!("{name}\n")).collect()
 }
 
-fn fusesoc_core(names: &[&str]) -> String {
+fn fusesoc_core(names: &[&str], top: &str) -> String {
     let files: String = names.iter().map(|name| format!("      - {name}\n")).collect();
     format!(
         "CAPI=2:\nname: ::contact_afu:{version}\ndescription: Collision-detection accelerator\n\nfilesets:\n  rtl:\n    files:\n{files}    \
-         file_type: verilogSource\n\ntargets:\n  default: &default\n    filesets: [rtl]\n    toplevel: contact_afu\n    parameters: [SCPUS]\n  lint:\n    \
+         file_type: verilogSource\n\ntargets:\n  default: &default\n    filesets: [rtl]\n    toplevel: {top}\n    parameters: [SCPUS]\n  lint:\n    \
          <<: *default\n    default_tool: verilator\n    tools:\n      verilator:\n        mode: lint-only\n        verilator_options: [-Wall]\n  sim:\n    \
          <<: *default\n    default_tool: icarus\n  synth:\n    <<: *default\n    default_tool: yosys\n    tools:\n      yosys:\n        arch: ecp5\n\n\
          parameters:\n  SCPUS:\n    datatype: int\n    paramtype: vlogparam\n    description: Sphere Collision Processing Units, 1 to 64\n",
@@ -192,6 +202,23 @@ fn meaning(name: &str) -> &'static str {
         "wr_rsp_valid" => "a write acknowledgement, in any order; never refused",
         "wr_rsp_tag" => "the tag of its request",
         "wr_rsp_error" => "the line could not be written: the job ends with error 3",
+        "reset_n" => "the system's reset, active low; at least one cycle",
+        "spl_enable" => "low: everything but the registers rests, as in reset",
+        "spl_reset" => "reset, active high: a job that runs is forgotten",
+        "spl_tx_rd_almostfull" => "no read is put into the port's register while it is high",
+        "spl_tx_wr_almostfull" => "no write is put into the port's register while it is high",
+        "afu_tx_rd_valid" => "a read request, taken in this cycle",
+        "afu_tx_rd_hdr" => "98:93 lines (1), 92:67 and 45:14 line address, 66 virtual, 55:52 type (4), 13:0 mdata",
+        "afu_tx_wr_valid" => "a write request or a fence, taken in this cycle",
+        "afu_tx_wr_hdr" => "as `afu_tx_rd_hdr`; type 2 a line, 5 a fence",
+        "afu_tx_data" => "the line",
+        "afu_tx_intr_valid" => "an interrupt: never",
+        "spl_rx_rd_valid" => "a read response, in any order; never refused",
+        "spl_rx_wr_valid0" | "spl_rx_wr_valid1" => "a write response, in any order, on both channels if need be",
+        "spl_rx_cfg_valid" => "a CSR write: header 13:0 its byte offset / 4, data 31:0 its value",
+        "spl_rx_hdr0" | "spl_rx_hdr1" => "17:14 type, 13:0 mdata of the request",
+        "spl_rx_data" => "the line, or the register's value",
+        "spl_rx_intr_valid0" | "spl_rx_intr_valid1" | "spl_rx_umsg_valid" => "not used",
         _ => "",
     }
 }

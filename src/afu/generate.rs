@@ -8,7 +8,16 @@ use crate::number::Format;
 use crate::pipeline::{Settings, sphere_kernel};
 
 use super::top::line_top;
-use super::{Layout, Spec, SpecError};
+use super::{Layout, Spec, SpecError, spl2};
+use crate::config::Shell;
+
+/// The top module of the accelerators with this shell.
+pub fn top_name(shell: Shell) -> &'static str {
+    match shell {
+        Shell::Spl2 => "afu_top",
+        _ => "contact_afu",
+    }
+}
 
 /// A generated accelerator.
 #[derive(Clone, Debug)]
@@ -53,7 +62,11 @@ impl Afu {
     /// What is out of range in `spec`; ports that do not fit.
     pub fn around(spec: Spec, kernel: Arc<Module>) -> Result<Self, BuildError> {
         spec.check()?;
-        let top = line_top(&spec, &kernel)?;
+        let core = line_top(&spec, &kernel)?;
+        let top = match spec.config.shell {
+            Shell::Spl2 => spl2::afu_top(&spec, &core)?,
+            _ => core,
+        };
         Ok(Self { spec, top, kernel })
     }
 

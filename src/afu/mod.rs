@@ -13,10 +13,12 @@ mod packer;
 mod scpu;
 mod slot;
 mod spec;
+pub mod spl2;
 mod top;
 
 pub use control::JobError;
-pub use generate::{Afu, BuildError};
+pub use files::FILE_LIST;
+pub use generate::{Afu, BuildError, top_name};
 pub use layout::Layout;
 pub use spec::{Spec, SpecError};
 

@@ -80,8 +80,8 @@ impl From<contact_afu::verify::VerifyError> for Failure {
             VerifyError::Manifest(_) | VerifyError::Link(_) | VerifyError::Pairs(_) => Kind::Usage,
             VerifyError::Model(CosimError::MissingTool { .. }) => Kind::Tool,
             VerifyError::Model(CosimError::Source(_)) => Kind::Usage,
-            VerifyError::Drive(_) if error.is_the_job_s() => Kind::Unmet,
-            VerifyError::Model(_) | VerifyError::Drive(_) => Kind::Other,
+            VerifyError::Drive(_) | VerifyError::Machine(_) if error.is_the_job_s() => Kind::Unmet,
+            VerifyError::Model(_) | VerifyError::Drive(_) | VerifyError::Machine(_) => Kind::Other,
         };
         Self::caused(kind, error)
     }

@@ -84,9 +84,14 @@ impl Instance {
         Ok(unsafe { Port::new(port.address, bits) })
     }
 
-    fn vector<const WORDS: usize>(&self, name: &str, direction: u32) -> Result<Wide<'_, WORDS>, SimulationError> {
-        let (_, port) = self.find(name, 32 * WORDS as u32, direction)?;
-        if WORDS < 3 {
+    fn vector<const WORDS: usize>(
+        &self,
+        name: &str,
+        bits: u32,
+        direction: u32,
+    ) -> Result<Wide<'_, WORDS>, SimulationError> {
+        let (_, port) = self.find(name, bits, direction)?;
+        if WORDS < 3 || bits.div_ceil(32) as usize != WORDS {
             let (expected, found) = ("more than 64 bits".to_owned(), format!("{} bits", port.bits));
             return Err(SimulationError::Port { name: name.to_owned(), expected, found });
         }
@@ -115,7 +120,7 @@ impl Instance {
     /// # Errors
     /// When there is no such input.
     pub fn wide_input<const WORDS: usize>(&self, name: &str) -> Result<Wide<'_, WORDS>, SimulationError> {
-        self.vector(name, raw::AFU_INPUT)
+        self.vector(name, 32 * WORDS as u32, raw::AFU_INPUT)
     }
 
     /// The output `name` of 32 × `WORDS` bits (more than 64).
@@ -123,7 +128,19 @@ impl Instance {
     /// # Errors
     /// When there is no such output.
     pub fn wide_output<const WORDS: usize>(&self, name: &str) -> Result<Wide<'_, WORDS>, SimulationError> {
-        self.vector(name, raw::AFU_OUTPUT)
+        self.vector(name, 32 * WORDS as u32, raw::AFU_OUTPUT)
+    }
+
+    /// The output `name` of `bits` (more than 64) bits, which take `WORDS` words.
+    ///
+    /// # Errors
+    /// When there is no such output.
+    pub fn wide_output_of<const WORDS: usize>(
+        &self,
+        name: &str,
+        bits: u32,
+    ) -> Result<Wide<'_, WORDS>, SimulationError> {
+        self.vector(name, bits, raw::AFU_OUTPUT)
     }
 
     /// The clock input `name`.

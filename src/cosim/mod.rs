@@ -11,6 +11,7 @@ mod instance;
 mod model;
 mod port;
 mod source;
+pub mod spl2;
 pub mod verilate;
 
 pub use drive::{Driver, Job, Outcome};

@@ -24,7 +24,15 @@ impl Source {
     /// # Errors
     /// When the list or one of its files cannot be read, or names a file outside the folder.
     pub fn from_folder(folder: &Path, top: &str) -> Result<Self, CosimError> {
-        Ok(Self::new(top, verilate::read_file_list(&folder.join(format!("{top}.f")))?))
+        Self::from_list(&folder.join(format!("{top}.f")), top)
+    }
+
+    /// The module `top` in the files that the file `list` lists, relative to its folder.
+    ///
+    /// # Errors
+    /// As `from_folder`.
+    pub fn from_list(list: &Path, top: &str) -> Result<Self, CosimError> {
+        Ok(Self::new(top, verilate::read_file_list(list)?))
     }
 
     /// Sets a parameter of the top module to a number.

@@ -169,7 +169,8 @@ impl Graph {
         MemoryHandle { graph: self, index: inner.memories.len() - 1, width, address_width: address_width(depth) }
     }
 
-    /// An instance of `module`; `inputs` names each of its input ports once.
+    /// An instance of `module`; `inputs` names each of its input ports once. Its parameters are this module's of the
+    /// same name, where there are such.
     #[track_caller]
     pub fn instance<'g>(&'g self, name: &str, module: &Arc<Module>, inputs: &[(&str, Signal<'g>)]) -> Instantiated<'g> {
         self.instantiate(name, module, InstanceCount::One, inputs, Location::caller())

@@ -9,6 +9,7 @@ mod memory;
 mod model;
 mod queue;
 mod regulator;
+pub mod spl2;
 
 pub use cycle::{Link, ReadRequest, ReadResponse, Replies, Requests, Traffic, WriteRequest, WriteResponse};
 pub use fault::Fault;

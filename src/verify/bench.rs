@@ -6,14 +6,14 @@ use std::time::Instant;
 use super::check::{Verdict, check};
 use super::error::VerifyError;
 use super::lines;
-use crate::afu::{Afu, Layout, Spec};
-use crate::config::{self, Config};
-use crate::cosim::{CosimError, Driver, File, Job, Model, Source, Trace};
+use crate::afu::{Afu, FILE_LIST, Layout, Spec, top_name};
+use crate::config::{self, Config, Shell};
+use crate::cosim::spl2::{Machine, MachineError, Place, Session};
+use crate::cosim::{CosimError, Driver, File, Instance, Job, Model, Outcome, Source, Trace};
 use crate::kernel::{PairRecord, Reference};
+use crate::link::spl2::{Spl2, Spl2Model};
 use crate::link::{Link, LinkModel};
 
-/// The top module of every AFU.
-const TOP: &str = "contact_afu";
 /// Its parameter that says how many SCPUs.
 const SCPUS: &str = "SCPUS";
 /// Bits of a line: what links carry.
@@ -75,7 +75,8 @@ impl Bench {
         let in_folder = config::read(folder)?;
         let config = Config { scpus: scpus.unwrap_or(in_folder.scpus), ..in_folder.clone() };
         Spec::from(config.clone()).check().map_err(crate::afu::BuildError::from)?;
-        let source = with_scpus(Source::from_folder(folder, TOP)?, &config, in_folder.scpus);
+        let source =
+            with_scpus(Source::from_list(&folder.join(FILE_LIST), top_name(config.shell))?, &config, in_folder.scpus);
         Self::of(&config, source, |source| Model::build(source, trace), trace == Trace::Off)
     }
 
@@ -146,20 +147,53 @@ impl Bench {
             let half_period_ps = (500.0 * self.config.cycle_ns()).round() as u64;
             instance.trace_open(path, half_period_ps).map_err(CosimError::from)?;
         }
-        let mut driver = Driver::new(&instance, Link::new(link.clone(), seed)?)?;
-        driver.start(&job)?;
-        while !driver.step()? {
-            if driver.cycle().is_multiple_of(PROGRESS_CYCLES) {
-                progress(driver.link().traffic().write_responses * u64::from(self.layout.contacts_per_line()));
-            }
-        }
-        let outcome = driver.finish()?;
+        let link = Link::new(link.clone(), seed)?;
+        let mut written = |lines: u64| progress(lines * u64::from(self.layout.contacts_per_line()));
+        let outcome = match self.config.shell {
+            Shell::Spl2 => spl2(&instance, link, seed, &job, &mut written)?,
+            _ => line(&instance, link, &job, &mut written)?,
+        };
         if waveform.is_some() {
             instance.trace_close().map_err(CosimError::from)?;
         }
         let seconds = begun.elapsed().as_secs_f64();
         Ok(check(&self.layout, pairs, &self.reference.run_all(pairs), outcome, seconds))
     }
+}
+
+/// Runs a job on the line port itself.
+fn line(afu: &Instance, link: Link, job: &Job, progress: &mut dyn FnMut(u64)) -> Result<Outcome, VerifyError> {
+    let mut driver = Driver::new(afu, link)?;
+    driver.start(job)?;
+    while !driver.step()? {
+        if driver.cycle().is_multiple_of(PROGRESS_CYCLES) {
+            progress(driver.link().traffic().write_responses);
+        }
+    }
+    Ok(driver.finish()?)
+}
+
+/// Runs a job through SPL2, with a host that does the least a host must do.
+fn spl2(
+    afu: &Instance,
+    link: Link,
+    seed: u64,
+    job: &Job,
+    progress: &mut dyn FnMut(u64),
+) -> Result<Outcome, VerifyError> {
+    let mut machine = Machine::new(afu, Spl2::new(Spl2Model::default(), link, seed))?;
+    let place = Place::for_lines(job.source.len() as u64, job.destination_lines);
+    let mut session = Session::open(&mut machine, place, job.scpus)?;
+    session.start(job);
+    let mut left = session.patience(job);
+    let status = loop {
+        match session.wait(left.min(PROGRESS_CYCLES)) {
+            Err(MachineError::NoStatus { .. }) if left > PROGRESS_CYCLES => left -= PROGRESS_CYCLES,
+            ended => break ended?,
+        }
+        progress(session.machine().spl().link().traffic().write_responses);
+    };
+    Ok(session.outcome(&status))
 }
 
 /// SHA-256 of the Verilog that would be generated for a configuration: [`Bench::rtl_sha256`] without a model.
@@ -176,7 +210,7 @@ fn generated(config: &Config) -> Result<Source, VerifyError> {
     Spec::from(config.clone()).check().map_err(crate::afu::BuildError::from)?;
     let afu = Afu::generate(Spec::from(Config { scpus, ..config.clone() }))?;
     let files = afu.verilog().into_iter().map(|(name, text)| File { name, text }).collect();
-    Ok(with_scpus(Source::new(TOP, files), config, scpus))
+    Ok(with_scpus(Source::new(top_name(config.shell), files), config, scpus))
 }
 
 fn with_scpus(source: Source, config: &Config, default: u32) -> Source {

@@ -4,6 +4,7 @@ use crate::afu::BuildError;
 use crate::config::ReadError;
 use crate::cosim::CosimError;
 use crate::cosim::drive::DriveError;
+use crate::cosim::spl2::MachineError;
 use crate::link::LinkError;
 
 /// Why there is no verdict. (A mismatch is a verdict.)
@@ -24,6 +25,9 @@ pub enum VerifyError {
     /// The job has no end, or the AFU broke the line port's protocol.
     #[error(transparent)]
     Drive(#[from] DriveError),
+    /// The same behind SPL2's port.
+    #[error(transparent)]
+    Machine(#[from] MachineError),
     /// More pairs than a job's count can say.
     #[error("{0} pairs: a job has at most 4294967295")]
     Pairs(usize),
@@ -32,6 +36,10 @@ pub enum VerifyError {
 impl VerifyError {
     /// Whether a job that began went wrong, by itself or by the AFU: it does not finish, breaks the protocol, or stops.
     pub fn is_the_job_s(&self) -> bool {
-        matches!(self, Self::Drive(DriveError::TimedOut { .. } | DriveError::Protocol { .. }))
+        matches!(
+            self,
+            Self::Drive(DriveError::TimedOut { .. } | DriveError::Protocol { .. })
+                | Self::Machine(MachineError::NoStatus { .. } | MachineError::Protocol { .. })
+        )
     }
 }

@@ -143,6 +143,7 @@ impl Outcome {
             2 => Some(JobError::Read),
             3 => Some(JobError::Write),
             4 => Some(JobError::Watchdog),
+            8 => Some(JobError::Room),
             _ => Some(JobError::Mode),
         }
     }

@@ -61,6 +61,13 @@ impl Flat {
         flat
     }
 
+    /// The parameters of a module instantiated in a scope: the scope's of the same name, else their defaults.
+    fn inherited(&self, scope: usize, module: &Module) -> Vec<u32> {
+        let Scope { module: parent, parameters, .. } = &self.scopes[scope];
+        let value = |name: &str| parent.parameters.iter().position(|p| p.name == name).map(|index| parameters[index]);
+        module.parameters.iter().map(|p| value(&p.name).unwrap_or(p.default)).collect()
+    }
+
     fn open(&mut self, module: &Arc<Module>, path: String, parameters: Vec<u32>) -> usize {
         let scope = self.scopes.len();
         let base = self.links.len();
@@ -85,7 +92,7 @@ impl Flat {
             for copy in 0..copies {
                 let suffix = if array { format!("[{copy}]") } else { String::new() };
                 let path = format!("{}{}{suffix}.", self.scopes[scope].path, instance.name);
-                let parameters = instance.module.parameters.iter().map(|p| p.default).collect();
+                let parameters = self.inherited(scope, &instance.module);
                 let child = self.open(&instance.module, path, parameters);
                 let child_base = self.scopes[child].base;
                 for (port, source) in instance.module.ports.iter().zip(&instance.inputs) {

@@ -307,13 +307,22 @@ impl<'a> Sections<'a> {
         lines.join(",\n")
     }
 
+    /// Parameters that an instance takes from this module, where both have them.
+    fn inherited(&self, instance: &Instance) -> String {
+        let known = |name: &str| self.module.parameters.iter().any(|parameter| parameter.name == name);
+        let names = instance.module.parameters.iter().map(|p| &p.name).filter(|name| known(name));
+        let list: Vec<_> = names.map(|name| format!("    .{name} ({name})")).collect();
+        if list.is_empty() { String::new() } else { format!("#(\n{}\n  ) ", list.join(",\n")) }
+    }
+
     fn instance(&self, instance: &Instance) -> String {
         let (name, module) = (&instance.name, &instance.module.name);
         let indent = |text: &str, spaces: usize| text.replace('\n', &format!("\n{}", " ".repeat(spaces)));
         match instance.count {
             InstanceCount::One => {
                 let list = self.connections(instance, |name, _| name.to_owned());
-                format!("\n  {module} {name} (\n    {}\n  );\n", indent(&list, 4))
+                let parameters = self.inherited(instance);
+                format!("\n  {module} {parameters}{name} (\n    {}\n  );\n", indent(&list, 4))
             }
             InstanceCount::Parameter(parameter) => {
                 let count = &self.module.parameters[parameter].name;
@@ -334,8 +343,11 @@ impl<'a> Sections<'a> {
                 {
                     out += &format!("      localparam [31:0] NUMBER = {copy};\n");
                 }
-                out +=
-                    &format!("      {module} unit (\n        {}\n      );\n    end\n  endgenerate\n", indent(&list, 8));
+                out += &format!(
+                    "      {module} {}unit (\n        {}\n      );\n    end\n  endgenerate\n",
+                    self.inherited(instance),
+                    indent(&list, 8)
+                );
                 out + &self.array_or(instance, count)
             }
         }

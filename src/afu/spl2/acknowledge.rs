@@ -1,0 +1,46 @@
+//! Write responses come on either receive channel, or on both at once; the core takes one a cycle.
+
+use std::sync::Arc;
+
+use crate::hdl::{Errors, Graph, Module};
+
+use super::super::{EPOCH_BITS, Spec};
+use super::port::{MDATA_BITS, SHELL_EPOCH_BITS, is_core_s};
+
+/// Builds the module `spl2_acknowledge`. Channel 0 goes straight to the core; channel 1 waits for a cycle in which
+/// channel 0 brings nothing. As many can wait as writes can be outstanding, and those of other jobs are dropped before.
+pub(super) fn acknowledge(spec: &Spec) -> Result<Arc<Module>, Errors> {
+    let graph = Graph::new("spl2_acknowledge");
+    graph.about("brings write responses of two channels to the core, one a cycle");
+    let slots = spec.max_outstanding;
+    let slot_bits = slots.ilog2();
+    let tag_bits = EPOCH_BITS + slot_bits;
+    let start = graph.input("start", 1);
+    let epoch = graph.input("epoch", SHELL_EPOCH_BITS);
+    let channels = [0, 1].map(|channel| {
+        let valid = graph.input(&format!("valid_{channel}"), 1);
+        let mdata = graph.input(&format!("mdata_{channel}"), MDATA_BITS);
+        let mine = (valid & is_core_s(mdata, epoch, slot_bits)).named(&format!("core_s_{channel}"));
+        (mine, mdata.low(tag_bits))
+    });
+    let [(first, first_tag), (second, second_tag)] = channels;
+
+    // As in the dispatcher: the memory's registered read runs one ahead.
+    let store = graph.memory("waiting", slots, tag_bits);
+    let tail = graph.register("tail", slot_bits, 0);
+    let head = graph.register("head", slot_bits, 0);
+    let stored = graph.register("stored", slot_bits + 1, 0);
+    let ready = graph.register("ready", 1, 0);
+    let take = (*ready & !first).named("take");
+    store.write(second, tail.value(), second_tag);
+    tail.next(start.select(tail.same(0), tail.value() + second.extend(slot_bits)));
+    let next_head = (head.value() + take.extend(slot_bits)).named("next_head");
+    head.next(start.select(head.same(0), next_head));
+    let left = (stored.value() - take.extend(slot_bits + 1)).named("left");
+    stored.next(start.select(stored.same(0), left + second.extend(slot_bits + 1)));
+    ready.next(!start & left.any());
+
+    graph.output("valid", first | take);
+    graph.output("tag", first.select(first_tag, store.read(next_head).named("oldest")));
+    graph.finish()
+}

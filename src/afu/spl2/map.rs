@@ -1,0 +1,309 @@
+//! The register map of the `spl2` shell: one table, read by the hardware, the host, the generated `REGISTERS.md` and the
+//! documentation.
+//!
+//! Lines are 64 bytes, sixteen little-endian dwords. Addresses in registers and lines are in bytes and must be those of
+//! whole lines; their low six bits are ignored.
+
+use std::fmt::Write as _;
+
+use crate::hdl::{Graph, Signal};
+
+/// Says which accelerator this is: DSM line 0, and again in the status. It never changes.
+pub const AFU_ID: u128 = 0xf885_f921_48fc_4b0b_8fd1_f127_a3a0_b8e2;
+/// The version of this map: it changes with every change that software must know of.
+pub const VERSION: u32 = 1;
+/// Dword 0 of the control memory, when a job is there.
+pub const START_WORD: u32 = 0x406C_CCFF;
+
+/// Cycles from an answer of the control memory to the next time it is read, while no job runs.
+pub const IDLE_POLL_CYCLES: u32 = 32;
+/// The same while a job runs: only an abort can be found.
+pub const RUNNING_POLL_CYCLES: u32 = 512;
+/// Cycles after which a read of the shell's own that was not answered is asked again.
+pub const RETRY_CYCLES: u32 = 1 << 16;
+
+/// DSM line that says who this is.
+pub const IDENTITY_LINE: u32 = 0;
+/// DSM line of latencies.
+pub const LATENCY_LINE: u32 = 4;
+/// DSM line of cycles and lines.
+pub const PERFORMANCE_LINE: u32 = 5;
+/// DSM line that repeats the scratch register.
+pub const SCRATCH_LINE: u32 = 63;
+/// Bytes of the DSM.
+pub const DSM_BYTES: u64 = 4096;
+/// Context line that says where the buffers are.
+pub const POINTERS_LINE: u32 = 0;
+/// Context line that the AFU writes when a job has ended.
+pub const STATUS_LINE: u32 = 1;
+/// Source line of the control memory.
+pub const CONTROL_LINE: u32 = 0;
+/// Source line of the first pairs.
+pub const DATA_LINE: u32 = 1;
+
+/// A 32-bit register, written through a CSR write. Of two halves the high one comes first, and the low one commits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Csr {
+    /// Byte offset.
+    pub offset: u32,
+    /// Its name.
+    pub name: &'static str,
+    /// What it does.
+    pub meaning: &'static str,
+}
+
+const fn csr(offset: u32, name: &'static str, meaning: &'static str) -> Csr {
+    Csr { offset, name, meaning }
+}
+
+/// High half of the DSM's address.
+pub const DSM_BASE_HIGH: Csr = csr(0x8A00, "dsm_base_high", "physical byte address of the DSM, bits 63:32");
+/// Low half of the DSM's address.
+pub const DSM_BASE_LOW: Csr = csr(0x8A04, "dsm_base_low", "bits 31:0; the AFU answers with DSM line 0");
+/// High half of the context's address.
+pub const CONTEXT_BASE_HIGH: Csr = csr(0x8A08, "context_base_high", "virtual byte address of the context, bits 63:32");
+/// Low half of the context's address.
+pub const CONTEXT_BASE_LOW: Csr = csr(0x8A0C, "context_base_low", "bits 31:0; the context is read once SPL is enabled");
+/// Scratch.
+pub const SCRATCH: Csr = csr(0x8AFC, "scratch", "the AFU repeats it in DSM line 63");
+
+/// All registers.
+pub const CSRS: [Csr; 5] = [DSM_BASE_HIGH, DSM_BASE_LOW, CONTEXT_BASE_HIGH, CONTEXT_BASE_LOW, SCRATCH];
+
+/// A field of a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Field {
+    /// Its lowest bit in the line.
+    pub low: u32,
+    /// Its width, up to 128 bits.
+    pub bits: u32,
+    /// Its name.
+    pub name: &'static str,
+    /// What it holds.
+    pub meaning: &'static str,
+}
+
+impl Field {
+    /// The field's value in a line.
+    pub fn get(&self, line: &[u32; 16]) -> u128 {
+        let bit = |index: u32| u128::from(line[(index / 32) as usize] >> (index % 32) & 1);
+        (0..self.bits).fold(0, |value, index| value | bit(self.low + index) << index)
+    }
+
+    /// Puts the low bits of `value` into a line.
+    pub fn set(&self, line: &mut [u32; 16], value: u128) {
+        for index in 0..self.bits {
+            let (word, bit) = (&mut line[((self.low + index) / 32) as usize], (self.low + index) % 32);
+            *word = *word & !(1 << bit) | ((value >> index & 1) as u32) << bit;
+        }
+    }
+
+    /// The field of a line in hardware.
+    pub(super) fn of<'g>(&self, line: Signal<'g>) -> Signal<'g> {
+        line.slice(self.low, self.bits)
+    }
+}
+
+/// A line in hardware: fields in increasing order, zero between them. Values narrower than their field are extended.
+pub(super) fn line<'g>(graph: &'g Graph, line_bits: u32, fields: &[(Field, Signal<'g>)]) -> Signal<'g> {
+    let mut parts = Vec::new();
+    let mut end = 0;
+    for (field, value) in fields {
+        if field.low > end {
+            parts.push(graph.constant(field.low - end, 0));
+        }
+        parts.push(value.extend(field.bits));
+        end = field.low + field.bits;
+    }
+    parts.reverse();
+    Signal::join(&parts).extend(line_bits)
+}
+
+/// `bits` bits from dword `dword` on.
+const fn field(dword: u32, bits: u32, name: &'static str, meaning: &'static str) -> Field {
+    Field { low: 32 * dword, bits, name, meaning }
+}
+
+/// DSM line 0.
+pub mod identity {
+    use super::{Field, field};
+
+    /// [`super::AFU_ID`].
+    pub const AFU_ID: Field = field(0, 128, "afu_id", "says which accelerator this is");
+    /// [`super::VERSION`].
+    pub const VERSION: Field = field(4, 32, "version", "of this map");
+    /// What the core says of itself.
+    pub const CAPABILITY: Field = field(6, 64, "capability", "as the core's port of that name");
+    /// All of them.
+    pub const FIELDS: [Field; 3] = [AFU_ID, VERSION, CAPABILITY];
+}
+
+/// DSM line 4, of the last job.
+pub mod latency {
+    use super::{Field, field};
+
+    /// From the start of the job to the first source line.
+    pub const FIRST_READ: Field = field(0, 32, "first_read", "cycles from the job's start to its first source line");
+    /// From the start of the job to the first destination line.
+    pub const FIRST_WRITE: Field =
+        field(1, 32, "first_write", "cycles from the job's start to its first write request");
+    /// The job.
+    pub const SEQUENCE: Field = field(2, 32, "sequence", "of the job");
+    /// All of them.
+    pub const FIELDS: [Field; 3] = [FIRST_READ, FIRST_WRITE, SEQUENCE];
+}
+
+/// DSM line 5, of the last job.
+pub mod performance {
+    use super::{Field, field};
+
+    /// Cycles of the job.
+    pub const BUSY: Field =
+        field(0, 64, "cycles_busy", "cycles of the job, from its start to its last acknowledgement");
+    /// Cycles without pairs.
+    pub const INPUT: Field = field(2, 64, "cycles_input", "of these, cycles in which the SCPUs waited for pairs");
+    /// Cycles without room.
+    pub const OUTPUT: Field =
+        field(4, 64, "cycles_output", "of these, cycles in which pairs waited for room for their results");
+    /// The job.
+    pub const SEQUENCE: Field = field(6, 32, "sequence", "of the job");
+    /// All of them.
+    pub const FIELDS: [Field; 4] = [BUSY, INPUT, OUTPUT, SEQUENCE];
+}
+
+/// DSM line 63.
+pub mod scratch {
+    use super::{Field, field};
+
+    /// What was written last.
+    pub const VALUE: Field = field(0, 32, "scratch", "what the scratch register was written with");
+    /// All of them.
+    pub const FIELDS: [Field; 1] = [VALUE];
+}
+
+/// Context line 0.
+pub mod pointers {
+    use super::{Field, field};
+
+    /// Where the control memory is, and behind it the pairs.
+    pub const SOURCE: Field = field(2, 64, "source", "pSource: virtual byte address of the control memory");
+    /// Where contacts go.
+    pub const DESTINATION: Field = field(4, 64, "destination", "pDest: virtual byte address of the first result");
+    /// How long both are.
+    pub const LINES: Field =
+        field(6, 32, "lines", "lines from pSource on, and likewise from pDest on, that the AFU may touch");
+    /// All of them.
+    pub const FIELDS: [Field; 3] = [SOURCE, DESTINATION, LINES];
+}
+
+/// Source line 0.
+pub mod control {
+    use super::{Field, field};
+
+    /// [`super::START_WORD`].
+    pub const START: Field = field(0, 32, "start", "start word 0x406CCCFF: a job is here; written last");
+    /// Pairs.
+    pub const COUNT: Field = field(1, 32, "count", "nCol: pairs of the job; 0 is a job");
+    /// Mode.
+    pub const MODE: Field = field(2, 32, "mode", "0; anything else ends the job with error 5");
+    /// The job's number.
+    pub const SEQUENCE: Field =
+        field(3, 32, "sequence", "the job's number: one unlike the last job's makes it a new job");
+    /// Abort.
+    pub const ABORT: Field = field(4, 32, "abort", "anything but 0 ends the running job with error 1");
+    /// Watchdog.
+    pub const WATCHDOG: Field =
+        field(5, 32, "watchdog", "cycles without a response, with one owed, that end the job with error 4; 0: never");
+    /// All of them.
+    pub const FIELDS: [Field; 6] = [START, COUNT, MODE, SEQUENCE, ABORT, WATCHDOG];
+}
+
+/// Context line 1.
+pub mod status {
+    use super::{Field, field};
+
+    /// The job has ended.
+    pub const DONE: Field = field(0, 1, "done", "the job has ended");
+    /// How.
+    pub const ERROR: Field = Field {
+        low: 8,
+        bits: 4,
+        name: "error",
+        meaning: "how: 0 well, 1 aborted, 2 read error, 3 write error, 4 watchdog, 5 unknown mode, 8 more pairs than the \
+                  buffers have lines for",
+    };
+    /// The job.
+    pub const SEQUENCE: Field = field(1, 32, "sequence", "of the job that has ended");
+    /// Contacts.
+    pub const CONTACTS: Field = field(2, 32, "contacts", "contacts of the job");
+    /// Invalid pairs.
+    pub const INVALID: Field = field(3, 32, "invalid", "invalid pairs of the job");
+    /// The first of them.
+    pub const FIRST_INVALID: Field =
+        field(4, 32, "first_invalid", "number of the first invalid pair, all ones if there is none");
+    /// [`super::VERSION`].
+    pub const VERSION: Field = field(5, 32, "version", "of this map");
+    /// What the core says of itself.
+    pub const CAPABILITY: Field = field(6, 64, "capability", "as in DSM line 0");
+    /// [`super::AFU_ID`].
+    pub const AFU_ID: Field = field(8, 128, "afu_id", "as in DSM line 0");
+    /// All of them.
+    pub const FIELDS: [Field; 9] =
+        [DONE, ERROR, SEQUENCE, CONTACTS, INVALID, FIRST_INVALID, VERSION, CAPABILITY, AFU_ID];
+}
+
+/// The lines by what they are: name, who writes, fields.
+pub const LINES: [(&str, &str, &[Field]); 7] = [
+    ("DSM line 0: identity", "AFU", &identity::FIELDS),
+    ("DSM line 4: latency", "AFU", &latency::FIELDS),
+    ("DSM line 5: performance", "AFU", &performance::FIELDS),
+    ("DSM line 63: scratch", "AFU", &scratch::FIELDS),
+    ("Context line 0: pointers", "host", &pointers::FIELDS),
+    ("Context line 1: status", "AFU", &status::FIELDS),
+    ("Source line 0: control memory", "host", &control::FIELDS),
+];
+
+/// The map as Markdown: a table of the registers and one of the lines' fields.
+pub fn markdown() -> String {
+    let mut out = format!("AFU_ID `{AFU_ID:032x}`, version {VERSION} of this map.\n\n");
+    out += "| CSR | name | meaning |\n|---|---|---|\n";
+    for Csr { offset, name, meaning } in CSRS {
+        let _ = writeln!(out, "| {offset:#06X} | `{name}` | {meaning} |");
+    }
+    out += "\n| line | written by | dword | bits | field | meaning |\n|---|---|---|---|---|---|\n";
+    for (name, writer, fields) in LINES {
+        for Field { low, bits, name: field, meaning } in fields {
+            let (dword, first) = (low / 32, low % 32);
+            let last = first + bits - 1;
+            let _ = writeln!(out, "| {name} | {writer} | {dword} | {last}:{first} | `{field}` | {meaning} |");
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fields_lie_in_their_lines_in_order_and_apart() {
+        for (name, _, fields) in LINES {
+            let mut end = 0;
+            for field in fields {
+                assert!(field.low >= end && field.bits <= 128, "{name}: {}", field.name);
+                end = field.low + field.bits;
+            }
+            assert!(end <= 512, "{name}");
+        }
+    }
+
+    #[test]
+    fn a_field_keeps_its_value_and_its_neighbours() {
+        let mut line = [u32::MAX; 16];
+        status::AFU_ID.set(&mut line, AFU_ID);
+        status::ERROR.set(&mut line, 5);
+        assert_eq!((status::AFU_ID.get(&line), status::ERROR.get(&line)), (AFU_ID, 5));
+        assert_eq!((line[0], line[7], line[12]), (0xffff_f5ff, u32::MAX, u32::MAX));
+        assert_eq!(line[8], AFU_ID as u32);
+    }
+}

@@ -1,0 +1,91 @@
+//! The registers that the host writes, and the DSM lines that answer them.
+//!
+//! They are written while SPL is not enabled yet, and on some platforms while it still holds its reset: so nothing here
+//! is reset with the rest, but for the system's reset, and a new reset of SPL's takes the addresses back.
+
+use std::sync::Arc;
+
+use crate::hdl::{Errors, Graph, Module, Signal};
+
+use super::super::{ADDRESS_BITS, Spec};
+use super::map::{self, Csr, identity, scratch};
+use super::port::MDATA_BITS;
+
+/// Bits of a byte address within a line.
+const BYTE_BITS: u32 = 6;
+
+/// Builds the module `spl2_registers`.
+pub(super) fn registers(spec: &Spec) -> Result<Arc<Module>, Errors> {
+    let graph = Graph::new("spl2_registers");
+    graph.about("takes CSR writes, answers them in the DSM");
+    let power_on = graph.input("power_on", 1);
+    let spl_reset = graph.input("spl_reset", 1);
+    let cfg_valid = graph.input("cfg_valid", 1);
+    let cfg_offset = graph.input("cfg_offset", MDATA_BITS);
+    let cfg_data = graph.input("cfg_data", 32);
+    let granted = graph.input("wr_granted", 1);
+    let capability = graph.input("capability", 64);
+
+    // A reset of SPL's counts when it begins: where it is a level, addresses are written before it ends.
+    let before = graph.data_register("spl_reset_before", 1);
+    before.next(spl_reset);
+    let clear = (power_on | (spl_reset & !*before)).named("clear");
+
+    let written = |csr: Csr| (cfg_valid & cfg_offset.is(u128::from(csr.offset / 4))).named(csr.name);
+    let address = |high: Csr, low: Csr, name: &str| {
+        let high_half = graph.data_register(&format!("{name}_high"), 32);
+        high_half.next_if(written(high), cfg_data);
+        let commit = written(low);
+        let line = graph.data_register(&format!("{name}_line"), ADDRESS_BITS);
+        line.next_if(commit, high_half.concat(cfg_data.drop_low(BYTE_BITS)));
+        let valid = flag(&graph, &format!("{name}_valid"), commit, clear);
+        (line.value(), valid, commit)
+    };
+    let (dsm_line, dsm_valid, dsm_commit) = address(map::DSM_BASE_HIGH, map::DSM_BASE_LOW, "dsm");
+    let (context_line, context_valid, _) = address(map::CONTEXT_BASE_HIGH, map::CONTEXT_BASE_LOW, "context");
+
+    // Lines to be written: the identity before the scratch.
+    let scratch_written = written(map::SCRATCH);
+    let value = graph.data_register("scratch_value", 32);
+    value.next_if(scratch_written, cfg_data);
+    let take_identity = graph.wire("identity_granted", 1);
+    let take_scratch = graph.wire("scratch_granted", 1);
+    let identity_due = flag(&graph, "identity_due", dsm_commit, clear | (take_identity & !dsm_commit));
+    let scratch_due = flag(&graph, "scratch_due", scratch_written, clear | (take_scratch & !scratch_written));
+    let due = (dsm_valid & (identity_due | scratch_due)).named("due");
+    take_identity.drive(granted & identity_due);
+    take_scratch.drive(granted & !identity_due);
+
+    let constant = |width: u32, value: u128| graph.constant(width, value);
+    let identity = map::line(
+        &graph,
+        spec.line_bits,
+        &[
+            (identity::AFU_ID, constant(128, map::AFU_ID)),
+            (identity::VERSION, constant(32, map::VERSION.into())),
+            (identity::CAPABILITY, capability),
+        ],
+    );
+    let scratch = map::line(&graph, spec.line_bits, &[(scratch::VALUE, value.value())]);
+    let number = identity_due.select(constant(6, map::IDENTITY_LINE.into()), constant(6, map::SCRATCH_LINE.into()));
+    graph.output("dsm_line", dsm_line);
+    graph.output("dsm_valid", dsm_valid);
+    graph.output("context_line", context_line);
+    graph.output("context_valid", context_valid);
+    graph.output("wr_valid", due);
+    graph.output("wr_address", dsm_page_line(dsm_line, number));
+    graph.output("wr_line", identity_due.select(identity, scratch).named("line"));
+    graph.finish()
+}
+
+/// A bit that is set by one event and cleared by another, which wins.
+fn flag<'g>(graph: &'g Graph, name: &str, set: Signal<'g>, clear: Signal<'g>) -> Signal<'g> {
+    let flag = graph.data_register(name, 1);
+    flag.next((*flag | set) & !clear);
+    flag.value()
+}
+
+/// The address of a line of the DSM, which is a page.
+pub(super) fn dsm_page_line<'g>(dsm: Signal<'g>, number: Signal<'g>) -> Signal<'g> {
+    dsm.drop_low(number.width()).concat(number)
+}

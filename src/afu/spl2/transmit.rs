@@ -1,0 +1,113 @@
+//! Requests: from the core and the shell into SPL's two transmit ports, with a number in each by which its response is
+//! known.
+//!
+//! A request stands in the port's register for one cycle and is taken there and then; none is put there while SPL's
+//! queue is almost full. What must not be confused over a reset of SPL's is not reset by it: numbers and epoch count on.
+
+use std::sync::Arc;
+
+use crate::hdl::{Errors, Graph, Module, Signal};
+
+use super::super::{ADDRESS_BITS, EPOCH_BITS, Spec};
+use super::port::{self, NUMBER_BITS, Request, SHELL_EPOCH_BITS, TX_HEADER_BITS};
+
+/// Builds the module `spl2_transmit`.
+pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, Errors> {
+    let graph = Graph::new("spl2_transmit");
+    graph.about("puts requests of core and shell into the transmit ports, and numbers them");
+    let slot_bits = spec.max_outstanding.ilog2();
+    let power_on = graph.input("power_on", 1);
+    let start = graph.input("start", 1);
+    let rd_almostfull = graph.input("rd_almostfull", 1);
+    let wr_almostfull = graph.input("wr_almostfull", 1);
+
+    let epoch = graph.data_register("epoch", SHELL_EPOCH_BITS);
+    let next_epoch = (epoch.value() + start.extend(SHELL_EPOCH_BITS)).named("next_epoch");
+    epoch.next(next_epoch.gate(!power_on));
+
+    // Reads: the shell's few first.
+    let core_read = graph.input("core_rd_valid", 1);
+    let core_read_address = graph.input("core_rd_address", ADDRESS_BITS);
+    let core_read_tag = graph.input("core_rd_tag", EPOCH_BITS + slot_bits);
+    let own_read = graph.input("own_rd_valid", 1);
+    let own_read_address = graph.input("own_rd_address", ADDRESS_BITS);
+    let own_read_granted = (own_read & !rd_almostfull).named("own_rd_granted");
+    let core_read_ready = (!own_read & !rd_almostfull).named("core_rd_ready");
+    let read_number = number(&graph, "read_number", own_read_granted, power_on);
+    let constant = |width: u32, value: u128| graph.constant(width, value);
+    let read_header = port::header(
+        &graph,
+        port::kind(&graph, Request::Read),
+        constant(1, 1),
+        own_read.select(own_read_address, core_read_address),
+        own_read.select(
+            port::own_mdata(&graph, read_number),
+            port::core_mdata(epoch.value(), core_read_tag.low(slot_bits)),
+        ),
+    );
+    let read_valid = graph.data_register("tx_rd_valid", 1);
+    let reading = (own_read_granted | (core_read_ready & core_read)).named("reading");
+    read_valid.next(reading & !power_on);
+    let read_register = graph.data_register("tx_rd_hdr", TX_HEADER_BITS);
+    read_register.next_if(reading, read_header);
+
+    // Writes: DSM lines that answer registers, then those at the end of a job, then the core's.
+    let core_write = graph.input("core_wr_valid", 1);
+    let core_write_address = graph.input("core_wr_address", ADDRESS_BITS);
+    let core_write_tag = graph.input("core_wr_tag", EPOCH_BITS + slot_bits);
+    let core_write_data = graph.input("core_wr_data", spec.line_bits);
+    let register_write = graph.input("register_wr_valid", 1);
+    let register_write_address = graph.input("register_wr_address", ADDRESS_BITS);
+    let register_write_data = graph.input("register_wr_data", spec.line_bits);
+    let end_write = graph.input("end_wr_valid", 1);
+    let end_write_fence = graph.input("end_wr_fence", 1);
+    let end_write_virtual = graph.input("end_wr_virtual", 1);
+    let end_write_address = graph.input("end_wr_address", ADDRESS_BITS);
+    let end_write_data = graph.input("end_wr_data", spec.line_bits);
+    let register_granted = (register_write & !wr_almostfull).named("register_wr_granted");
+    let end_granted = (end_write & !register_write & !wr_almostfull).named("end_wr_granted");
+    let own_write = (register_write | end_write).named("own_write");
+    let core_write_ready = (!own_write & !wr_almostfull).named("core_wr_ready");
+    let write_number = number(&graph, "write_number", register_granted | end_granted, power_on);
+    let is_fence = (end_write_fence & !register_write).named("is_fence");
+    let write_header = port::header(
+        &graph,
+        is_fence.select(port::kind(&graph, Request::WriteFence), port::kind(&graph, Request::WriteLine)),
+        register_write.select(constant(1, 0), end_write.select(end_write_virtual, constant(1, 1))),
+        register_write.select(register_write_address, end_write.select(end_write_address, core_write_address)),
+        own_write.select(
+            port::own_mdata(&graph, write_number),
+            port::core_mdata(epoch.value(), core_write_tag.low(slot_bits)),
+        ),
+    );
+    let write_valid = graph.data_register("tx_wr_valid", 1);
+    let writing = (register_granted | end_granted | (core_write_ready & core_write)).named("writing");
+    write_valid.next(writing & !power_on);
+    let write_register = graph.data_register("tx_wr_hdr", TX_HEADER_BITS);
+    write_register.next_if(writing, write_header);
+    let data_register = graph.data_register("tx_data", spec.line_bits);
+    let data = register_write.select(register_write_data, end_write.select(end_write_data, core_write_data));
+    data_register.next_if(writing, data);
+
+    graph.output("epoch", epoch.value());
+    graph.output("core_epoch", next_epoch.low(EPOCH_BITS));
+    graph.output("read_number", read_number);
+    graph.output("own_rd_granted", own_read_granted);
+    graph.output("core_rd_ready", core_read_ready);
+    graph.output("register_wr_granted", register_granted);
+    graph.output("end_wr_granted", end_granted);
+    graph.output("core_wr_ready", core_write_ready);
+    graph.output("tx_rd_valid", read_valid.value());
+    graph.output("tx_rd_hdr", read_register.value());
+    graph.output("tx_wr_valid", write_valid.value());
+    graph.output("tx_wr_hdr", write_register.value());
+    graph.output("tx_data", data_register.value());
+    graph.finish()
+}
+
+/// The number of the shell's next request: counts those that were granted, since the system's reset.
+fn number<'g>(graph: &'g Graph, name: &str, granted: Signal<'g>, power_on: Signal<'g>) -> Signal<'g> {
+    let number = graph.data_register(name, NUMBER_BITS);
+    number.next((number.value() + granted.extend(NUMBER_BITS)).gate(!power_on));
+    number.value()
+}

@@ -1,0 +1,124 @@
+//! The simulated HARP v1: a Verilated `afu_top` below SPL2 over a link to memory, with the host's side of both.
+//!
+//! [`Machine`] is what a host has: CSR writes, memory, time. [`Session`] is a small host of its own, enough to run jobs.
+
+mod error;
+mod ports;
+mod session;
+
+pub use error::MachineError;
+pub use session::{Place, Session, Status};
+
+use super::instance::{Clock, Instance};
+use crate::afu::spl2::map;
+use crate::link::spl2::{DeviceWrite, Spl2, Transmit};
+use crate::link::{LINE_BYTES, Memory};
+use ports::Ports;
+
+/// Cycles that the system's reset is held.
+const RESET_CYCLES: u64 = 4;
+
+/// A host's view of the AFU below SPL2.
+#[derive(Debug)]
+pub struct Machine<'a> {
+    clock: Clock<'a>,
+    ports: Ports<'a>,
+    spl: Spl2,
+    cycle: u64,
+    /// The high half of a CSR that is yet to be committed.
+    high: u32,
+}
+
+impl<'a> Machine<'a> {
+    /// Takes hold of the ports of `afu`, a module with the `spl2` shell's ports, and resets the system.
+    ///
+    /// # Errors
+    /// When a port is missing, or the module ends itself.
+    pub fn new(afu: &'a Instance, spl: Spl2) -> Result<Self, MachineError> {
+        let (clock, ports) = (afu.clock("clk")?, Ports::new(afu)?);
+        let mut machine = Self { clock, ports, spl, cycle: 0, high: 0 };
+        machine.system_reset()?;
+        Ok(machine)
+    }
+
+    /// The system's reset: AFU and SPL forget everything, memory stays.
+    ///
+    /// # Errors
+    /// When the module ends itself.
+    pub fn system_reset(&mut self) -> Result<(), MachineError> {
+        self.ports.system_reset(true);
+        for _ in 0..RESET_CYCLES {
+            self.spl.system_reset();
+            self.one_cycle(&Transmit::default())?;
+        }
+        self.ports.system_reset(false);
+        Ok(())
+    }
+
+    /// The host writes a 32-bit CSR, which takes as long as [`Spl2Model::csr_cycles`](crate::link::spl2::Spl2Model) say.
+    ///
+    /// # Errors
+    /// As [`Machine::advance`].
+    pub fn write_csr(&mut self, byte_offset: u32, value: u32) -> Result<(), MachineError> {
+        // The host's own view of where the AFU will write: those lines are logged.
+        if byte_offset == map::DSM_BASE_HIGH.offset {
+            self.high = value;
+        } else if byte_offset == map::DSM_BASE_LOW.offset {
+            let first = (u64::from(self.high) << 32 | u64::from(value)) / LINE_BYTES;
+            self.spl.watch(first..first + map::DSM_BYTES / LINE_BYTES);
+        }
+        self.spl.write_csr(byte_offset, value);
+        self.advance(u64::from(self.spl.model().csr_cycles).max(1))
+    }
+
+    /// Runs the clock.
+    ///
+    /// # Errors
+    /// When the AFU breaks the port's protocol, or ends itself.
+    pub fn advance(&mut self, cycles: u64) -> Result<(), MachineError> {
+        for _ in 0..cycles {
+            let transmit = self.ports.transmit();
+            self.one_cycle(&transmit)?;
+        }
+        Ok(())
+    }
+
+    fn one_cycle(&mut self, transmit: &Transmit) -> Result<(), MachineError> {
+        let received = self.spl.cycle(transmit);
+        let receive = received.map_err(|what| MachineError::Protocol { cycle: self.cycle, what })?;
+        self.ports.receive(&receive);
+        self.clock.tick(1)?;
+        self.cycle += 1;
+        Ok(())
+    }
+
+    /// Cycles so far.
+    pub fn cycle(&self) -> u64 {
+        self.cycle
+    }
+
+    /// Physical memory, in lines.
+    pub fn memory(&self) -> &Memory {
+        &self.spl.link().memory
+    }
+
+    /// Physical memory, for the host's hand.
+    pub fn memory_mut(&mut self) -> &mut Memory {
+        &mut self.spl.link_mut().memory
+    }
+
+    /// SPL2 and the link below.
+    pub fn spl(&self) -> &Spl2 {
+        &self.spl
+    }
+
+    /// SPL2 and the link below, to plant faults, watch lines and set limits.
+    pub fn spl_mut(&mut self) -> &mut Spl2 {
+        &mut self.spl
+    }
+
+    /// What the AFU wrote to the DSM and to lines watched besides (a host watches its context), in order of arrival.
+    pub fn device_writes(&self) -> &[DeviceWrite] {
+        self.spl.log()
+    }
+}

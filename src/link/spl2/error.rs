@@ -1,0 +1,65 @@
+//! What must not happen at SPL2's port.
+
+/// What the AFU, or the host, must not do.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Spl2Error {
+    /// More requests than are accepted after almost-full.
+    #[error("a {what} {after} cycles of requests after almost-full: SPL accepts 4")]
+    Overshoot {
+        /// Read or write.
+        what: &'static str,
+        /// Requests since almost-full rose.
+        after: u32,
+    },
+    /// A header that says nothing SPL knows.
+    #[error("a {what} header {header:#027x}: {why}")]
+    Header {
+        /// Read or write.
+        what: &'static str,
+        /// The 99 bits.
+        header: u128,
+        /// What is wrong with it.
+        why: &'static str,
+    },
+    /// `mdata` of a request that is still to be answered.
+    #[error("a {what} used mdata {mdata:#06x}, whose last response has not come yet")]
+    MdataReused {
+        /// Read or write.
+        what: &'static str,
+        /// The mdata.
+        mdata: u16,
+    },
+    /// A request long after SPL was disabled or reset.
+    #[error("a {what} with SPL disabled or in reset for {cycles} cycles")]
+    Disabled {
+        /// Read or write.
+        what: &'static str,
+        /// For how long.
+        cycles: u64,
+    },
+    /// An interrupt, which this AFU has none of.
+    #[error("an interrupt")]
+    Interrupt,
+    /// An address outside of the page table.
+    #[error("page fault: a {what} of virtual line {line:#x}")]
+    PageFault {
+        /// Read or write.
+        what: &'static str,
+        /// The line address.
+        line: u64,
+    },
+    /// A line that the job has no business with.
+    #[error("a {what} of virtual line {line:#x}, which is not the job's")]
+    Outside {
+        /// Read or write.
+        what: &'static str,
+        /// The line address.
+        line: u64,
+    },
+    /// A second write to a line of the results.
+    #[error("a second write to virtual line {0:#x}")]
+    WrittenTwice(u64),
+    /// The host enabled SPL with a context that is none.
+    #[error("SPL2 context: {0}")]
+    Context(&'static str),
+}
