@@ -1,7 +1,7 @@
 //! Link models driven by hand: order, latency, bandwidth, stalls, faults, and the same again for the same seed.
 
 use contact_afu::link::{
-    Direction, Fault, Line, Link, LinkModel, Order, ReadRequest, Replies, Requests, Stalls, WriteRequest,
+    Direction, Fault, Line, Link, LinkModel, Order, ReadRequest, Replies, Requests, Shape, Stalls, WriteRequest,
 };
 
 const CYCLES: u64 = 20_000;
@@ -134,4 +134,60 @@ fn failed_writes_are_not_in_memory() {
     }
     assert_eq!(came, [(0, true), (2, false)]);
     assert_eq!([0, 1, 2].map(|address| link.memory.get(address).is_some()), [false, false, true]);
+}
+
+#[test]
+fn no_more_is_taken_than_may_be_in_flight() {
+    let mut model = LinkModel::ideal();
+    model.read = Direction { in_flight: 5, ..Direction::steady(50, 0) };
+    model.write = Direction { in_flight: 3, ..model.read };
+    let (mut link, mut most) = (Link::new(model, 0).unwrap(), (0, 0));
+    for i in 0..400 {
+        let read = Some(ReadRequest { address: i, tag: 0 });
+        let write = Some(WriteRequest { address: i, tag: 0, data: [0; 16] });
+        let room = (link.in_flight().0 < 5, link.in_flight().1 < 3);
+        let replies = link.cycle(&Requests { read, write });
+        assert!(replies.write_ready <= room.1, "a write beyond what may be in flight");
+        assert!(replies.read_ready || !room.0, "a read has room and is refused");
+        let now = link.in_flight();
+        most = (most.0.max(now.0), most.1.max(now.1));
+    }
+    assert_eq!(most, (5, 3));
+}
+
+#[test]
+fn a_geometric_tail_is_mostly_short_and_ends() {
+    let mut model = LinkModel::ideal();
+    model.read = Direction { shape: Shape::Geometric(4.0), ..Direction::steady(10, 30) };
+    model.order = Order::Shuffled;
+    let mut link = Link::new(model, 5).unwrap();
+    let mut waits = Vec::new();
+    for _ in 0..4000 {
+        link.cycle(&Requests { read: Some(ReadRequest { address: 0, tag: 1 }), write: None });
+        waits.push((1..64).find(|_| link.cycle(&Requests::default()).read.is_some()).unwrap());
+    }
+    let mean = waits.iter().sum::<usize>() as f64 / waits.len() as f64;
+    assert!((mean - 14.0).abs() < 0.3, "{mean}");
+    let within = |range: std::ops::RangeInclusive<usize>| waits.iter().filter(|wait| range.contains(wait)).count();
+    assert_eq!(within(10..=40), waits.len());
+    assert!(within(10..=10) > 600 && within(10..=14) > within(15..=40), "a fifth come at once");
+}
+
+#[test]
+fn writes_may_have_another_order_than_reads() {
+    let mut model = LinkModel::shuffled();
+    (model.order, model.write_order) = (Order::InOrder, Some(Order::Shuffled));
+    let (_, replies) = saturate(model, 3, true, true);
+    let in_order = |tags: Vec<u16>| tags.iter().enumerate().all(|(i, &tag)| usize::from(tag) == i % 1024);
+    assert!(in_order(replies.iter().filter_map(|reply| Some(reply.read?.tag)).collect()));
+    assert!(!in_order(replies.iter().filter_map(|reply| Some(reply.write?.tag)).collect()));
+}
+
+#[test]
+fn a_model_s_own_faults_are_there_from_the_start() {
+    let model = LinkModel { faults: vec![Fault::ReadError(1)], ..LinkModel::ideal() };
+    let mut link = Link::new(model, 0).unwrap();
+    let read = |tag| Requests { read: Some(ReadRequest { address: 0, tag }), write: None };
+    let errors = [0, 1, 2, 3].map(|tag| link.cycle(&read(tag)).read.map(|reply| reply.error));
+    assert_eq!(errors, [None, Some(false), Some(true), Some(false)]);
 }

@@ -9,6 +9,11 @@ use crate::hdl::{Errors, Graph, Module, Signal};
 
 use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, Spec};
 
+/// From the first cycle in which it runs to its first request.
+pub(super) const CYCLES_TO_REQUEST: u32 = 1;
+/// From a response to the line offered, if it is the next in order.
+pub(super) const CYCLES_TO_LINE: u32 = 2;
+
 /// Builds the module `contact_afu_collector`.
 pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let graph = Graph::new("contact_afu_collector");

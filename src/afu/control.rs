@@ -31,6 +31,11 @@ pub(super) const MODE_BITS: u32 = 4;
 /// Bits of a cycle counter.
 const CYCLE_BITS: u32 = 64;
 
+/// From the cycle in which `start` is high to the first in which the parts run.
+pub(super) const CYCLES_TO_RUN: u32 = 2;
+/// From the cycle in which nothing is left to do to `done`.
+pub(super) const CYCLES_TO_DONE: u32 = 1;
+
 /// Builds the module `contact_afu_control`; `capacity` is the number of results there is room for.
 pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, Errors> {
     let graph = Graph::new("contact_afu_control");

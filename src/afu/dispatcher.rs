@@ -9,6 +9,11 @@ use crate::hdl::{Errors, Graph, Module};
 use super::collector::up_down;
 use super::{ADDRESS_BITS, EPOCH_BITS, Spec};
 
+/// From a line to its write request: stored, at the head, registered.
+pub(super) const CYCLES_TO_REQUEST: u32 = 3;
+/// From an acknowledgement to its being counted.
+pub(super) const CYCLES_TO_IDLE: u32 = 1;
+
 /// Builds the module `contact_afu_dispatcher`, with room for `depth` (a power of two) lines.
 pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, Errors> {
     let graph = Graph::new("contact_afu_dispatcher");

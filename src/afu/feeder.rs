@@ -7,6 +7,9 @@ use crate::hdl::{Errors, Graph, Module, Signal};
 
 use super::{COUNT_BITS, SCPU_BITS, Spec};
 
+/// From a line offered to a group of its pairs on their way to the slots: the line in hand, the group registered.
+pub(super) const CYCLES_TO_ISSUE: u32 = 2;
+
 /// Builds the module `contact_afu_feeder`. `room_bits` holds the number of results there is room for.
 pub(super) fn feeder(spec: &Spec, room_bits: u32) -> Result<Arc<Module>, Errors> {
     let graph = Graph::new("contact_afu_feeder");

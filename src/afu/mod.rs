@@ -14,6 +14,7 @@ mod scpu;
 mod slot;
 mod spec;
 pub mod spl2;
+mod timing;
 mod top;
 
 pub use control::JobError;
@@ -21,6 +22,7 @@ pub use files::FILE_LIST;
 pub use generate::{Afu, BuildError, top_name};
 pub use layout::Layout;
 pub use spec::{Spec, SpecError};
+pub use timing::Timing;
 
 /// Bits of a line address: 64-byte lines of a 64-bit byte address space.
 pub const ADDRESS_BITS: u32 = 58;

@@ -6,6 +6,11 @@ use crate::hdl::{Errors, Graph, Module, Signal};
 
 use super::{COUNT_BITS, Spec};
 
+/// From a group to the line that it fills.
+pub(super) const CYCLES_TO_LINE: u32 = 1;
+/// As many more for a last line that is not full.
+pub(super) const CYCLES_TO_FLUSH: u32 = 1;
+
 /// Builds the module `contact_afu_packer`.
 pub(super) fn packer(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let graph = Graph::new("contact_afu_packer");

@@ -9,7 +9,7 @@ use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, MAX_SCPUS, SCPU_BITS, Spec};
 use super::{collector, dispatcher, feeder, packer, scpu, slot};
 
 /// Register ranks round the slots: results are registered after they were or-ed together.
-const RANKS_AFTER: u32 = 1;
+pub(super) const RANKS_AFTER: u32 = 1;
 /// Cycles a result spends between the SCPUs and its write request, and some to ride out a stall of the link.
 const CYCLES_IN_DISPATCH: u32 = 16;
 /// Lines the dispatcher keeps at least.

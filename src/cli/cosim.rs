@@ -35,7 +35,7 @@ pub struct Cosim {
     /// Write the contacts of the only job, as they lie in destination memory: .csv or .npy
     #[arg(long, value_name = "FILE")]
     contacts: Option<PathBuf>,
-    /// Link between AFU and memory: ideal, late, shuffled, hostile, or a .json file of such a model
+    /// Link between AFU and memory: ideal, late, shuffled, hostile, harp1, harp2, pcie3x8, or a .toml file of a link
     #[arg(long, value_name = "NAME|FILE", default_value = "ideal")]
     link: String,
     /// Seed of random pairs, of the link, and of registers that no reset reaches
@@ -64,10 +64,11 @@ pub struct Cosim {
 }
 
 pub fn run(options: &Cosim) -> Result<(), Failure> {
-    let link = link::read(&options.link)?;
+    let link = link::describe(&options.link)?;
     let trace = options.trace()?;
     let jobs = options.jobs()?;
     let bench = options.bench(trace)?;
+    let link = link.at(bench.config().clock_mhz).ends(Kind::Usage)?;
 
     let mut run = Run {
         config: bench.config().clone(),

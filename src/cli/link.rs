@@ -1,21 +1,23 @@
-//! `--link`: a preset's name, or a file of a link model.
+//! `--link`: a name, or a file of a link.
 
 use std::fs;
-use std::path::Path;
 
-use contact_afu::link::LinkModel;
+use contact_afu::link::{Description, LinkModel};
 
-use super::failure::{Failure, Kind};
+use super::failure::{Classify, Failure, Kind};
 
-/// The model of that name, or of that `.json` file.
-pub fn read(text: &str) -> Result<LinkModel, Failure> {
+/// The link of that name, or of that `.toml` or `.json` file, at a clock.
+pub fn read(text: &str, clock_mhz: f64) -> Result<LinkModel, Failure> {
+    describe(text)?.at(clock_mhz).ends(Kind::Usage)
+}
+
+/// The link of that name or file, before its clock is known.
+pub fn describe(text: &str) -> Result<Description, Failure> {
     let usage = |why: &dyn std::fmt::Display| Failure::new(Kind::Usage, why);
-    if !text.ends_with(".json") {
-        let model = text.parse::<LinkModel>();
-        return model.map_err(|error| usage(&format!("{error}, or a .json file of a link model")));
+    if ![".toml", ".json"].iter().any(|ending| text.ends_with(ending)) {
+        let named = text.parse::<Description>();
+        return named.map_err(|error| usage(&format!("{error}, or a .toml or .json file of a link")));
     }
-    let bytes = fs::read(Path::new(text)).map_err(|error| usage(&format!("{text}: {error}")))?;
-    let model: LinkModel = serde_json::from_slice(&bytes).map_err(|error| usage(&format!("{text}: {error}")))?;
-    model.check().map_err(|error| usage(&format!("{text}: {error}")))?;
-    Ok(model)
+    let content = fs::read_to_string(text).map_err(|error| usage(&format!("{text}: {error}")))?;
+    Description::parse(text, &content).map_err(|error| usage(&error))
 }

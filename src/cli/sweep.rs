@@ -27,7 +27,7 @@ pub struct Sweep {
     /// Pairs: diamond:H, random:N, or a .csv or .npy file
     #[arg(long, value_name = "SET|FILE", default_value = "diamond:10")]
     pairs: String,
-    /// Link between AFU and memory: ideal, late, shuffled, hostile, or a .json file of such a model
+    /// Link between AFU and memory: ideal, late, shuffled, hostile, harp1, harp2, pcie3x8, or a .toml file of a link
     #[arg(long, value_name = "NAME|FILE", default_value = "ideal")]
     link: String,
     /// Seed of random pairs, of the link, and of registers that no reset reaches
@@ -51,10 +51,10 @@ pub struct Sweep {
 
 pub fn run(options: &Sweep) -> Result<(), Failure> {
     let configs = options.configs()?;
-    let link = link::read(&options.link)?;
+    let base = options.machine.config()?;
+    let link = link::read(&options.link, base.clock_mhz)?;
     let pairs = pairs::load(&options.pairs, options.seed)?;
     let task = Task { pairs: &pairs, link: &link, seed: options.seed };
-    let base = options.machine.config()?;
     let mut record = Record::new(&options.pairs, fingerprint(&pairs), &options.link, options.seed, &base);
     let bar = progress::spinner("");
     let resumed = fill(&mut record, &configs, &task, &options.out, options.force, |config| {

@@ -135,13 +135,13 @@ impl Link {
             random: Xoshiro256PlusPlus::seed_from_u64(seed),
             now: 0,
             reads: Queue::new(model.read, model.order),
-            writes: Queue::new(model.write, model.order),
+            writes: Queue::new(model.write, model.write_order.unwrap_or(model.order)),
             read_gate: Gate::new(model.read.stalls),
             write_gate: Gate::new(model.write.stalls),
             read_bucket: Bucket::new(model.read.lines_per_cycle),
             write_bucket: Bucket::new(model.write.lines_per_cycle),
             joint_bucket: Bucket::new(model.lines_per_cycle),
-            faults: Vec::new(),
+            faults: model.faults.clone(),
             planned_at: Traffic::default(),
             traffic: Traffic::default(),
             model,
@@ -185,7 +185,7 @@ impl Link {
             (self.answer_read(), ready)
         };
         let write = self.answer_write();
-        let read_ready = self.read_gate.is_open(&mut self.random);
+        let read_ready = self.read_gate.is_open(&mut self.random) && self.reads.has_room();
         if let Some(request) = requests.read.filter(|_| read_ready) {
             self.accept_read(request);
         }
@@ -216,7 +216,7 @@ impl Link {
             return false;
         }
         self.write_bucket.drip(); // not in a stall, which carries nothing
-        let ready = self.write_bucket.has_line() && self.joint_bucket.has_line();
+        let ready = self.write_bucket.has_line() && self.joint_bucket.has_line() && self.writes.has_room();
         if ready && requests.write.is_some() {
             self.write_bucket.take();
             self.joint_bucket.take();

@@ -5,10 +5,14 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
+use super::direction::{Direction, Order, Stalls, Stragglers};
+use super::fault::Fault;
+
 /// Reads, and likewise writes, that an AFU may have outstanding.
 pub const MAX_OUTSTANDING: u32 = 64;
 
-/// A link: two directions, an order, and a bandwidth both share.
+/// A link at a clock: two directions, an order, a bandwidth both share, and what a session costs. In cycles and lines;
+/// [`Physical`](super::Physical) has nanoseconds and bytes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LinkModel {
@@ -20,63 +24,33 @@ pub struct LinkModel {
     pub write: Direction,
     /// Whether responses of one direction overtake each other.
     pub order: Order,
+    /// The same for writes, where it is another.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub write_order: Option<Order>,
     /// Lines a cycle in both directions together, above 0 and up to 2.
     #[serde(default = "both")]
     pub lines_per_cycle: f64,
-}
-
-/// One direction of a link.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Direction {
-    /// Cycles from the acceptance of a request to its response, at least 1.
-    pub latency: u32,
-    /// Up to so many cycles more, evenly distributed.
+    /// What the host waits for beside a job.
     #[serde(default)]
-    pub tail: u32,
-    /// Rare responses that are much later.
-    #[serde(default)]
-    pub stragglers: Stragglers,
-    /// Spans of cycles in which no request is accepted.
-    #[serde(default)]
-    pub stalls: Stalls,
-    /// Lines a cycle, above 0 and up to 1.
-    #[serde(default = "one")]
-    pub lines_per_cycle: f64,
+    pub session: Session,
+    /// Faults planted from the start.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub faults: Vec<Fault>,
 }
 
-/// Responses that come much later than the others.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+/// What the host's side of a link costs, in cycles of the AFU's clock.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Stragglers {
-    /// The share of responses, 0 to 1.
-    pub share: f64,
-    /// The cycles they take beyond the others.
-    pub cycles: u32,
-}
-
-/// Spans of cycles in which `ready` is low, whether or not there is a request.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Stalls {
-    /// The chance that one begins in a cycle outside of one: at least 0, below 1.
-    pub chance: f64,
-    /// The longest, in cycles; lengths from 1 to this are equally likely.
-    pub longest: u32,
-}
-
-/// The order of responses.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Order {
-    /// That of the requests: a late response delays those behind it.
-    InOrder,
-    /// Any: of those that are due, one at random.
-    Shuffled,
-}
-
-fn one() -> f64 {
-    1.0
+pub struct Session {
+    /// Before each transaction.
+    #[serde(default)]
+    pub set_up: u64,
+    /// After each transaction.
+    #[serde(default)]
+    pub tear_down: u64,
+    /// From the host's write of a control register to the AFU.
+    #[serde(default)]
+    pub csr_write: u64,
 }
 
 fn both() -> f64 {
@@ -87,8 +61,16 @@ fn both() -> f64 {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LinkError {
     /// Not the name of a preset.
-    #[error("unknown link `{0}`: use {presets}", presets = LinkModel::PRESETS.join(", "))]
+    #[error("unknown link `{0}`: use {names}", names = super::NAMES.join(", "))]
     Unknown(String),
+    /// A file of a link that is none.
+    #[error("{file}: {message}")]
+    File {
+        /// The file.
+        file: String,
+        /// The line, and what is wrong with it.
+        message: String,
+    },
     /// A value outside its range.
     #[error("link `{link}`: {field} is {value}, but must be {range}")]
     Range {
@@ -104,7 +86,7 @@ pub enum LinkError {
 }
 
 impl LinkModel {
-    /// The names [`FromStr`] knows.
+    /// The names [`FromStr`] knows. [`Description`](super::Description) knows more, which need a clock.
     pub const PRESETS: [&'static str; 4] = ["ideal", "late", "shuffled", "hostile"];
 
     /// One line a cycle each way, answered in the next cycle: what the AFU alone can do.
@@ -133,7 +115,16 @@ impl LinkModel {
     }
 
     fn new(name: &str, both_ways: Direction, order: Order) -> Self {
-        Self { name: name.to_owned(), read: both_ways, write: both_ways, order, lines_per_cycle: both() }
+        Self {
+            name: name.to_owned(),
+            read: both_ways,
+            write: both_ways,
+            order,
+            write_order: None,
+            lines_per_cycle: both(),
+            session: Session::default(),
+            faults: Vec::new(),
+        }
     }
 
     /// Whether every value is in its range.
@@ -142,18 +133,9 @@ impl LinkModel {
     /// [`LinkError::Range`] with the first that is not.
     pub fn check(&self) -> Result<(), LinkError> {
         let fail = |field, value, range| Err(LinkError::Range { link: self.name.clone(), field, value, range });
-        for d in [&self.read, &self.write] {
-            if d.latency == 0 {
-                return fail("latency", 0.0, "at least 1 cycle");
-            }
-            if !(d.lines_per_cycle > 0.0 && d.lines_per_cycle <= 1.0) {
-                return fail("lines_per_cycle of a direction", d.lines_per_cycle, "above 0 and at most 1");
-            }
-            if !(0.0..=1.0).contains(&d.stragglers.share) {
-                return fail("the share of stragglers", d.stragglers.share, "from 0 to 1");
-            }
-            if !(0.0..1.0).contains(&d.stalls.chance) {
-                return fail("the chance of stalls", d.stalls.chance, "at least 0 and below 1");
+        for direction in [&self.read, &self.write] {
+            if let Some((field, value, range)) = direction.fault() {
+                return fail(field, value, range);
             }
         }
         if !(self.lines_per_cycle > 0.0 && self.lines_per_cycle <= 2.0) {
@@ -163,7 +145,8 @@ impl LinkModel {
     }
 
     /// The cycles that so many lines read and written take at least over this link, on average over its randomness: what
-    /// its bandwidths, its stalls and (by Little's law) its latency under [`MAX_OUTSTANDING`] requests allow.
+    /// its bandwidths, its stalls and (by Little's law) its latency under its requests in flight allow. An AFU that has
+    /// fewer in flight than the link takes reaches less.
     pub fn limit_cycles(&self, lines_read: u64, lines_written: u64) -> f64 {
         let (read, written) = (lines_read as f64, lines_written as f64);
         let alone = (read * self.read.cycles_per_read()).max(written * self.write.cycles_per_write());
@@ -176,49 +159,12 @@ impl LinkModel {
     pub(crate) fn patience_cycles(&self) -> u64 {
         let slowest = |d: &Direction| {
             let each = u64::from(d.latency) + u64::from(d.tail) + u64::from(d.stragglers.cycles);
-            let spaced = (f64::from(MAX_OUTSTANDING) * d.cycles_per_write()).ceil() as u64;
+            let spaced = (f64::from(d.in_flight) * d.cycles_per_write()).ceil() as u64;
             each + 2 * spaced + 64 * u64::from(d.stalls.longest)
         };
-        let joint = (4.0 * f64::from(MAX_OUTSTANDING) / self.lines_per_cycle).ceil() as u64;
+        let together = f64::from(self.read.in_flight) + f64::from(self.write.in_flight);
+        let joint = (2.0 * together / self.lines_per_cycle).ceil() as u64;
         2 * (slowest(&self.read).max(slowest(&self.write)) + joint)
-    }
-}
-
-impl Direction {
-    /// Without stalls, stragglers or a bandwidth limit.
-    pub fn steady(latency: u32, tail: u32) -> Self {
-        let (stragglers, stalls) = (Stragglers::default(), Stalls::default());
-        Self { latency, tail, stragglers, stalls, lines_per_cycle: one() }
-    }
-
-    fn mean_latency(&self) -> f64 {
-        let late = self.stragglers.share * f64::from(self.stragglers.cycles);
-        f64::from(self.latency) + f64::from(self.tail) / 2.0 + late
-    }
-
-    /// The share of cycles in which requests are accepted: runs of (1 − c) / c cycles on average between stalls of half
-    /// the longest.
-    fn ready_share(&self) -> f64 {
-        let Stalls { chance, longest } = self.stalls;
-        if longest == 0 {
-            return 1.0;
-        }
-        (1.0 - chance) / (1.0 - chance + chance * (1.0 + f64::from(longest)) / 2.0)
-    }
-
-    /// Stalls refuse requests while the data of earlier ones still comes: the tighter of the two counts.
-    fn cycles_per_read(&self) -> f64 {
-        self.in_flight_limit().max(1.0 / self.lines_per_cycle).max(1.0 / self.ready_share())
-    }
-
-    /// A write carries its data, so a stall stops the data too: the two multiply.
-    fn cycles_per_write(&self) -> f64 {
-        self.in_flight_limit().max(1.0 / (self.lines_per_cycle * self.ready_share()))
-    }
-
-    /// Little's law: cycles a line that the latency leaves.
-    fn in_flight_limit(&self) -> f64 {
-        self.mean_latency() / f64::from(MAX_OUTSTANDING)
     }
 }
 
@@ -260,7 +206,7 @@ mod tests {
             model.check().unwrap();
         }
         let error = "idea".parse::<LinkModel>().unwrap_err().to_string();
-        assert_eq!(error, "unknown link `idea`: use ideal, late, shuffled, hostile");
+        assert_eq!(error, "unknown link `idea`: use ideal, late, shuffled, hostile, harp1, harp2, pcie3x8");
     }
 
     #[test]

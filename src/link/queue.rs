@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use super::model::{Direction, Order};
+use super::direction::{Direction, Order, Shape};
 use super::regulator::{chance, up_to};
 
 /// The requests of one direction that have no response yet.
@@ -24,9 +24,16 @@ impl<T> Queue<T> {
 
     /// A request accepted in cycle `now`.
     pub(super) fn push(&mut self, now: u64, item: T, random: &mut Xoshiro256PlusPlus) {
-        let Direction { latency, tail, stragglers, .. } = self.direction;
+        let Direction { latency, tail, shape, stragglers, .. } = self.direction;
         let late = if chance(random, stragglers.share) { stragglers.cycles } else { 0 };
-        let due = now + u64::from(latency) + u64::from(up_to(random, tail)) + u64::from(late);
+        let beyond = match shape {
+            Shape::Even => up_to(random, tail),
+            Shape::Geometric(_) => {
+                let another = shape.chance_of_another();
+                (0..tail).find(|_| !chance(random, another)).unwrap_or(tail)
+            }
+        };
+        let due = now + u64::from(latency) + u64::from(beyond) + u64::from(late);
         self.waiting.push_back((due, item));
     }
 
@@ -52,6 +59,11 @@ impl<T> Queue<T> {
 
     pub(super) fn iter_mut(&mut self) -> impl Iterator<Item = &mut T> {
         self.waiting.iter_mut().map(|(_, item)| item)
+    }
+
+    /// Whether the link takes another request.
+    pub(super) fn has_room(&self) -> bool {
+        self.waiting.len() < self.direction.in_flight as usize
     }
 
     pub(super) fn len(&self) -> usize {

@@ -3,7 +3,7 @@
 use rand::Rng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use super::model::Stalls;
+use super::direction::Stalls;
 
 /// True with probability `share`.
 pub(super) fn chance(random: &mut Xoshiro256PlusPlus, share: f64) -> bool {
@@ -29,6 +29,12 @@ impl Bucket {
     pub(super) fn new(lines_per_cycle: f64) -> Self {
         let full = 1.0 + lines_per_cycle;
         Self { lines_per_cycle, full, level: 0.0 }
+    }
+
+    /// A bucket that nobody took from for long.
+    pub(super) fn full(lines_per_cycle: f64) -> Self {
+        let empty = Self::new(lines_per_cycle);
+        Self { level: empty.full, ..empty }
     }
 
     pub(super) fn drip(&mut self) {

@@ -167,7 +167,7 @@ impl Run {
             ("cycles a pair", Box::new(|t| figure(t.cycles_per_pair(), 3))),
             ("ns a pair", Box::new(move |t| figure(t.cycles_per_pair().map(|c| c * ns), 2))),
             ("latency, line in to line out, cycles", Box::new(|t| t.latency_cycles.map_or("-".into(), grouped))),
-            ("link allows, cycles a pair", Box::new(|t| figure(t.limit_per_pair(), 3))),
+            ("link allows, ns a pair", Box::new(move |t| figure(t.limit_per_pair().map(|c| c * ns), 2))),
             ("share of that reached", Box::new(|t| percent(t.efficiency()))),
             ("simulated in, seconds", Box::new(|t| format!("{:.1}", t.host_seconds))),
         ];
@@ -270,7 +270,7 @@ mod tests {
              cycles a pair                               0.510           -
              ns a pair                                    2.55           -
              latency, line in to line out, cycles           83           -
-             link allows, cycles a pair                  0.500           -
+             link allows, ns a pair                       2.50           -
              share of that reached                      98.0 %           -
              simulated in, seconds                         0.2         0.0
             ───────────────────────────────────────────────────────────────"#]]

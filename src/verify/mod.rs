@@ -1,5 +1,6 @@
 //! Pairs through a simulated AFU, and every bit of what comes back compared with the reference kernel.
 
+mod account;
 mod bench;
 mod check;
 pub mod corpus;
@@ -7,6 +8,7 @@ mod engine;
 mod error;
 mod lines;
 
+pub use account::{Part, account};
 pub use bench::{Bench, Origin, rtl_sha256};
 pub use check::{Mismatch, Verdict};
 pub use engine::{BenchEngine, Differs, Totals};

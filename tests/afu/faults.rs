@@ -140,7 +140,7 @@ fn faults_of_the_controller_are_found() {
     // Writes so slow that results wait for them in all the room there is.
     let (read, name) = (Direction::steady(3, 0), "slow writes".to_owned());
     let write = Direction { lines_per_cycle: 0.05, ..read };
-    let link = LinkModel { name, read, write, order: Order::InOrder, lines_per_cycle: 2.0 };
+    let link = LinkModel { name, read, write, order: Order::InOrder, ..LinkModel::ideal() };
     let run = |planted: Planted| {
         let afu = model.instance(1).unwrap();
         let mut driver = Driver::new(&afu, Link::new(link.clone(), 1).unwrap()).unwrap();

@@ -30,7 +30,7 @@ fn the_counters_name_the_slower_side() {
     let fast = Direction::steady(5, 0);
     for (read, write) in [(fast, slow), (slow, fast)] {
         let name = "lopsided".to_owned();
-        let model = LinkModel { name, read, write, order: Order::InOrder, lines_per_cycle: 2.0 };
+        let model = LinkModel { name, read, write, order: Order::InOrder, ..LinkModel::ideal() };
         let mut driver = contact_afu::cosim::Driver::new(&afu, Link::new(model, 1).unwrap()).unwrap();
         let outcome = driver.run(&case.job()).unwrap();
         case.check(&outcome, "lopsided");

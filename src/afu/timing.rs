@@ -1,0 +1,49 @@
+//! How many cycles each part of an AFU takes, from the numbers its hardware is generated with.
+
+use super::{Afu, collector, control, dispatcher, feeder, packer, slot, top};
+
+/// Cycles on the way of a line that meets nothing in its way, part by part, without those that the link takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Timing {
+    /// Control: from `start` to the parts running.
+    pub start: u32,
+    /// Collector: to the first read request.
+    pub request: u32,
+    /// Collector: from its response to a line in order.
+    pub collect: u32,
+    /// Feeder: to pairs on their way to the slots.
+    pub feed: u32,
+    /// Slot: the SCPU, and the register before it.
+    pub scpu: u32,
+    /// Results of all slots or-ed together and registered.
+    pub gather: u32,
+    /// Packer: to a full line.
+    pub pack: u32,
+    /// Packer: more for a last line that is not full.
+    pub flush: u32,
+    /// Dispatcher: to its write request.
+    pub dispatch: u32,
+    /// Dispatcher: from the last acknowledgement to its being counted.
+    pub acknowledge: u32,
+    /// Control: to `done`.
+    pub done: u32,
+}
+
+impl Afu {
+    /// What each part takes.
+    pub fn timing(&self) -> Timing {
+        Timing {
+            start: control::CYCLES_TO_RUN,
+            request: collector::CYCLES_TO_REQUEST,
+            collect: collector::CYCLES_TO_LINE,
+            feed: feeder::CYCLES_TO_ISSUE,
+            scpu: slot::latency(self.kernel().latency),
+            gather: top::RANKS_AFTER,
+            pack: packer::CYCLES_TO_LINE,
+            flush: packer::CYCLES_TO_FLUSH,
+            dispatch: dispatcher::CYCLES_TO_REQUEST,
+            acknowledge: dispatcher::CYCLES_TO_IDLE,
+            done: control::CYCLES_TO_DONE,
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! Links by name or file.
+
+use std::str::FromStr;
+
+use super::model::{LinkError, LinkModel};
+use super::physical::Physical;
+
+/// The links that have a name: first those of [`LinkModel::PRESETS`], then real ones.
+pub const NAMES: [&str; 7] = ["ideal", "late", "shuffled", "hostile", "harp1", "harp2", "pcie3x8"];
+
+/// A link, whatever the clock of the AFU is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Description {
+    /// In cycles and lines: what it is at one clock it is at any.
+    Cycles(Box<LinkModel>),
+    /// In nanoseconds and bytes.
+    Physical(Box<Physical>),
+}
+
+impl Description {
+    /// The link of a file: JSON is a [`LinkModel`] in cycles, anything else a [`Physical`] in TOML.
+    ///
+    /// # Errors
+    /// When `text` is not what its name says, with `file` and the line.
+    pub fn parse(file: &str, text: &str) -> Result<Self, LinkError> {
+        if !file.ends_with(".json") {
+            return Ok(Self::Physical(Box::new(Physical::parse(file, text)?)));
+        }
+        let wrong = |message: String| LinkError::File { file: file.to_owned(), message };
+        let model: LinkModel = serde_json::from_str(text).map_err(|error| wrong(error.to_string()))?;
+        model.check().map_err(|error| wrong(error.to_string()))?;
+        Ok(Self::Cycles(Box::new(model)))
+    }
+
+    /// The link at a clock of `mhz`.
+    ///
+    /// # Errors
+    /// As [`Physical::at`].
+    pub fn at(&self, mhz: f64) -> Result<LinkModel, LinkError> {
+        match self {
+            Self::Cycles(model) => Ok(LinkModel::clone(model)),
+            Self::Physical(physical) => physical.at(mhz),
+        }
+    }
+}
+
+impl FromStr for Description {
+    type Err = LinkError;
+
+    fn from_str(name: &str) -> Result<Self, LinkError> {
+        let text = match name {
+            "harp1" => include_str!("presets/harp1.toml"),
+            "harp2" => include_str!("presets/harp2.toml"),
+            "pcie3x8" => include_str!("presets/pcie3x8.toml"),
+            _ => return name.parse().map(|model| Self::Cycles(Box::new(model))),
+        };
+        Self::parse(name, text)
+    }
+}

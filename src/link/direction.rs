@@ -1,0 +1,161 @@
+//! One direction of a link, as data.
+
+use serde::{Deserialize, Serialize};
+
+use super::model::MAX_OUTSTANDING;
+
+/// One direction of a link.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Direction {
+    /// Cycles from the acceptance of a request to its response, at least 1.
+    pub latency: u32,
+    /// Up to so many cycles more, as `shape` says.
+    #[serde(default)]
+    pub tail: u32,
+    /// How the tail is distributed.
+    #[serde(default)]
+    pub shape: Shape,
+    /// Rare responses that are much later.
+    #[serde(default)]
+    pub stragglers: Stragglers,
+    /// Spans of cycles in which no request is accepted.
+    #[serde(default)]
+    pub stalls: Stalls,
+    /// Lines a cycle, above 0 and up to 1.
+    #[serde(default = "one")]
+    pub lines_per_cycle: f64,
+    /// Requests without a response beyond which no more is accepted, at least 1. What is lost no longer counts.
+    #[serde(default = "most_outstanding")]
+    pub in_flight: u32,
+}
+
+/// How the cycles beyond the least latency are distributed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Shape {
+    /// Each number of cycles as likely as any other.
+    #[default]
+    Even,
+    /// Each further cycle a response still has not come with the same chance, so that short waits are the most likely:
+    /// the mean, in cycles, of the distribution before it is cut off at the tail's end.
+    Geometric(f64),
+}
+
+/// Responses that come much later than the others.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Stragglers {
+    /// The share of responses, 0 to 1.
+    pub share: f64,
+    /// The cycles they take beyond the others.
+    pub cycles: u32,
+}
+
+/// Spans of cycles in which `ready` is low, whether or not there is a request.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Stalls {
+    /// The chance that one begins in a cycle outside of one: at least 0, below 1.
+    pub chance: f64,
+    /// The longest, in cycles; lengths from 1 to this are equally likely.
+    pub longest: u32,
+}
+
+/// The order of responses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Order {
+    /// That of the requests: a late response delays those behind it, as in a reorder buffer.
+    InOrder,
+    /// Any: of those that are due, one at random.
+    Shuffled,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+fn most_outstanding() -> u32 {
+    MAX_OUTSTANDING
+}
+
+impl Direction {
+    /// Without stalls, stragglers or a bandwidth limit, an even tail, [`MAX_OUTSTANDING`] in flight.
+    pub fn steady(latency: u32, tail: u32) -> Self {
+        Self {
+            latency,
+            tail,
+            shape: Shape::Even,
+            stragglers: Stragglers::default(),
+            stalls: Stalls::default(),
+            lines_per_cycle: one(),
+            in_flight: MAX_OUTSTANDING,
+        }
+    }
+
+    /// The first value outside its range, if one is: field, value, range.
+    pub(super) fn fault(&self) -> Option<(&'static str, f64, &'static str)> {
+        let lines_per_cycle = self.lines_per_cycle > 0.0 && self.lines_per_cycle <= 1.0;
+        let share = (0.0..=1.0).contains(&self.stragglers.share);
+        let chance = (0.0..1.0).contains(&self.stalls.chance);
+        let mean = match self.shape {
+            Shape::Even => 0.0,
+            Shape::Geometric(mean) => mean,
+        };
+        let checks = [
+            (self.latency >= 1, "latency", f64::from(self.latency), "at least 1 cycle"),
+            (lines_per_cycle, "lines_per_cycle of a direction", self.lines_per_cycle, "above 0 and at most 1"),
+            (share, "the share of stragglers", self.stragglers.share, "from 0 to 1"),
+            (chance, "the chance of stalls", self.stalls.chance, "at least 0 and below 1"),
+            (mean >= 0.0 && mean.is_finite(), "the mean of a geometric tail", mean, "0 or more cycles"),
+            (self.in_flight >= 1, "in_flight", f64::from(self.in_flight), "at least 1"),
+        ];
+        checks.into_iter().find(|(is_good, ..)| !is_good).map(|(_, field, value, range)| (field, value, range))
+    }
+
+    fn mean_latency(&self) -> f64 {
+        let tail = match self.shape {
+            Shape::Even => f64::from(self.tail) / 2.0,
+            // The mean of a geometric distribution cut off at `tail`.
+            Shape::Geometric(mean) => mean * (1.0 - self.shape.chance_of_another().powf(self.tail.into())),
+        };
+        f64::from(self.latency) + tail + self.stragglers.share * f64::from(self.stragglers.cycles)
+    }
+
+    /// The share of cycles in which requests are accepted: runs of (1 − c) / c cycles on average between stalls of half
+    /// the longest.
+    fn ready_share(&self) -> f64 {
+        let Stalls { chance, longest } = self.stalls;
+        if longest == 0 {
+            return 1.0;
+        }
+        (1.0 - chance) / (1.0 - chance + chance * (1.0 + f64::from(longest)) / 2.0)
+    }
+
+    /// Stalls refuse requests while the data of earlier ones still comes: the tighter of the two counts.
+    pub(super) fn cycles_per_read(&self) -> f64 {
+        self.in_flight_limit().max(1.0 / self.lines_per_cycle).max(1.0 / self.ready_share())
+    }
+
+    /// A write carries its data, so a stall stops the data too: the two multiply.
+    pub(super) fn cycles_per_write(&self) -> f64 {
+        self.in_flight_limit().max(1.0 / (self.lines_per_cycle * self.ready_share()))
+    }
+
+    /// Little's law: cycles a line that the latency leaves.
+    fn in_flight_limit(&self) -> f64 {
+        self.mean_latency() / f64::from(self.in_flight)
+    }
+}
+
+impl Shape {
+    /// The chance that a response that has not come yet does not come in the next cycle either; 0 where that is not how
+    /// it is distributed.
+    pub(super) fn chance_of_another(self) -> f64 {
+        match self {
+            Self::Even => 0.0,
+            Self::Geometric(mean) => mean / (mean + 1.0),
+        }
+    }
+}

@@ -1,0 +1,70 @@
+//! A small job's cycles, one by one: which part of the AFU and of the link takes how many.
+
+use crate::afu::Afu;
+use crate::link::{LinkModel, Order};
+
+/// A part of a job's way, and the cycles it takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Part {
+    /// What.
+    pub name: &'static str,
+    /// Cycles.
+    pub cycles: u64,
+}
+
+/// The cycles of a job of `pairs` pairs over `link`, from the cycle in which `start` is high to the one in which `done`
+/// is, part by part; their sum is the job's to the cycle.
+///
+/// Nothing for a job or a link for which that is no sum: randomness (a tail, stalls, stragglers, reads in any order that
+/// wait for one another), fewer SCPUs than pairs
+/// in a line, an interval above 1, more lines than may be in flight or than the AFU takes in before its first write.
+pub fn account(afu: &Afu, link: &LinkModel, pairs: u32) -> Option<Vec<Part>> {
+    let (timing, layout, config) = (afu.timing(), afu.layout(), &afu.spec().config);
+    let part = |name, cycles: u64| Part { name, cycles };
+    let of = |name, cycles: u32| part(name, cycles.into());
+    if pairs == 0 {
+        return Some(vec![of("control: start", timing.start), of("control: done", timing.done)]);
+    }
+    let pairs = u64::from(pairs);
+    let (sources, destinations) = (layout.source_lines(pairs), layout.destination_lines(pairs));
+    let in_flight = [link.read.in_flight, link.write.in_flight, afu.spec().max_outstanding].into_iter().min()?;
+    let is_steady = [link.read, link.write].iter().all(|d| d.tail == 0 && d.stalls.longest == 0);
+    let no_stragglers = [link.read, link.write].iter().all(|d| d.stragglers.share == 0.0);
+    let wide = config.scpus >= layout.pairs_per_line() && config.interval == 1;
+    if !(is_steady && no_stragglers && wide && sources.max(destinations) <= in_flight.into()) {
+        return None;
+    }
+    // A source line comes each cycle at best; a destination line is full when its last pair's source line has been all
+    // the way.
+    let arrivals = link.pace_of_reads(&(0..sources).collect::<Vec<_>>());
+    let last_arrival = arrivals.last().copied()?;
+    let shuffled = link.order == Order::Shuffled && last_arrival != sources - 1;
+    if shuffled || last_arrival >= u64::from(timing.scpu) {
+        return None;
+    }
+    let per_line = u64::from(layout.contacts_per_line());
+    let last_pair = |line: u64| (line * per_line + per_line).min(pairs) - 1;
+    let arrival = |pair: u64| arrivals[(pair / u64::from(layout.pairs_per_line())) as usize];
+    let flush = if pairs.is_multiple_of(per_line) { 0 } else { u64::from(timing.flush) };
+    let is_last = |line| line == destinations - 1;
+    let full: Vec<u64> =
+        (0..destinations).map(|line| arrival(last_pair(line)) + if is_last(line) { flush } else { 0 }).collect();
+    let last_written = link.pace_of_writes(&full).last().copied()?;
+    Some(vec![
+        of("control: start", timing.start),
+        of("collector: the first request", timing.request),
+        of("link: read latency", link.read.latency),
+        part("link: the lines behind the first", last_arrival),
+        of("collector: back in order", timing.collect),
+        of("feeder: to the slots", timing.feed),
+        of("slot: the SCPU and the register before it", timing.scpu),
+        of("slots: results or-ed and registered", timing.gather),
+        of("packer: a line", timing.pack),
+        part("packer: a last line that is not full", flush),
+        of("dispatcher: its request", timing.dispatch),
+        part("link: writes that wait for one another", last_written - last_arrival - flush),
+        of("link: write latency", link.write.latency),
+        of("dispatcher: the acknowledgement", timing.acknowledge),
+        of("control: done", timing.done),
+    ])
+}
