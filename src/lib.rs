@@ -18,6 +18,7 @@ pub mod pipeline;
 pub mod report;
 #[cfg(feature = "cosim")]
 pub mod sweep;
+pub mod synth;
 pub mod tools;
 #[cfg(feature = "cosim")]
 pub mod verify;

@@ -19,7 +19,8 @@ const HOUSE: &[(&str, &[&str])] = &[
     ("cosim", &["config", "afu", "link", "pairs", "kernel", "number"]),
     ("verify", &["cosim", "link", "pairs", "afu", "config", "kernel", "number"]),
     ("tools", &["cosim"]),
-    ("report", &["verify", "tools", "cosim", "config", "afu", "link", "pairs", "kernel", "number"]),
+    ("synth", &["tools", "config", "afu", "pipeline", "operator", "kernel", "hdl", "number"]),
+    ("report", &["synth", "verify", "tools", "cosim", "config", "afu", "link", "pairs", "kernel", "number"]),
     ("sweep", &["report", "verify", "cosim", "config", "afu", "link", "pairs", "kernel", "number"]),
 ];
 

@@ -6,7 +6,6 @@ use std::process::ExitCode;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A mismatch, an unmet check, or a job that does not finish.
-    #[cfg_attr(not(feature = "cosim"), expect(dead_code))]
     Unmet = 1,
     /// Bad usage or bad input.
     Usage = 2,

@@ -30,7 +30,7 @@ pub struct Machine {
     /// Clock that pipelines are cut for and time is told in, MHz [default: 200]
     #[arg(long, value_name = "MHZ")]
     pub clock: Option<f64>,
-    /// FPGA family whose delays pipelines are cut by: not built yet
+    /// FPGA family: ecp5, ice40, cyclonev, xilinx [default: ecp5]
     #[arg(long, value_name = "NAME", hide = true)]
     pub target: Option<String>,
     /// Take the configuration from a manifest.json (or a folder with one); options given beside it win
@@ -42,9 +42,13 @@ impl Machine {
     /// The configuration file's or the default one, with the options given over it.
     pub fn config(&self) -> Result<Config, Failure> {
         if let Some(target) = &self.target {
-            let message = format!("--target {target}: not built yet; one delay model serves all families");
+            let message = format!("--target {target}: for synth alone so far; one delay model serves all families");
             return Err(Failure::new(Kind::Usage, message));
         }
+        self.config_for_any_target()
+    }
+
+    fn config_for_any_target(&self) -> Result<Config, Failure> {
         let mut config = match &self.config {
             Some(file) => config::read(file).ends(Kind::Usage)?,
             None => Config::default(),
@@ -75,7 +79,15 @@ pub struct One {
 impl One {
     /// The configuration, known to be one that can be generated.
     pub fn config(&self) -> Result<Config, Failure> {
-        let mut config = self.machine.config()?;
+        self.with(self.machine.config()?)
+    }
+
+    /// The same, whatever the target is.
+    pub fn config_for_any_target(&self) -> Result<Config, Failure> {
+        self.with(self.machine.config_for_any_target()?)
+    }
+
+    fn with(&self, mut config: Config) -> Result<Config, Failure> {
         set(&mut config.scpus, &self.scpus);
         if let Some(interval) = &self.interval {
             config.interval = interval_of(interval)?;

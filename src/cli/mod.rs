@@ -7,18 +7,17 @@ mod doctor;
 mod failure;
 #[cfg(feature = "cosim")]
 mod link;
-#[cfg(feature = "cosim")]
 mod list;
 mod machine;
 mod output;
 mod pairs;
-#[cfg(feature = "cosim")]
 mod progress;
 #[cfg(feature = "cosim")]
 mod replay;
 mod rtl;
 #[cfg(feature = "cosim")]
 mod sweep;
+mod synth;
 
 use std::process::ExitCode;
 
@@ -47,6 +46,8 @@ enum Command {
     Pairs(pairs::Pairs),
     #[cfg(feature = "cosim")]
     Sweep(sweep::Sweep),
+    /// Measure an operator, an SCPU or the AFU on an FPGA: cells by Yosys, the clock by nextpnr
+    Synth(synth::Synth),
     /// Say which tools are there, what needs them, and what installs the missing ones
     Doctor(doctor::Doctor),
     /// Print a shell's completion script
@@ -69,6 +70,7 @@ fn run(program: &Program) -> Result<(), Failure> {
         Command::Pairs(options) => pairs::run(options),
         #[cfg(feature = "cosim")]
         Command::Sweep(options) => sweep::run(options),
+        Command::Synth(options) => synth::run(options),
         Command::Doctor(options) => doctor::run(options),
         Command::Completions(options) => completions::run(options),
     }

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+#[cfg(feature = "cosim")]
 /// A bar over `pairs` pairs.
 pub fn bar(title: &str, pairs: u64) -> ProgressBar {
     let bar = ProgressBar::new(pairs);

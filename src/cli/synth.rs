@@ -1,0 +1,147 @@
+//! `afu synth`: an operator, an SCPU or an AFU through Yosys and nextpnr.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use contact_afu::config::Config;
+use contact_afu::hdl::DelayModel;
+use contact_afu::number::Format;
+use contact_afu::operator::Operator;
+use contact_afu::report::synth as report;
+use contact_afu::synth::{self, SynthError, Target, Unit, synthesise};
+
+use super::failure::{Failure, Kind};
+use super::list::List;
+use super::machine::One;
+use super::{output, progress};
+
+#[derive(Args, Debug)]
+pub struct Synth {
+    /// Operators, a list: add, sub, mul, div, recip, sqrt, halve, greater, at_most, root_exceeds, from_record, to_record,
+    /// or all
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', conflicts_with = "kernel")]
+    operator: Vec<String>,
+    /// One SCPU: the kernel with detection of invalid pairs. With neither this nor --operator: the whole AFU
+    #[arg(long)]
+    kernel: bool,
+    /// Seeds of the placer; the clock is their median
+    #[arg(long, value_name = "LIST", default_value = "1,2,3")]
+    seeds: List,
+    /// Count cells only
+    #[arg(long)]
+    no_route: bool,
+    /// Exit with 1 where a clock is below the one asked for
+    #[arg(long)]
+    check: bool,
+    /// Write the figures as JSON too; - is standard output
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    #[command(flatten)]
+    one: One,
+}
+
+pub fn run(options: &Synth) -> Result<(), Failure> {
+    let target = match &options.one.machine.target {
+        Some(word) => word.parse().map_err(|error| Failure::caused(Kind::Usage, error))?,
+        None => Target::Ecp5,
+    };
+    let config = options.one.config_for_any_target()?;
+    let seeds = if options.no_route { Vec::new() } else { options.seeds.0.clone() };
+    let how = synth::Options { target, seeds };
+    let units = units(options, &config)?;
+    let spinner = progress::spinner("");
+    let mut all = Vec::new();
+    for unit in &units {
+        all.push(synthesise(unit, &how, |what| spinner.set_message(what.to_owned()))?);
+    }
+    spinner.finish_and_clear();
+
+    output::show(&report::text(&all), options.json.as_deref().is_some_and(output::is_stdout))?;
+    if let Some(path) = &options.json {
+        match all.as_slice() {
+            [one] => output::json(path, one)?,
+            all => output::json(path, &all)?,
+        }
+    }
+    match all.iter().find(|figures| options.check && figures.meets() == Some(false)) {
+        None => Ok(()),
+        Some(slow) => {
+            let clock = slow.clock_mhz.unwrap_or_default();
+            let message = format!("{}: {clock:.1} MHz, not {}", report::title(slow), slow.asked_mhz);
+            Err(Failure::new(Kind::Unmet, message))
+        }
+    }
+}
+
+fn units(options: &Synth, config: &Config) -> Result<Vec<Unit>, Failure> {
+    if options.kernel {
+        return Ok(vec![Unit::scpu(config)?]);
+    }
+    if options.operator.is_empty() {
+        return Ok(vec![Unit::afu(config)?]);
+    }
+    let names: Vec<&str> = match options.operator.as_slice() {
+        [all] if all == "all" => OPERATORS.to_vec(),
+        names => names.iter().map(String::as_str).collect(),
+    };
+    let model = DelayModel::default();
+    let unit = |name: &str| {
+        let (operator, profile) = operator(name, config)?;
+        let unit = Unit::operator(operator, &profile, &model, config.clock_mhz)?;
+        Ok(Unit { name: name.to_owned(), ..unit })
+    };
+    names.into_iter().map(unit).collect()
+}
+
+const OPERATORS: [&str; 12] = [
+    "add",
+    "sub",
+    "mul",
+    "div",
+    "recip",
+    "sqrt",
+    "halve",
+    "greater",
+    "at_most",
+    "root_exceeds",
+    "from_record",
+    "to_record",
+];
+
+/// An operator by its name, and the profile of its operands.
+fn operator(name: &str, config: &Config) -> Result<(Operator, contact_afu::config::Profile), Failure> {
+    let arithmetic = config.profile.clone();
+    let operator = match name {
+        "add" => Operator::Add,
+        "sub" => Operator::Sub,
+        "mul" => Operator::Mul,
+        "div" => Operator::Div,
+        "recip" => Operator::Recip,
+        "sqrt" => Operator::Sqrt,
+        "halve" => Operator::Halve,
+        "greater" => Operator::Greater,
+        "at_most" => Operator::AtMost,
+        "root_exceeds" => Operator::RootExceeds,
+        "to_record" => Operator::Convert { to: Format::BINARY32 },
+        "from_record" => {
+            let record = "paper".parse().map_err(|error| Failure::new(Kind::Other, error))?;
+            return Ok((Operator::Convert { to: arithmetic.format() }, record));
+        }
+        _ => {
+            let message = format!("unknown operator `{name}`: use {}", OPERATORS.join(", "));
+            return Err(Failure::new(Kind::Usage, message));
+        }
+    };
+    Ok((operator, arithmetic))
+}
+
+impl From<SynthError> for Failure {
+    fn from(error: SynthError) -> Self {
+        let kind = match error {
+            SynthError::MissingTool(_) => Kind::Tool,
+            SynthError::Generate(error) => return error.into(),
+            _ => Kind::Other,
+        };
+        Self::caused(kind, error)
+    }
+}

@@ -1,0 +1,49 @@
+//! What `afu synth` says.
+
+use super::table::{figure, grouped, table};
+use crate::synth::{Figures, Hop};
+
+/// The figures of units side by side, then each one's critical path.
+pub fn text(all: &[Figures]) -> String {
+    const HEADING: [&str; 11] =
+        ["unit", "asked", "modelled", "MHz", "cycles", "ns", "LUT", "FF", "DSP", "BRAM", "MHz by seed"];
+    let mut out = table(&HEADING, all.iter().map(row));
+    for figures in all.iter().filter(|figures| !figures.critical.is_empty()) {
+        out += &format!("\n\n{}: the slowest path\n{}", title(figures), path(&figures.critical));
+    }
+    out
+}
+
+/// A unit and its arithmetic.
+pub fn title(figures: &Figures) -> String {
+    format!("{} {}, {}", figures.unit, figures.profile, figures.target)
+}
+
+fn row(figures: &Figures) -> [String; 11] {
+    let seeds: Vec<String> = figures.seeds.iter().map(|run| format!("{}: {:.1}", run.seed, run.clock_mhz)).collect();
+    [
+        title(figures),
+        figure(Some(figures.asked_mhz), 0),
+        figure(figures.modelled_mhz, 0),
+        figure(figures.clock_mhz, 1),
+        figures.latency_cycles.map_or_else(|| "-".to_owned(), |cycles| cycles.to_string()),
+        figure(figures.latency_ns, 1),
+        grouped(figures.area.luts),
+        grouped(figures.area.ffs),
+        figures.area.dsps.to_string(),
+        figures.area.brams.to_string(),
+        if seeds.is_empty() { "not routed".to_owned() } else { seeds.join(", ") },
+    ]
+}
+
+/// A path: stage, time in cells, time on wires, signal.
+fn path(hops: &[Hop]) -> String {
+    let line = |hop: &Hop| {
+        let stage = hop.stage.map_or_else(String::new, |stage| format!("stage {stage}"));
+        format!("  {stage:<9} {:5.2} ns in cells {:5.2} on wires  {}", hop.logic_ns, hop.routing_ns, hop.signal)
+    };
+    let (logic, routing) = hops.iter().fold((0.0, 0.0), |sum, hop| (sum.0 + hop.logic_ns, sum.1 + hop.routing_ns));
+    let mut lines: Vec<String> = hops.iter().map(line).collect();
+    lines.push(format!("  {:<9} {logic:5.2} ns in cells {routing:5.2} on wires", "together"));
+    lines.join("\n")
+}

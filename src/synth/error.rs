@@ -1,0 +1,61 @@
+//! Why there are no figures.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use crate::afu::BuildError;
+use crate::hdl::Errors;
+use crate::tools::MissingTool;
+
+/// Why a unit could not be measured.
+#[derive(Debug, thiserror::Error)]
+pub enum SynthError {
+    /// A program that is needed is not there.
+    #[error(transparent)]
+    MissingTool(#[from] MissingTool),
+    /// The AFU could not be generated.
+    #[error(transparent)]
+    Generate(#[from] BuildError),
+    /// The unit or its wrapper: a mistake of the generator, or a clock nothing can be cut for.
+    #[error("the hardware is faulty:\n{0}")]
+    Hardware(#[from] Errors),
+    /// A program refused, with the last of what it said.
+    #[error("{program} failed on {unit}:\n{text}")]
+    Failed {
+        /// The program.
+        program: String,
+        /// What it was working on.
+        unit: String,
+        /// Its messages.
+        text: String,
+    },
+    /// A program wrote what is not understood.
+    #[error("{program} wrote something unexpected for {unit}: {what}")]
+    Unexpected {
+        /// The program.
+        program: String,
+        /// What it was working on.
+        unit: String,
+        /// What is wrong.
+        what: String,
+    },
+    /// A file or folder could not be read or written, or a program not run.
+    #[error("cannot {action} {}: {source}", path.display())]
+    Io {
+        /// The verb: read, write, create, run.
+        action: &'static str,
+        /// On what.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// No folder for results.
+    #[error("no folder for results: set AFU_CACHE, XDG_CACHE_HOME or HOME")]
+    NoCache,
+}
+
+impl SynthError {
+    pub(super) fn io(action: &'static str, path: &Path, source: io::Error) -> Self {
+        Self::Io { action, path: path.to_owned(), source }
+    }
+}

@@ -1,0 +1,127 @@
+//! A path of cells told in the names of the Verilog it came from.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use super::figures::Hop;
+use super::route::Segment;
+use super::wrapper::UNIT;
+use crate::hdl::Module;
+
+/// What Yosys appends to a signal's name for a cell that drives it or hangs on it.
+const CELLS: [&str; 12] = [
+    "_TRELLIS_",
+    "_LUT4",
+    "_CCU2C",
+    "_PFUMX",
+    "_L6MUX21",
+    "_MULT18X18D",
+    "_DP16KD",
+    "_PDPW16KD",
+    "_ALU54B",
+    "_SB_",
+    "$",
+    "_VCC",
+];
+
+/// The stages of signals, and the signals of lines, in the Verilog of a design.
+pub(super) struct Source<'a> {
+    top: &'a Arc<Module>,
+    /// By file: the signal and the stage that each line declares.
+    lines: HashMap<&'a str, Vec<Line>>,
+}
+
+#[derive(Clone, Default)]
+struct Line {
+    signal: Option<String>,
+    stage: Option<u32>,
+}
+
+impl<'a> Source<'a> {
+    /// Of a design's top module and its files.
+    pub fn new(top: &'a Arc<Module>, files: &'a [(String, String)]) -> Self {
+        let lines = files.iter().map(|(name, text)| (name.as_str(), lines(text))).collect();
+        Self { top, lines }
+    }
+
+    /// A path, cell by cell; neighbours of one name are one hop.
+    pub fn tell(&self, path: &[Segment]) -> Vec<Hop> {
+        let mut hops: Vec<Hop> = Vec::new();
+        for (index, segment) in path.iter().enumerate().filter(|(_, segment)| segment.delay > 0.0) {
+            let is_routing = segment.kind == "routing";
+            // The net that leaves the cell knows where it was written.
+            let leaving = path[index + 1..].iter().take(2).find(|next| next.kind == "routing");
+            let sources = leaving.map_or(&[][..], |net| &net.sources);
+            let mut hop = self.name(&segment.to.cell, sources);
+            // Inside a carry chain the name is known at its ends.
+            if let Some(last) = hops.last().filter(|_| segment.to.cell.contains("CCU2_COMB") && sources.is_empty()) {
+                hop.signal.clone_from(&last.signal);
+                hop.stage = last.stage;
+            }
+            if is_routing {
+                hop.routing_ns = segment.delay;
+            } else {
+                hop.logic_ns = segment.delay;
+            }
+            match hops.last_mut() {
+                Some(last) if last.signal == hop.signal => {
+                    last.routing_ns += hop.routing_ns;
+                    last.logic_ns += hop.logic_ns;
+                }
+                _ => hops.push(hop),
+            }
+        }
+        hops
+    }
+
+    /// What a cell belongs to: the signal in whose line it was written, where Yosys still knows that, else the signal
+    /// that its name begins with.
+    fn name(&self, cell: &str, sources: &[String]) -> Hop {
+        let end = CELLS.iter().filter_map(|mark| cell.find(mark)).min().unwrap_or(cell.len());
+        let path = cell[..end].split('[').next().unwrap_or_default();
+        let written = sources.iter().find_map(|source| self.written(source));
+        let path = match (written, path.rsplit_once('.')) {
+            (Some(signal), Some((instance, _))) => format!("{instance}.{signal}"),
+            _ => path.to_owned(),
+        };
+        let stage = self.stage(&path);
+        let signal = path.strip_prefix(UNIT).and_then(|rest| rest.strip_prefix('.')).unwrap_or(&path).to_owned();
+        Hop { signal, stage, routing_ns: 0.0, logic_ns: 0.0 }
+    }
+
+    /// The signal declared at a place such as `fp_add.v:83.36-83.73`.
+    fn written(&self, source: &str) -> Option<&str> {
+        let (file, place) = source.rsplit_once(':')?;
+        let line: usize = place.split('.').next()?.parse().ok()?;
+        self.lines.get(file)?.get(line.checked_sub(1)?)?.signal.as_deref()
+    }
+
+    /// The stage of a signal given by its path through instances.
+    fn stage(&self, path: &str) -> Option<u32> {
+        let mut parts: Vec<&str> = path.split('.').collect();
+        let signal = parts.pop()?;
+        let mut module = self.top;
+        for part in parts {
+            module = &module.instances.iter().find(|instance| instance.name == part)?.module;
+        }
+        let lines = self.lines.get(format!("{}.v", module.name).as_str())?;
+        lines.iter().find(|line| line.signal.as_deref() == Some(signal))?.stage
+    }
+}
+
+/// What each line of a file declares, and the stage whose banner it stands under.
+fn lines(text: &str) -> Vec<Line> {
+    let mut stage = None;
+    let line = |text: &str| {
+        if let Some(banner) = text.trim().strip_prefix("// ---- ") {
+            stage = banner.strip_prefix("stage ").and_then(|rest| rest.split(' ').next()?.parse().ok());
+        }
+        let declared = ["wire ", "reg "].iter().find_map(|word| text.trim().strip_prefix(word));
+        let signal = declared.and_then(|rest| {
+            let rest = if rest.starts_with('[') { rest.split_once(']')?.1.trim_start() } else { rest };
+            rest.split([' ', ';']).next().map(str::to_owned)
+        });
+        Line { signal, stage }
+    };
+    text.lines().map(line).collect()
+}

@@ -1,0 +1,96 @@
+//! A unit through both programs.
+
+use std::path::PathBuf;
+
+use super::cache::{self, Cache};
+use super::cells::{area, placed};
+use super::figures::{Figures, SCHEMA, Seed, Tools};
+use super::names::Source;
+use super::route::{Routed, route};
+use super::yosys::{Design, Netlist, synthesise as cells};
+use super::{Area, SynthError, Target, Trimmed, Unit, wrapper};
+use crate::tools::Program;
+
+/// How a unit is measured.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Options {
+    /// For which family.
+    pub target: Target,
+    /// The placer's seeds; none: cells are counted, nothing is routed.
+    pub seeds: Vec<u32>,
+}
+
+/// Where the netlist of a unit in its wrapper lies, in Yosys's JSON: the one that [`synthesise`] counts.
+///
+/// # Errors
+/// As of [`synthesise`].
+pub fn netlist(unit: &Unit, target: Target) -> Result<PathBuf, SynthError> {
+    let files = Unit::files(&unit.wrapped()?);
+    let design = Design { unit: &unit.title(), files: &files, top: wrapper::TOP };
+    let Netlist { path, .. } = cells(&Program::yosys()?, &design, target, &Cache::open()?)?;
+    Ok(path)
+}
+
+/// Measures a unit; `progress` is told what is being done.
+///
+/// Where the target cannot be routed, its cells are counted and there is no clock.
+///
+/// # Errors
+/// [`SynthError::MissingTool`] when a program is not there; what a program says when it refuses.
+pub fn synthesise(unit: &Unit, options: &Options, mut progress: impl FnMut(&str)) -> Result<Figures, SynthError> {
+    let target = options.target;
+    let router = target.router().filter(|_| !options.seeds.is_empty());
+    let yosys = Program::yosys()?;
+    let nextpnr = router.map(|(architecture, _)| Program::nextpnr(architecture)).transpose()?;
+    let cache = Cache::open()?;
+
+    let bench = unit.wrapped()?;
+    let files = Unit::files(&bench);
+    let name = unit.title();
+    progress(&format!("{name}: Yosys, {target}"));
+    let design = Design { unit: &name, files: &files, top: wrapper::TOP };
+    let whole = cells(&yosys, &design, target, &cache)?;
+    let alone = Unit::wrapper_files(&bench, &unit.module);
+    let alone = cells(&yosys, &Design { files: &alone, ..design }, target, &cache)?;
+    let mut wrapper = area(target, &alone.cells);
+    let trimmed = Trimmed::of(&whole.path, &unit.module)?;
+    wrapper.ffs = wrapper.ffs.saturating_sub(trimmed.inputs + trimmed.outputs);
+
+    let mut routed: Vec<(u32, Routed)> = Vec::new();
+    if let (Some(nextpnr), Some((_, device))) = (&nextpnr, router) {
+        for &seed in &options.seeds {
+            progress(&format!("{name}: nextpnr, seed {seed}"));
+            routed.push((seed, route(nextpnr, &whole, target, device, seed, &name, &cache)?));
+        }
+    }
+    let seeds = routed.iter().map(|(seed, run)| Seed { seed: *seed, clock_mhz: run.clock_mhz }).collect();
+    routed.sort_by(|(_, a), (_, b)| a.clock_mhz.total_cmp(&b.clock_mhz));
+    // Of an even number the lower one: no clock is told that no seed reached.
+    let median = routed.get(routed.len().saturating_sub(1) / 2).map(|(_, run)| run);
+    let occupied: Option<Area> = median.and_then(|run| placed(target, &run.used));
+    let clock_mhz = median.map(|run| run.clock_mhz);
+    let texts: Vec<&str> = files.iter().map(|(_, text)| text.as_str()).collect();
+    Ok(Figures {
+        schema: SCHEMA.to_owned(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        unit: unit.name.clone(),
+        profile: unit.profile.clone(),
+        module: unit.module.name.clone(),
+        target,
+        asked_mhz: unit.clock_mhz,
+        modelled_mhz: unit.modelled_mhz(),
+        clock_mhz,
+        latency_cycles: unit.latency,
+        latency_ns: clock_mhz.zip(unit.latency).map(|(clock, cycles)| 1000.0 * f64::from(cycles) / clock),
+        area: occupied.unwrap_or_else(|| area(target, &whole.cells)) - wrapper,
+        wrapper,
+        trimmed,
+        seeds,
+        critical: median.map(|run| Source::new(&bench, &files).tell(&run.path)).unwrap_or_default(),
+        verilog_sha256: cache::key(&texts),
+        tools: Tools {
+            yosys: yosys.version().to_owned(),
+            nextpnr: nextpnr.map(|program| program.version().to_owned()),
+        },
+    })
+}

@@ -1,0 +1,85 @@
+//! The FPGA families, and how each is synthesised for.
+
+use std::fmt;
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
+
+/// An FPGA family.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Target {
+    /// Lattice ECP5: placed and routed in an LFE5U-85F, speed grade 8.
+    Ecp5,
+    /// Lattice iCE40: placed and routed in an HX8K where nextpnr-ice40 is there.
+    Ice40,
+    /// Intel Cyclone V: counted only.
+    Cyclonev,
+    /// AMD 7 series: counted only.
+    Xilinx,
+}
+
+/// Not a [`Target`].
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("unknown target `{0}`: use ecp5, ice40, cyclonev, xilinx")]
+pub struct TargetError(String);
+
+impl Target {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Ecp5, Self::Ice40, Self::Cyclonev, Self::Xilinx];
+
+    /// Its word on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Ecp5 => "ecp5",
+            Self::Ice40 => "ice40",
+            Self::Cyclonev => "cyclonev",
+            Self::Xilinx => "xilinx",
+        }
+    }
+
+    /// The command of Yosys that maps to it.
+    pub(super) const fn synthesis(self) -> &'static str {
+        match self {
+            Self::Ecp5 => "synth_ecp5",
+            Self::Ice40 => "synth_ice40",
+            Self::Cyclonev => "synth_intel_alm -family cyclonev",
+            Self::Xilinx => "synth_xilinx -family xc7",
+        }
+    }
+
+    /// nextpnr's name for its architecture and the options of the device, where it can be routed.
+    pub(super) const fn router(self) -> Option<(&'static str, &'static [&'static str])> {
+        match self {
+            Self::Ecp5 => {
+                Some(("ecp5", &["--85k", "--speed", "8", "--package", "CABGA381", "--lpf-allow-unconstrained"]))
+            }
+            Self::Ice40 => Some(("ice40", &["--hx8k", "--package", "ct256", "--pcf-allow-unconstrained"])),
+            Self::Cyclonev | Self::Xilinx => None,
+        }
+    }
+
+    /// The device, for people.
+    pub const fn device(self) -> &'static str {
+        match self {
+            Self::Ecp5 => "LFE5U-85F speed 8",
+            Self::Ice40 => "iCE40 HX8K",
+            Self::Cyclonev => "Cyclone V (ALUTs)",
+            Self::Xilinx => "7 series",
+        }
+    }
+}
+
+impl fmt::Display for Target {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Target {
+    type Err = TargetError;
+
+    fn from_str(text: &str) -> Result<Self, TargetError> {
+        Self::ALL.into_iter().find(|target| target.name() == text).ok_or_else(|| TargetError(text.to_owned()))
+    }
+}

@@ -1,0 +1,118 @@
+//! What can be measured.
+
+use std::sync::Arc;
+
+use crate::afu::{Afu, Spec};
+use crate::config::{Config, Profile};
+use crate::hdl::verilog::{Style, emit};
+use crate::hdl::{DelayModel, Errors, Module};
+use crate::operator::{Operator, pipelined};
+
+use super::SynthError;
+
+/// A module to be measured.
+#[derive(Clone, Debug)]
+pub struct Unit {
+    /// What it is, as in `add` or `scpu`.
+    pub name: String,
+    /// The arithmetic.
+    pub profile: Profile,
+    /// The clock that its stages were cut for, MHz.
+    pub clock_mhz: f64,
+    /// Its module.
+    pub module: Arc<Module>,
+    /// Cycles from inputs to outputs; nothing where it is not a pipeline.
+    pub latency: Option<u32>,
+}
+
+impl Unit {
+    /// An operator of a profile, cut for a clock.
+    ///
+    /// # Errors
+    /// A clock it cannot be cut for.
+    pub fn operator(
+        operator: Operator,
+        profile: &Profile,
+        model: &DelayModel,
+        clock_mhz: f64,
+    ) -> Result<Self, SynthError> {
+        let module = pipelined(operator, profile.format(), model, clock_mhz)?;
+        Ok(Self::pipeline(operator.name(), profile, clock_mhz, module))
+    }
+
+    /// A pipeline that is already there.
+    pub fn pipeline(name: &str, profile: &Profile, clock_mhz: f64, module: Arc<Module>) -> Self {
+        let latency = Some(module.latency);
+        Self { name: name.to_owned(), profile: profile.clone(), clock_mhz, module, latency }
+    }
+
+    /// The SCPU of a configuration: its kernel with detection of invalid pairs.
+    ///
+    /// # Errors
+    /// A configuration that cannot be generated.
+    pub fn scpu(config: &Config) -> Result<Self, SynthError> {
+        let afu = Afu::generate(Spec::from(config.clone()))?;
+        let module = afu.top().hierarchy().into_iter().find(|module| module.name == "scpu");
+        let module = module.unwrap_or_else(|| afu.kernel().clone());
+        let latency = Some(afu.kernel().latency);
+        Ok(Self { name: "scpu".to_owned(), latency, module, ..Self::of(config, &afu) })
+    }
+
+    /// The whole AFU of a configuration.
+    ///
+    /// # Errors
+    /// A configuration that cannot be generated.
+    pub fn afu(config: &Config) -> Result<Self, SynthError> {
+        Ok(Self::of(config, &Afu::generate(Spec::from(config.clone()))?))
+    }
+
+    fn of(config: &Config, afu: &Afu) -> Self {
+        Self {
+            name: format!("afu of {} SCPUs", config.scpus),
+            profile: config.profile.clone(),
+            clock_mhz: config.clock_mhz,
+            module: afu.top().clone(),
+            latency: None,
+        }
+    }
+
+    /// The clock its cut promised by the delay model, MHz: the slowest of its parts'. Nothing where none was cut.
+    pub fn modelled_mhz(&self) -> Option<f64> {
+        let timings = self.module.hierarchy();
+        timings.iter().filter_map(|module| module.timing.as_ref()).map(|timing| timing.clock_mhz).reduce(f64::min)
+    }
+
+    /// It and its arithmetic, for messages.
+    pub fn title(&self) -> String {
+        format!("{} {}", self.name, self.profile)
+    }
+
+    /// The Verilog of `top` and all below it, a file a module: file name and text.
+    pub(super) fn files(top: &Arc<Module>) -> Vec<(String, String)> {
+        let file = |module: Arc<Module>| (format!("{}.v", module.name), emit(&module, &Style::default()));
+        top.hierarchy().into_iter().map(file).collect()
+    }
+
+    /// The Verilog of a wrapper around a unit of which only the ports are known.
+    pub(super) fn wrapper_files(bench: &Arc<Module>, unit: &Module) -> Vec<(String, String)> {
+        let style = Style::default();
+        let mut ports = Vec::new();
+        if unit.is_clocked() {
+            ports.push("input wire clk".to_owned());
+        }
+        if unit.has_reset_port() {
+            ports.push(format!("input wire {}", style.reset_port()));
+        }
+        for port in &unit.ports {
+            let direction = if port.output { "output" } else { "input" };
+            ports.push(format!("{direction} wire [{}:0] {}", port.width - 1, port.name));
+        }
+        let empty = format!("(* blackbox *)\nmodule {} ({});\nendmodule\n", unit.name, ports.join(", "));
+        vec![("bench.v".to_owned(), emit(bench, &style)), (format!("{}.v", unit.name), empty)]
+    }
+
+    /// It in its wrapper.
+    pub(super) fn wrapped(&self) -> Result<Arc<Module>, Errors> {
+        super::wrapper::wrap(&self.module)
+    }
+}

