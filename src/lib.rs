@@ -2,6 +2,7 @@
 //!
 //! `ARCHITECTURE.md` is the map: which module does what and who may import whom.
 
+pub mod accuracy;
 pub mod afu;
 pub mod config;
 #[cfg(feature = "cosim")]

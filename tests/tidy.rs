@@ -21,6 +21,7 @@ const HOUSE: &[(&str, &[&str])] = &[
     ("tools", &["cosim"]),
     ("synth", &["tools", "config", "afu", "pipeline", "operator", "kernel", "hdl", "number"]),
     ("report", &["synth", "verify", "tools", "cosim", "config", "afu", "link", "pairs", "kernel", "number"]),
+    ("accuracy", &["report", "config", "ode", "pairs", "kernel", "number"]),
     ("sweep", &["report", "verify", "cosim", "config", "afu", "link", "pairs", "kernel", "number"]),
 ];
 

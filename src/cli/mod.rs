@@ -5,6 +5,7 @@ mod completions;
 mod cosim;
 mod doctor;
 mod failure;
+mod hard;
 #[cfg(feature = "cosim")]
 mod link;
 mod list;
@@ -48,6 +49,7 @@ enum Command {
     Sweep(sweep::Sweep),
     /// Measure an operator, an SCPU or the AFU on an FPGA: cells by Yosys, the clock by nextpnr
     Synth(synth::Synth),
+    Hard(hard::Hard),
     /// Say which tools are there, what needs them, and what installs the missing ones
     Doctor(doctor::Doctor),
     /// Print a shell's completion script
@@ -71,6 +73,7 @@ fn run(program: &Program) -> Result<(), Failure> {
         #[cfg(feature = "cosim")]
         Command::Sweep(options) => sweep::run(options),
         Command::Synth(options) => synth::run(options),
+        Command::Hard(options) => hard::run(options),
         Command::Doctor(options) => doctor::run(options),
         Command::Completions(options) => completions::run(options),
     }

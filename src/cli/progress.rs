@@ -1,5 +1,6 @@
 //! What long work shows on standard error: a bar, on a terminal only.
 
+#[cfg(feature = "cosim")]
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -17,6 +18,7 @@ pub fn bar(title: &str, pairs: u64) -> ProgressBar {
     bar
 }
 
+#[cfg(feature = "cosim")]
 /// A turning sign for work whose length nobody knows.
 pub fn spinner(title: &str) -> ProgressBar {
     let spinner = ProgressBar::new_spinner();

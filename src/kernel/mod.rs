@@ -7,9 +7,11 @@ mod engine;
 mod fields;
 mod record;
 mod reference;
+mod truth;
 
 pub use contact::{Contact, Pair, contact};
 pub use engine::{Engine, EngineError};
 pub use fields::{Fields, FieldsError};
 pub use record::{ContactRecord, Flow, PAIR_FIELDS, PairRecord};
 pub use reference::Reference;
+pub use truth::{Errors, Truth, ulp};

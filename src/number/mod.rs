@@ -1,11 +1,13 @@
-//! Numbers the kernel can be read with: `f32`, [`Soft`] (any format, exact integer arithmetic inside), and outside
-//! this module the netlist's wires. Imports nothing of ours.
+//! Numbers the kernel can be read with: `f32`, [`Soft`] (any format, exact integer arithmetic inside), [`Precise`]
+//! (the truth), and outside this module the netlist's wires. Imports nothing of ours.
 
 mod format;
 mod native;
+mod precise;
 mod soft;
 
 pub use format::{EXPONENT_BITS, FRACTION_BITS, Format, FormatError, Subnormals};
+pub use precise::Precise;
 pub use soft::Soft;
 
 use std::fmt::Debug;

@@ -1,16 +1,19 @@
-//! Pairs by name (`diamond:10`, `random:1000`) and from files, and contacts to files: CSV and `.npy`.
+//! Pairs by name (`diamond:10`, `random:1000`, `hard:1000`) and from files, and contacts to files: CSV and `.npy`.
 
 mod contacts_csv;
 mod diamond;
 mod error;
 mod file;
+mod hard;
 mod npy;
 mod npy_header;
 mod pairs_csv;
 mod random;
 mod set;
+mod source;
 mod table;
 
 pub use error::FileError;
 pub use file::{LoadError, check_name, load, read_contacts, read_pairs, write_contacts, write_pairs};
+pub use hard::{CATEGORIES, Category};
 pub use set::{Set, SetError};

@@ -1,8 +1,7 @@
 //! Random pairs that reach every flow and every corner of the format.
 
+use super::source::{LARGEST, Source, UNIT};
 use crate::kernel::PairRecord;
-use rand::{Rng, SeedableRng};
-use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// How a pair is made; pair i is made the (i mod 10)th way, so that ten pairs have every flow in them.
 const KINDS: [fn(&mut Source) -> PairRecord; 10] = [
@@ -22,61 +21,13 @@ const KINDS: [fn(&mut Source) -> PairRecord; 10] = [
 ///
 /// Nothing but integers and correctly rounded operations is used, so every machine makes the same pairs.
 pub fn pairs(count: u64, seed: u64) -> Vec<PairRecord> {
-    let mut source = Source(Xoshiro256PlusPlus::seed_from_u64(seed));
+    let mut source = Source::new(seed);
     (0..count).map(|i| KINDS[(i % KINDS.len() as u64) as usize](&mut source)).collect()
 }
 
-struct Source(Xoshiro256PlusPlus);
-
-/// Biased exponents of binary32: those of 1 and of the largest finite numbers.
-const UNIT: u32 = 127;
-const LARGEST: u32 = 254;
-
 impl Source {
-    fn bits(&mut self) -> u32 {
-        (self.0.next_u64() >> 32) as u32
-    }
-
-    /// A number below `bound`, as evenly as matters here.
-    fn below(&mut self, bound: u32) -> u32 {
-        ((u64::from(self.bits()) * u64::from(bound)) >> 32) as u32
-    }
-
-    /// A random significand; one in four has few bits set or few missing.
-    fn significand(&mut self) -> u32 {
-        let run = (1 << self.below(24)) - 1;
-        let bits = match self.below(16) {
-            0 => run,
-            1 => !run,
-            2 => run + 1,
-            3 => !(run + 1),
-            _ => self.bits(),
-        };
-        bits & 0x7F_FFFF
-    }
-
-    /// A positive number of a biased exponent from `low` to `high`.
-    fn positive(&mut self, low: u32, high: u32) -> f32 {
-        let exponent = low + self.below(high - low + 1);
-        f32::from_bits(exponent << 23 | self.significand())
-    }
-
-    fn signed(&mut self, low: u32, high: u32) -> f32 {
-        let value = self.positive(low, high);
-        if self.bits() & 1 == 0 { value } else { -value }
-    }
-
-    /// Two spheres, coordinates and radii of the given biased exponents.
-    fn spheres(&mut self, coordinates: (u32, u32), radii: (u32, u32)) -> PairRecord {
-        let mut sphere = || {
-            let [x, y, z] = [(); 3].map(|()| self.signed(coordinates.0, coordinates.1));
-            [x, y, z, self.positive(radii.0, radii.1)]
-        };
-        PairRecord::from_spheres(sphere(), sphere())
-    }
-
     /// Numbers around 1: contact or not, about evenly.
-    fn ordinary(&mut self) -> PairRecord {
+    pub(super) fn ordinary(&mut self) -> PairRecord {
         self.spheres((UNIT - 4, UNIT), (UNIT - 2, UNIT))
     }
 
@@ -89,6 +40,11 @@ impl Source {
     /// The sum of the radii within a few ulp of the distance, at any scale.
     fn near_tangent(&mut self) -> PairRecord {
         let scale = 8 + self.below(LARGEST - 12);
+        self.near_tangent_at(scale)
+    }
+
+    /// The same at the scale of a biased exponent, from 5 to 250.
+    pub(super) fn near_tangent_at(&mut self, scale: u32) -> PairRecord {
         let [x1, y1, z1, x2, y2, z2] = [(); 6].map(|()| self.signed(scale - 4, scale));
         let (dx, dy, dz) = (x1 - x2, y1 - y2, z1 - z2);
         // Root and squares of numbers around 1, then back to the scale.

@@ -1,6 +1,8 @@
 //! What several tests share: words that reach the corners, and work split over two threads.
 #![allow(dead_code)] // each test uses its own part
 
+pub mod watched;
+
 use contact_afu::number::Format;
 use contact_afu::operator::Operator;
 use rand::{RngExt, SeedableRng};

@@ -1,0 +1,68 @@
+//! Who answers pairs.
+
+use super::{Answer, Formula};
+use crate::config::Profile;
+use crate::kernel::{EngineError, Fields, PairRecord, Reference};
+
+/// Something that answers pairs: a profile's reference kernel, or another engine.
+pub trait Contender {
+    /// The name that results are kept and shown under: the same name answers the same bits.
+    fn name(&self) -> String;
+
+    /// The answers to `pairs`, one each, in their order.
+    ///
+    /// # Errors
+    /// When the engine could not do its work.
+    fn answers(&mut self, pairs: &[PairRecord]) -> Result<Vec<Answer>, EngineError>;
+}
+
+/// A profile's reference kernel, which the hardware equals bit for bit.
+#[derive(Clone, Debug)]
+pub struct Profiled {
+    profile: Profile,
+    reference: Reference,
+}
+
+impl Profiled {
+    /// The kernel of a profile.
+    pub fn new(profile: &Profile) -> Self {
+        Self { profile: profile.clone(), reference: Reference::new(profile.format(), Fields::ALL) }
+    }
+}
+
+impl Contender for Profiled {
+    fn name(&self) -> String {
+        self.profile.to_string()
+    }
+
+    fn answers(&mut self, pairs: &[PairRecord]) -> Result<Vec<Answer>, EngineError> {
+        Ok(self.reference.run_all(pairs).into_iter().map(Answer::from).collect())
+    }
+}
+
+/// Contenders, in the order of a report.
+pub type Contenders = Vec<Box<dyn Contender>>;
+
+/// The profiles asked for, then the peers that this build has. The names of the other peers are given apart, each
+/// with the feature that brings it.
+///
+/// # Errors
+/// When a peer does not start.
+pub fn contenders(profiles: &[Profile]) -> Result<(Contenders, Vec<&'static str>), EngineError> {
+    let mut all = Contenders::new();
+    for profile in profiles {
+        all.push(Box::new(Profiled::new(profile)));
+    }
+    all.push(Box::new(Formula));
+    #[allow(unused_mut)]
+    let mut absent = Vec::new();
+    #[cfg(feature = "ode")]
+    all.push(Box::new(super::OdeDouble::new()?));
+    #[cfg(not(feature = "ode"))]
+    absent.push("ODE f64 is not in this program: build it with --features ode");
+    #[cfg(feature = "parry")]
+    all.push(Box::new(super::Parry));
+    #[cfg(not(feature = "parry"))]
+    absent.push("parry3d is not in this program: build it with --features parry");
+    Ok((all, absent))
+}

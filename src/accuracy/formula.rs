@@ -1,0 +1,37 @@
+//! The formula as physics engines have it, in plain `f32`.
+
+use super::{Answer, Contender};
+use crate::kernel::{EngineError, PairRecord};
+
+/// ODE's formula for two spheres in the machine's binary32: subtractions, a root, a branch, a division. No input is
+/// refused and no NaN made canonical.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Formula;
+
+impl Contender for Formula {
+    fn name(&self) -> String {
+        "formula f32".to_owned()
+    }
+
+    fn answers(&mut self, pairs: &[PairRecord]) -> Result<Vec<Answer>, EngineError> {
+        Ok(pairs.iter().map(|pair| contact(pair.values())).collect())
+    }
+}
+
+fn contact([x1, y1, z1, r1, x2, y2, z2, r2]: [f32; 8]) -> Answer {
+    let (dx, dy, dz) = (x1 - x2, y1 - y2, z1 - z2);
+    let d = (dx * dx + dy * dy + dz * dz).sqrt();
+    if d > r1 + r2 {
+        return Answer::default();
+    }
+    let (position, normal, depth) = if d <= 0.0 {
+        ([x1, y1, z1], [1.0, 0.0, 0.0], r1 + r2)
+    } else {
+        let inverse = 1.0 / d;
+        let [nx, ny, nz] = [dx, dy, dz].map(|component| component * inverse);
+        let k = 0.5 * (r2 - r1 - d);
+        ([x1 + nx * k, y1 + ny * k, z1 + nz * k], [nx, ny, nz], r1 + r2 - d)
+    };
+    let wide = |v: [f32; 3]| v.map(f64::from);
+    Answer { hit: true, position: wide(position), normal: wide(normal), depth: depth.into(), unsettled: false }
+}

@@ -1,0 +1,176 @@
+//! The store of results: a row for each category and contender, in a folder that is written as it grows.
+
+use super::{Tally, Task};
+use crate::report::folder::{self, replace_file};
+use crate::report::table::{grouped, table};
+use serde::{Deserialize, Serialize};
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// The schema of a study's `manifest.json`.
+pub const SCHEMA: &str = "contact-afu/hard/1";
+const MANIFEST: &str = "manifest.json";
+const CSV: &str = "hard.csv";
+
+/// One contender on one category.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Row {
+    /// The category's name.
+    pub category: String,
+    /// The contender's name.
+    pub contender: String,
+    /// SHA-256 of what went in: version, contender, pairs.
+    pub key: String,
+    /// What came out.
+    pub tally: Tally,
+}
+
+impl Row {
+    pub(super) fn new(category: &str, contender: &str, key: String) -> Self {
+        Self { category: category.to_owned(), contender: contender.to_owned(), key, tally: Tally::default() }
+    }
+}
+
+/// A study: what every contender was given, and what came of it. Its folder holds it twice: `manifest.json`, and the
+/// rows alone as `hard.csv`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Record {
+    schema: String,
+    version: String,
+    /// Pairs of all categories together.
+    pub pairs: u64,
+    /// Their seed.
+    pub seed: u64,
+    /// What is missing, and what would bring it.
+    pub absent: Vec<String>,
+    /// The rows, category by category.
+    pub rows: Vec<Row>,
+}
+
+/// Why a study's folder could not be read or written.
+#[derive(Debug, thiserror::Error)]
+pub enum RecordError {
+    /// The folder belongs to somebody else, or the file system refused.
+    #[error(transparent)]
+    Folder(#[from] folder::Error),
+    /// The record could not be read, or its folder made.
+    #[error("{}: {error}", path.display())]
+    Io {
+        /// The file or folder.
+        path: PathBuf,
+        /// Why.
+        error: io::Error,
+    },
+    /// The record could not be turned into text.
+    #[error("cannot write the record: {0}")]
+    Write(String),
+}
+
+impl Record {
+    /// A study without rows.
+    pub fn new(task: Task, absent: &[&str]) -> Self {
+        Self {
+            schema: SCHEMA.to_owned(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            pairs: task.pairs,
+            seed: task.seed,
+            absent: absent.iter().map(|&what| what.to_owned()).collect(),
+            rows: Vec::new(),
+        }
+    }
+
+    /// The rows that an earlier run left in `folder`, whatever it was asked: a row is found again by its key.
+    ///
+    /// # Errors
+    /// When the folder is not ours (`force` takes it all the same) or cannot be read.
+    pub(super) fn earlier(&self, folder: &Path, force: bool) -> Result<Vec<Row>, RecordError> {
+        folder::check(folder, force)?;
+        let path = folder.join(MANIFEST);
+        match fs::read(&path) {
+            // What cannot be read as such a record is another one.
+            Ok(text) => Ok(serde_json::from_slice::<Self>(&text).map_or(Vec::new(), |record| record.rows)),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Vec::new()),
+            Err(error) => Err(RecordError::Io { path, error }),
+        }
+    }
+
+    /// Writes the folder as it is now; each file is replaced whole.
+    pub(super) fn save(&self, folder: &Path) -> Result<(), RecordError> {
+        fs::create_dir_all(folder).map_err(|error| RecordError::Io { path: folder.to_owned(), error })?;
+        let mut json = serde_json::to_vec_pretty(self).map_err(|error| RecordError::Write(error.to_string()))?;
+        json.push(b'\n');
+        replace_file(&folder.join(MANIFEST), &json)?;
+        Ok(replace_file(&folder.join(CSV), &self.csv()?)?)
+    }
+
+    fn csv(&self) -> Result<Vec<u8>, RecordError> {
+        let fail = |error: &dyn std::fmt::Display| RecordError::Write(error.to_string());
+        let mut out = csv::Writer::from_writer(Vec::new());
+        let heading = ["category", "contender", "pairs", "contacts"].into_iter().chain(Tally::HEADING);
+        out.write_record(heading.chain(["depth_ulps", "normal_ulps", "position_ulps"])).map_err(|e| fail(&e))?;
+        for Row { category, contender, tally, .. } in &self.rows {
+            let counts = [tally.pairs, tally.contacts].into_iter().chain(tally.counts()).map(|count| count.to_string());
+            let ulps = [tally.depth_ulps, tally.normal_ulps, tally.position_ulps].map(|ulps| ulps.to_string());
+            let names = [category.clone(), contender.clone()];
+            out.write_record(names.into_iter().chain(counts).chain(ulps)).map_err(|error| fail(&error))?;
+        }
+        out.into_inner().map_err(|error| fail(&error))
+    }
+
+    /// What a contender came to in all categories together.
+    pub fn total(&self, contender: &str) -> Tally {
+        let rows = self.rows.iter().filter(|row| row.contender == contender);
+        rows.fold(Tally::default(), |sum, row| sum.plus(&row.tally))
+    }
+
+    /// The contenders, each once, in their order.
+    pub fn contenders(&self) -> Vec<&str> {
+        distinct(self.rows.iter().map(|row| row.contender.as_str()))
+    }
+
+    /// The tables for people: each contender by category, and at the end all of them by their gross failures.
+    pub fn tables(&self) -> String {
+        let mut text = String::new();
+        for contender in self.contenders() {
+            let rows = self.rows.iter().filter(|row| row.contender == contender);
+            let line = |name: &str, tally: &Tally| {
+                let counts = [tally.pairs, tally.contacts].into_iter().chain(tally.counts()).map(grouped);
+                [name.to_owned()].into_iter().chain(counts).collect::<Vec<_>>()
+            };
+            let total = line("all", &self.total(contender));
+            let lines = rows.map(|row| line(&row.category, &row.tally)).chain([total]);
+            let heading: Vec<&str> = [contender, "pairs", "contacts"].into_iter().chain(Tally::HEADING).collect();
+            text += &format!("{}\n\n", table(&heading, lines));
+        }
+        text += &format!("gross failures (BAD), hard:{} with seed {}\n{}", self.pairs, self.seed, self.summary());
+        self.absent.iter().fold(text, |text, what| format!("{text}\n{what}"))
+    }
+
+    fn summary(&self) -> String {
+        let contenders = self.contenders();
+        let categories = distinct(self.rows.iter().map(|row| row.category.as_str()));
+        let heading: Vec<&str> = ["", "pairs"].into_iter().chain(contenders.iter().copied()).collect();
+        let line = |name: &str, tallies: Vec<Tally>| {
+            let pairs = tallies.first().map_or(0, |tally| tally.pairs);
+            let bad = tallies.into_iter().map(|tally| grouped(tally.bad));
+            [name.to_owned(), grouped(pairs)].into_iter().chain(bad).collect::<Vec<_>>()
+        };
+        let of =
+            |category: &str| self.rows.iter().filter(|row| row.category == category).map(|row| row.tally).collect();
+        let total = line("all", contenders.iter().map(|contender| self.total(contender)).collect());
+        table(&heading, categories.into_iter().map(|category| line(category, of(category))).chain([total]))
+    }
+}
+
+fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+    let mut seen: Vec<&str> = Vec::new();
+    for name in names {
+        if !seen.contains(&name) {
+            seen.push(name);
+        }
+    }
+    seen
+}

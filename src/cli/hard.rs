@@ -1,0 +1,69 @@
+//! `afu hard`: profiles and peers on the hard pairs, judged against the truth.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use contact_afu::accuracy::{self, Record, RecordError, StudyError, Task};
+use contact_afu::config::Profile;
+
+use super::failure::{Failure, Kind};
+use super::{output, progress};
+
+/// Judge profiles and other engines on the hard pairs against the truth in arbitrary precision
+///
+/// For each category: contacts missed or invented, numbers that are none, normals, directions, depths and positions
+/// that are wrong, gross failures (BAD), and pairs left unsettled. The same command again resumes.
+#[derive(Args, Debug)]
+pub struct Hard {
+    /// Pairs of all categories together
+    #[arg(long, value_name = "N", default_value_t = 170_000)]
+    pairs: u64,
+    /// Their seed
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Profiles to judge, beside the other engines
+    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "paper,wide")]
+    profile: Vec<Profile>,
+    /// Folder to write: manifest.json (JSON of all) and hard.csv
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Write into the folder even if afu did not make it; other files in it are left alone
+    #[arg(long, requires = "out")]
+    force: bool,
+    /// Write the figures as JSON too (schema contact-afu/hard/1); - is standard output
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+pub fn run(options: &Hard) -> Result<(), Failure> {
+    let task = Task { pairs: options.pairs, seed: options.seed };
+    let (mut contenders, absent) =
+        accuracy::contenders(&options.profile).map_err(|error| Failure::new(Kind::Other, error))?;
+    let mut record = Record::new(task, &absent);
+    let bar = progress::bar("hard", task.pairs * contenders.len() as u64);
+    let folder = options.out.as_deref().map(|folder| (folder, options.force));
+    let resumed = accuracy::fill(&mut record, &mut contenders, task, folder, |category, pairs| {
+        bar.set_prefix(category.to_owned());
+        bar.inc(pairs);
+    });
+    bar.finish_and_clear();
+    let resumed = resumed?;
+    if resumed > 0 {
+        eprintln!("{resumed} of {} rows are of an earlier run", record.rows.len());
+    }
+    let stdout_taken = options.json.as_deref().is_some_and(output::is_stdout);
+    output::show(&record.tables(), stdout_taken)?;
+    match &options.json {
+        Some(path) => output::json(path, &record),
+        None => Ok(()),
+    }
+}
+
+impl From<StudyError> for Failure {
+    fn from(error: StudyError) -> Self {
+        match error {
+            StudyError::Record(RecordError::Folder(error)) => error.into(),
+            _ => Self::caused(Kind::Other, error),
+        }
+    }
+}

@@ -1,0 +1,143 @@
+//! The truth: what a pair of spheres gives in arithmetic whose rounding decides nothing.
+
+use super::contact::{Contact, contact};
+use super::{ContactRecord, Fields, Flow, PairRecord};
+use crate::number::{Format, Number, Precise};
+use nalgebra::Vector3;
+
+/// The contact of a pair as it truly is: [`contact`] read with [`Precise`], in which the decision is exact and every
+/// number can be rounded correctly.
+#[derive(Clone, Copy, Debug)]
+pub struct Truth {
+    pair: PairRecord,
+    contact: Option<Contact<Precise>>,
+    flow: Flow,
+}
+
+impl Truth {
+    /// What is true of a pair.
+    pub fn of(pair: &PairRecord) -> Self {
+        let read = |fields| contact(spheres(pair), true, Format::BINARY32, Format::BINARY32, fields);
+        if !pair.is_valid() {
+            return Self { pair: *pair, contact: None, flow: Flow::Invalid };
+        }
+        // The decision needs no root, and most pairs without contact then need nothing more.
+        if !read(Fields::HIT).hit {
+            return Self { pair: *pair, contact: None, flow: Flow::Fake };
+        }
+        let contact = read(Fields::ALL);
+        let flow = if contact.grazing { Flow::Grazing } else { Flow::Real };
+        Self { pair: *pair, contact: Some(contact), flow }
+    }
+
+    /// Which way the pair goes.
+    pub const fn flow(&self) -> Flow {
+        self.flow
+    }
+
+    /// Whether the spheres touch.
+    pub const fn is_contact(&self) -> bool {
+        self.contact.is_some()
+    }
+
+    /// How deep they overlap; nothing without contact.
+    pub fn depth(&self) -> Option<Precise> {
+        self.contact.map(|contact| contact.depth)
+    }
+
+    /// The direction that parts them; nothing without contact.
+    pub fn normal(&self) -> Option<[Precise; 3]> {
+        self.contact.map(|contact| contact.normal.into())
+    }
+
+    /// Where they touch; nothing without contact.
+    pub fn position(&self) -> Option<[Precise; 3]> {
+        self.contact.map(|contact| contact.position.into())
+    }
+
+    /// The record with every number correctly rounded (IEEE 754-2019, clause 4.3.1). A zero is +0, but for the
+    /// position of coincident spheres, which is the first centre as it is.
+    pub fn record(&self) -> ContactRecord {
+        let mut words = [self.flow.flags(); 8];
+        let Some(contact) = &self.contact else { return ContactRecord([0, 0, 0, 0, 0, 0, 0, self.flow.flags()]) };
+        let numbers = contact.position.iter().chain(contact.normal.iter()).chain([&contact.depth]);
+        for (word, number) in words.iter_mut().zip(numbers) {
+            *word = number.to_f32().to_bits();
+        }
+        if self.flow == Flow::Grazing {
+            words[..3].copy_from_slice(&self.pair.0[..3]);
+        }
+        ContactRecord(words)
+    }
+
+    /// How far the decision is from being the other one: |s − d| over the larger of the two, with the distance d and
+    /// the sum of the radii s; 0 to 1. An invalid pair's is 1.
+    pub fn margin(&self) -> f64 {
+        if self.flow == Flow::Invalid {
+            return 1.0;
+        }
+        let pair = spheres(&self.pair);
+        let apart: Vector3<Precise> = pair.p1 - pair.p2;
+        let distance = (apart.x * apart.x + apart.y * apart.y + apart.z * apart.z).sqrt();
+        let sum = pair.r1 + pair.r2;
+        let larger = distance.max(sum);
+        if larger.is_zero() { 0.0 } else { ((distance - sum).abs() / larger).to_f64() }
+    }
+
+    /// The largest errors of another answer to this pair; nothing unless both are contacts.
+    pub fn errors(&self, answer: ContactRecord) -> Option<Errors> {
+        let truth = self.contact.filter(|_| answer.is_contact())?;
+        let away = |given: f32, true_value: Precise, unit: f64| {
+            // What rounds to an infinity is right where it is one.
+            let right = given == true_value.to_f32();
+            if !given.is_finite() {
+                return if right { 0.0 } else { f64::INFINITY };
+            }
+            (Precise::from_f64(given.into()) - true_value).abs().to_f64() / unit
+        };
+        let largest = |given: [f32; 3], truth: &Vector3<Precise>, unit: [f64; 3]| {
+            (0..3).map(|i| away(given[i], truth[i], unit[i])).fold(0.0, f64::max)
+        };
+        let [x, y, z, r1, .., r2] = self.pair.values();
+        let unit = |axis: usize| {
+            let makers = [[x, y, z][axis], r1, r2].map(|v| v.abs());
+            ulp(makers.into_iter().fold(truth.position[axis].abs().to_f32(), f32::max))
+        };
+        Some(Errors {
+            depth: away(answer.depth(), truth.depth, ulp(truth.depth.abs().to_f32())),
+            normal: largest(answer.normal(), &truth.normal, [ulp(1.0); 3]),
+            position: largest(answer.position(), &truth.position, [unit(0), unit(1), unit(2)]),
+        })
+    }
+}
+
+/// The largest error of each kind of number, in units in the last place of binary32; infinite for a number that is
+/// not one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Errors {
+    /// Of the depth, in its own units.
+    pub depth: f64,
+    /// Of the normal's components, in units of 1.
+    pub normal: f64,
+    /// Of the position's components, each in units of the largest of it, the first centre's and the radii.
+    pub position: f64,
+}
+
+impl Errors {
+    /// The largest of all.
+    pub fn largest(self) -> f64 {
+        self.depth.max(self.normal).max(self.position)
+    }
+}
+
+/// The unit in the last place of a number: 2^(e − 23), and 2^−149 below the smallest normal number. That of an
+/// infinity is that of the largest number.
+pub fn ulp(value: f32) -> f64 {
+    let biased = (value.to_bits() >> 23 & 0xFF).clamp(1, 254);
+    2.0_f64.powi(biased as i32 - 150)
+}
+
+/// Both spheres, exactly.
+pub(super) fn spheres(pair: &PairRecord) -> super::Pair<Precise> {
+    pair.read(|word| Precise::from_f64(f32::from_bits(word).into()))
+}
