@@ -113,9 +113,9 @@ proptest! {
         shift in prop::array::uniform3(-4096_i32..=4096),
     ) {
         let mut values = pair.values();
-        for axis in 0..3 {
+        for (axis, steps) in shift.into_iter().enumerate() {
             for place in [axis, axis + 4] {
-                let exact = f64::from(values[place]) + f64::from(shift[axis]) / 64.0;
+                let exact = f64::from(values[place]) + f64::from(steps) / 64.0;
                 values[place] = exact as f32;
                 if f64::from(values[place]) != exact {
                     return Ok(());
