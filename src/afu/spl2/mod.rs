@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 use crate::hdl::{Errors, Graph, Module};
 
-use super::control::ERROR_BITS;
+use super::control::{ERROR_BITS, JobError};
 use super::{EPOCH_BITS, MAX_SCPUS, SCPU_BITS, Spec};
 use port::{MDATA_BITS, RX_HEADER_BITS, is_core_s};
 
@@ -146,6 +146,7 @@ pub(super) fn afu_top(spec: &Spec, core: &Arc<Module>) -> Result<Arc<Module>, Er
             ("start", start),
             ("rd_almostfull", rd_almostfull),
             ("wr_almostfull", wr_almostfull),
+            ("discard", core_error.is(JobError::Watchdog as u128).named("core_gave_up")),
             ("core_rd_valid", core.output("rd_req_valid")),
             ("core_rd_address", core.output("rd_req_address")),
             ("core_rd_tag", core.output("rd_req_tag")),

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use crate::hdl::{Errors, Graph, Module};
+use crate::hdl::{Errors, Graph, Module, Signal};
 
 use super::super::control::{ERROR_BITS, JobError, MODE_BITS};
 use super::super::{ADDRESS_BITS, COUNT_BITS, Spec};
@@ -196,25 +196,29 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let to_dsm = (at_latency | at_performance).named("to_dsm");
     let dsm_address = at_latency.select(dsm(map::LATENCY_LINE), dsm(map::PERFORMANCE_LINE));
     let dsm_data = at_latency.select(latency_line, performance_line);
-    let written = (write_granted | (to_dsm & !dsm_valid)).named("written");
+    // Without a DSM there are no counters; and a fence might never pass the write whose response the core gave up on.
+    let gave_up = core_error.is(JobError::Watchdog as u128).named("gave_up");
+    let fences = (at_fence & !(gave_up & ran)).named("fences");
+    let written = (write_granted | (to_dsm & !dsm_valid) | (at_fence & !fences)).named("written");
 
     // From state to state.
-    let to = |next: State| constant(STATE_BITS, next as u128);
-    let steps = [
+    let beginning = [
         (at_idle & context_valid, State::Context),
         (got_context, State::Poll),
         (got_job, State::Measure),
         (at_measure, State::Start),
         (start, State::Run),
         (at_start & !fits, State::Latency),
+    ];
+    let end = [
         (at_run & core_done, State::Latency),
         (at_latency & written, State::Performance),
         (at_performance & written, State::Fence),
         (at_fence & written, State::Status),
         (at_status & written, State::Poll),
     ];
-    let next = steps.into_iter().fold(*state, |next, (condition, to_state)| condition.select(to(to_state), next));
-    state.next(next.named("next_state"));
+    let begun = beginning.into_iter().fold(*state, step_to).named("next_of_beginning");
+    state.next(end.into_iter().fold(begun, step_to).named("next_state"));
 
     graph.output("rd_valid", asks);
     graph.output("rd_address", at_context.select(context_line, source.value()).named("address"));
@@ -225,10 +229,15 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, Errors> {
     graph.output("mode", job_mode.value());
     graph.output("watchdog", job_watchdog.value());
     graph.output("abort_job", abort.value());
-    graph.output("wr_valid", (to_dsm & dsm_valid) | at_fence | at_status);
+    graph.output("wr_valid", (to_dsm & dsm_valid) | fences | at_status);
     graph.output("wr_fence", at_fence);
     graph.output("wr_virtual", !to_dsm);
     graph.output("wr_address", to_dsm.select(dsm_address, status_address));
     graph.output("wr_data", to_dsm.select(dsm_data, status_line));
     graph.finish()
+}
+
+/// A state if its condition holds, else what was next before.
+fn step_to<'g>(next: Signal<'g>, (condition, to): (Signal<'g>, State)) -> Signal<'g> {
+    condition.select(next.same(to as u128), next)
 }

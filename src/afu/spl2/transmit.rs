@@ -20,6 +20,8 @@ pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let start = graph.input("start", 1);
     let rd_almostfull = graph.input("rd_almostfull", 1);
     let wr_almostfull = graph.input("wr_almostfull", 1);
+    // The core has given up: what it still asks is taken from it and dropped, since SPL may never have room again.
+    let discard = graph.input("discard", 1);
 
     let epoch = graph.data_register("epoch", SHELL_EPOCH_BITS);
     let next_epoch = (epoch.value() + start.extend(SHELL_EPOCH_BITS)).named("next_epoch");
@@ -32,7 +34,7 @@ pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let own_read = graph.input("own_rd_valid", 1);
     let own_read_address = graph.input("own_rd_address", ADDRESS_BITS);
     let own_read_granted = (own_read & !rd_almostfull).named("own_rd_granted");
-    let core_read_ready = (!own_read & !rd_almostfull).named("core_rd_ready");
+    let core_read_ready = (discard | (!own_read & !rd_almostfull)).named("core_rd_ready");
     let read_number = number(&graph, "read_number", own_read_granted, power_on);
     let constant = |width: u32, value: u128| graph.constant(width, value);
     let read_header = port::header(
@@ -46,7 +48,7 @@ pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, Errors> {
         ),
     );
     let read_valid = graph.data_register("tx_rd_valid", 1);
-    let reading = (own_read_granted | (core_read_ready & core_read)).named("reading");
+    let reading = (own_read_granted | (core_read_ready & core_read & !discard)).named("reading");
     read_valid.next(reading & !power_on);
     let read_register = graph.data_register("tx_rd_hdr", TX_HEADER_BITS);
     read_register.next_if(reading, read_header);
@@ -67,7 +69,7 @@ pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let register_granted = (register_write & !wr_almostfull).named("register_wr_granted");
     let end_granted = (end_write & !register_write & !wr_almostfull).named("end_wr_granted");
     let own_write = (register_write | end_write).named("own_write");
-    let core_write_ready = (!own_write & !wr_almostfull).named("core_wr_ready");
+    let core_write_ready = (discard | (!own_write & !wr_almostfull)).named("core_wr_ready");
     let write_number = number(&graph, "write_number", register_granted | end_granted, power_on);
     let is_fence = (end_write_fence & !register_write).named("is_fence");
     let write_header = port::header(
@@ -81,7 +83,7 @@ pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, Errors> {
         ),
     );
     let write_valid = graph.data_register("tx_wr_valid", 1);
-    let writing = (register_granted | end_granted | (core_write_ready & core_write)).named("writing");
+    let writing = (register_granted | end_granted | (core_write_ready & core_write & !discard)).named("writing");
     write_valid.next(writing & !power_on);
     let write_register = graph.data_register("tx_wr_hdr", TX_HEADER_BITS);
     write_register.next_if(writing, write_header);

@@ -102,10 +102,12 @@ impl<'m, 'a> Session<'m, 'a> {
         pointer(machine, map::DSM_BASE_HIGH.offset, map::DSM_BASE_LOW.offset, AFU_DSM)?;
         wait_for_identity(machine, scpus)?;
 
+        let machine_cycle = machine.cycle() as u32;
         let mut session = Self {
             machine,
             place,
-            sequence: 0,
+            // Late writes of an earlier session's job must not look like this one's.
+            sequence: machine_cycle,
             started: 0,
             reads: 0,
             writes: 0,
@@ -188,7 +190,7 @@ impl<'m, 'a> Session<'m, 'a> {
             status: first + u64::from(map::STATUS_LINE)..first + CONTEXT_LINES,
             results: destination..destination + job.destination_lines,
         }));
-        self.sequence += 1;
+        self.sequence = self.sequence.wrapping_add(1);
         let mut line = [0; 16];
         control::COUNT.set(&mut line, job.pairs.into());
         control::MODE.set(&mut line, job.mode.into());

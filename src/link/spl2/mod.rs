@@ -14,6 +14,6 @@ mod writes;
 
 pub use error::Spl2Error;
 pub use header::{Header, Receive, Receive0, Transmit};
-pub use model::{CsrOffset, DeviceWrite, SPL_ID, Spl2, Spl2Model};
+pub use model::{CsrOffset, DeviceWrite, SPL_ID, Seen, Spl2, Spl2Model};
 pub use monitor::Limits;
 pub use pages::{MAX_PAGES, PAGE_BYTES};

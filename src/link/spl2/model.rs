@@ -77,6 +77,17 @@ pub struct DeviceWrite {
     pub cycle: u64,
 }
 
+/// What happened so far that a test wants to have happened.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Seen {
+    /// Cycles in which writes were acknowledged on both channels.
+    pub on_both: u64,
+    /// Cycles in which a request came although almost-full was high.
+    pub after_almostfull: u64,
+    /// The most requests of one direction after almost-full rose.
+    pub most_after: u32,
+}
+
 /// SPL2 over a link, with the memory behind it.
 #[derive(Clone, Debug)]
 pub struct Spl2 {
@@ -102,6 +113,7 @@ pub struct Spl2 {
     guard: Guard,
     watched: Vec<Range<u64>>,
     log: Vec<DeviceWrite>,
+    seen: Seen,
 }
 
 impl Spl2 {
@@ -128,6 +140,7 @@ impl Spl2 {
             guard: Guard::default(),
             watched: Vec::new(),
             log: Vec::new(),
+            seen: Seen::default(),
         }
     }
 
@@ -149,6 +162,11 @@ impl Spl2 {
     /// Cycles so far.
     pub fn cycle_number(&self) -> u64 {
         self.cycle
+    }
+
+    /// What happened so far.
+    pub fn seen(&self) -> Seen {
+        self.seen
     }
 
     /// Writes to these physical lines are logged from now on.
@@ -237,6 +255,7 @@ impl Spl2 {
             }),
         };
         let (on0, on1) = self.writes.deliver(channel0.is_none(), self.model.held, &mut self.random);
+        self.seen.on_both += u64::from(on0.is_some() && on1.is_some());
         for mdata in [on0, on1].into_iter().flatten() {
             self.write_checks.answered(mdata);
         }
@@ -261,8 +280,11 @@ impl Spl2 {
             self.disabled_since = self.cycle;
         }
         let disabled_for = (!enabled).then(|| self.cycle - self.disabled_since);
-        self.read_checks.count(read_full, transmit.read.is_some())?;
-        self.write_checks.count(write_full, transmit.write.is_some())?;
+        let after_reads = self.read_checks.count(read_full, transmit.read.is_some())?;
+        let after_writes = self.write_checks.count(write_full, transmit.write.is_some())?;
+        let late = read_full && transmit.read.is_some() || write_full && transmit.write.is_some();
+        self.seen.after_almostfull += u64::from(late);
+        self.seen.most_after = self.seen.most_after.max(after_reads).max(after_writes);
         if let Some(bits) = transmit.read {
             let header = self.read_checks.header(bits, disabled_for)?;
             if enabled {

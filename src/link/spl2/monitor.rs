@@ -37,12 +37,12 @@ impl Direction {
         Self { what, overshoot: 0, in_flight: vec![false; MDATA] }
     }
 
-    /// A cycle without a request, or one with.
-    pub(super) fn count(&mut self, almostfull: bool, requests: bool) -> Result<(), Spl2Error> {
+    /// A cycle without a request, or one with: requests since almost-full rose.
+    pub(super) fn count(&mut self, almostfull: bool, requests: bool) -> Result<u32, Spl2Error> {
         self.overshoot = if almostfull { self.overshoot + u32::from(requests) } else { 0 };
         match self.overshoot > OVERSHOOT {
             true => Err(Spl2Error::Overshoot { what: self.what, after: self.overshoot }),
-            false => Ok(()),
+            false => Ok(self.overshoot),
         }
     }
 

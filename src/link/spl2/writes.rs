@@ -13,6 +13,9 @@ const PENDING: usize = 54;
 /// Queued requests at which it rises.
 const QUEUED: usize = 8;
 
+/// Acknowledgements that may be held back.
+const FEW: usize = 3;
+
 /// A write on its way, by its physical line.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Write {
@@ -90,7 +93,8 @@ impl Writes {
         held: f64,
         random: &mut Xoshiro256PlusPlus,
     ) -> (Option<u16>, Option<u16>) {
-        if self.acknowledged.is_empty() || chance(random, held) {
+        let few = self.acknowledged.len() < FEW; // more are never held, so that no bandwidth is lost
+        if self.acknowledged.is_empty() || (few && chance(random, held)) {
             return (None, None);
         }
         let (both, first) = (up_to(random, 1) == 1, up_to(random, 1) == 1);

@@ -1,0 +1,126 @@
+//! AFUs to test, jobs for them, and what memory must hold afterwards.
+
+use contact_afu::afu::spl2::map;
+use contact_afu::afu::{Afu, Spec};
+use contact_afu::config::{Config, Shell};
+use contact_afu::cosim::spl2::{Machine, Place};
+use contact_afu::cosim::{File, Instance, Job, Model, Outcome, Source, Trace};
+use contact_afu::kernel::{ContactRecord, Flow, PairRecord, Reference};
+use contact_afu::link::spl2::{Spl2, Spl2Model};
+use contact_afu::link::{Line, Link, Stalls};
+use contact_afu::pairs::Set;
+
+/// The AFU of these tests: all fields, and an arithmetic whose model is made quickly.
+pub fn config(scpus: u32) -> Config {
+    Config { scpus, shell: Shell::Spl2, profile: "e8f3z".parse().unwrap(), ..Config::default() }
+}
+
+/// The Verilog of [`config`]; the number of SCPUs is a parameter and not in the text.
+pub fn files() -> Vec<File> {
+    let afu = Afu::generate(Spec::from(config(Config::default().scpus))).unwrap();
+    afu.verilog().into_iter().map(|(name, text)| File { name, text }).collect()
+}
+
+pub fn model(scpus: u32) -> Model {
+    build(files(), scpus)
+}
+
+pub fn build(files: Vec<File>, scpus: u32) -> Model {
+    Model::build(&Source::new("afu_top", files).parameter("SCPUS", scpus.into()), Trace::Off).unwrap()
+}
+
+/// A machine whose link is like a preset.
+pub fn machine<'a>(afu: &'a Instance, spl: Spl2Model, link: &str, seed: u64) -> Machine<'a> {
+    Machine::new(afu, Spl2::new(spl, Link::new(link.parse().unwrap(), seed).unwrap(), seed)).unwrap()
+}
+
+/// SPL2 at its worst: reads in any order, almost-full for no reason, acknowledgements in pairs, CSRs at once.
+pub fn rough() -> Spl2Model {
+    Spl2Model {
+        csr_cycles: 3,
+        reads_in_order: false,
+        held: 0.4,
+        fence_answers: true,
+        almostfull: Stalls { chance: 0.1, longest: 9 },
+        ..Spl2Model::default()
+    }
+}
+
+/// CSR writes that cost little: a test has many sessions.
+pub fn quick() -> Spl2Model {
+    Spl2Model { csr_cycles: 5, ..Spl2Model::default() }
+}
+
+/// Pairs, and what must come of them.
+pub struct Case {
+    pub pairs: Vec<PairRecord>,
+    source: Vec<Line>,
+    lines: Vec<Line>,
+    status: (u32, u32, Option<u32>),
+}
+
+/// Eight words a record, two records a line.
+fn lines<'a>(records: impl Iterator<Item = &'a [u32; 8]>) -> Vec<Line> {
+    let words: Vec<u32> = records.flatten().copied().collect();
+    words.chunks(16).map(|line| std::array::from_fn(|word| line.get(word).copied().unwrap_or(0))).collect()
+}
+
+impl Case {
+    pub fn new(pairs: Vec<PairRecord>) -> Self {
+        let config = config(1);
+        let records = Reference::new(config.profile.format(), config.contact).run_all(&pairs);
+        let is_invalid = |record: &ContactRecord| record.flow() == Some(Flow::Invalid);
+        Self {
+            source: lines(pairs.iter().map(|pair| &pair.0)),
+            lines: lines(records.iter().map(|record| &record.0)),
+            status: (
+                records.iter().filter(|record| record.is_contact()).count() as u32,
+                records.iter().filter(|record| is_invalid(record)).count() as u32,
+                records.iter().position(is_invalid).map(|number| number as u32),
+            ),
+            pairs,
+        }
+    }
+
+    pub fn random(count: u64, seed: u64) -> Self {
+        Self::new(Set::Random(count).pairs(seed))
+    }
+
+    pub fn job(&self) -> Job<'_> {
+        Job::new(&self.source, self.pairs.len() as u32, self.lines.len() as u64)
+    }
+
+    pub fn place(&self) -> Place {
+        Place::for_lines(self.source.len() as u64, self.lines.len() as u64)
+    }
+
+    /// Whether every word and every figure is right.
+    pub fn is_right(&self, outcome: &Outcome) -> bool {
+        outcome.error == 0
+            && outcome.lines.iter().map(Option::as_ref).eq(self.lines.iter().map(Some))
+            && (outcome.contacts, outcome.invalid, outcome.first_invalid) == self.status
+    }
+
+    #[track_caller]
+    pub fn check(&self, outcome: &Outcome, what: &str) {
+        assert_eq!(outcome.error, 0, "{what}");
+        for (number, (got, wanted)) in outcome.lines.iter().zip(&self.lines).enumerate() {
+            assert!(got.as_ref() == Some(wanted), "{what}: line {number}: {got:x?}, not {wanted:x?}");
+        }
+        assert!(self.is_right(outcome), "{what}: {:?}", self.status);
+        let lines = self.source.len() as u64;
+        let own_reads = outcome.bytes_read / 64 - lines;
+        assert!(
+            own_reads >= 1 && own_reads <= 2 + outcome.cycles / u64::from(map::IDLE_POLL_CYCLES),
+            "{own_reads} polls"
+        );
+        assert!(outcome.cycles_busy < outcome.cycles, "{what}");
+    }
+
+    /// Whatever was written is right; how many lines were.
+    #[track_caller]
+    pub fn check_written(&self, outcome: &Outcome, what: &str) -> usize {
+        let written = outcome.lines.iter().zip(&self.lines).filter_map(|(got, wanted)| Some((got.as_ref()?, wanted)));
+        written.inspect(|(got, wanted)| assert!(got == wanted, "{what}: {got:x?}, not {wanted:x?}")).count()
+    }
+}
