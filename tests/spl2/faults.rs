@@ -110,7 +110,6 @@ fn an_epoch_that_stands_still_is_found() {
             let mut session = Session::open(&mut machine, spoilt.place(), Some(2)).unwrap();
             session.start(&job(&spoilt, planted));
             session.machine().advance(moment).unwrap();
-            drop(session);
             let place = Place { pages: 3, source: 40_000, destination: 50_000, ..next.place() };
             let ended = Session::open(&mut machine, place, Some(2)).and_then(|mut s| s.run(&job(&next, planted)));
             !ended.is_ok_and(|outcome| next.is_right(&outcome))

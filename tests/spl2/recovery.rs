@@ -43,7 +43,6 @@ fn interrupted(spl: Spl2Model, how: &str, interrupt: impl Fn(&mut Machine<'_>)) 
             let mut session = Session::open(&mut machine, spoilt_place(&spoilt), Some(SCPUS)).unwrap();
             session.start(&spoilt.job());
             session.machine().advance(moment).unwrap_or_else(|e| panic!("{what}: {e}"));
-            drop(session);
             interrupt(&mut machine);
             stale += machine.spl().stale().0 + machine.spl().stale().1;
             let mut session =
