@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use crate::config::Results;
 use crate::hdl::{Errors, Graph, Module};
 
 use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, Spec};
@@ -20,6 +21,8 @@ pub enum JobError {
     Watchdog = 4,
     /// A `mode` this AFU does not have.
     Mode = 5,
+    /// More lines of contacts than the destination has room for: those beyond were not written, but all were counted.
+    Overflow = 6,
     /// More pairs than the host's buffers have lines for: told by a shell that knows their length.
     Room = 8,
 }
@@ -60,7 +63,10 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, Errors>
     let dispatched = graph.input("dispatched", 1);
     let entered = graph.input("entered", spec.group_bits());
     let emerged = graph.input("emerged", spec.group_bits());
-    let line_left = graph.input("line_left", 1);
+    let freed = match spec.config.results {
+        Results::All => graph.input("line_left", 1),
+        Results::Hits => graph.input("places_freed", spec.group_bits() + 1),
+    };
     let waits_for_input = graph.input("waits_for_input", 1);
     let waits_for_output = graph.input("waits_for_output", 1);
 
@@ -90,9 +96,13 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, Errors>
     let lines = rounded.drop_low(shift).extend(COUNT_BITS + 1).low(COUNT_BITS).named("lines");
 
     // Pairs inside, and room for results: a pair takes its place when it enters, a line frees its places when it
-    // leaves for memory.
+    // leaves for memory. Where only contacts come back, a pair that is none frees its place as soon as that is known,
+    // and a contact when it leaves the backlog.
     let room = graph.register("room", room_bits, u128::from(capacity));
-    let returned = graph.constant(room_bits, u128::from(layout.contacts_per_line())).gate(line_left);
+    let returned = match spec.config.results {
+        Results::All => graph.constant(room_bits, u128::from(layout.contacts_per_line())).gate(freed),
+        Results::Hits => freed.extend(room_bits),
+    };
     room.next(begin.select(room.same(u128::from(capacity)), room.value() - entered.extend(room_bits) + returned));
     let inside = graph.register("pairs_inside", room_bits, 0);
     inside.next(inside.value() + entered.extend(room_bits) - emerged.extend(room_bits));
@@ -128,7 +138,17 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, Errors>
     draining.next(failing | (*draining & !drained));
     done.next(!accept & (*done | complete | drained));
     let failed = failing.select(cause, accept.select(error.same(0), *error)).named("failed");
-    error.next(gives_up.select(error.same(JobError::Watchdog as u128), failed));
+    let mut ended = failed;
+    if spec.config.results == Results::Hits {
+        let overflowed = graph.input("overflowed", 1);
+        ended = (complete & overflowed).select(error.same(JobError::Overflow as u128), failed);
+        // The room for results in memory, for the dispatcher.
+        let lines = graph.input("destination_lines", COUNT_BITS);
+        let job_lines = graph.register("job_destination_lines", COUNT_BITS, 0);
+        job_lines.next_if(accept, lines);
+        graph.output("job_destination_lines", job_lines.value());
+    }
+    error.next(gives_up.select(error.same(JobError::Watchdog as u128), ended));
 
     for (name, counts) in [
         ("cycles_busy", busy),

@@ -1,13 +1,17 @@
 //! The dispatcher: keeps finished lines, writes them in order, and waits for every acknowledgement.
 //!
 //! A tag is the job's epoch and a slot; slots are used in turn, each again only after its acknowledgement.
+//!
+//! Where only contacts come back, nobody knows beforehand how many lines there will be: the host says how many it has
+//! room for, and those beyond are dropped and told.
 
 use std::sync::Arc;
 
+use crate::config::Results;
 use crate::hdl::{Errors, Graph, Module};
 
 use super::collector::up_down;
-use super::{ADDRESS_BITS, EPOCH_BITS, Spec};
+use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, Spec};
 
 /// From a line to its write request: stored, at the head, registered.
 pub(super) const CYCLES_TO_REQUEST: u32 = 3;
@@ -32,6 +36,7 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, Errors>
     let response_valid = graph.input("wr_rsp_valid", 1);
     let response_tag = graph.input("wr_rsp_tag", EPOCH_BITS + slot_bits);
     let response_error = graph.input("wr_rsp_error", 1);
+    let bounded = spec.config.results == Results::Hits;
 
     // Finished lines wait in a memory; its registered read runs one line ahead. It cannot overflow: a pair enters
     // an SCPU only when its result has a place here.
@@ -46,7 +51,8 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, Errors>
     let next_head = (head.value() + take.extend(place_bits)).named("next_head");
     head.next(start.select(head.same(0), next_head));
     let left = (stored.value() - take.extend(place_bits + 1)).named("left");
-    stored.next(start.select(stored.same(0), left + line_valid.extend(place_bits + 1)));
+    let next_stored = start.select(stored.same(0), left + line_valid.extend(place_bits + 1));
+    stored.next(next_stored);
     ready.next(!start & left.any());
 
     // Write requests.
@@ -60,27 +66,46 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, Errors>
     let slot_free = (!(*busy & next_slot.one_hot()).any()).named("slot_free");
     let port_free = (!*request_valid | request_ready).named("port_free");
     take.drive(run & *ready & slot_free & port_free);
-    request_valid.next(take | (*request_valid & !request_ready));
-    request_address.next_if(take, next_address.value());
-    request_tag.next_if(take, epoch.concat(next_slot.value()));
-    request_data.next_if(take, store.read(next_head).named("oldest"));
-    next_address.next_if(start | take, start.select(destination, next_address.plus(1)));
-    next_slot.next(start.select(next_slot.same(0), next_slot.value() + take.extend(slot_bits)));
+    let send = if bounded {
+        let lines = graph.input("lines", COUNT_BITS);
+        let room = graph.register("lines_of_room", COUNT_BITS, 0);
+        let fits = room.any().named("fits");
+        let send = (take & fits).named("send");
+        room.next(start.select(lines, room.value() - send.extend(COUNT_BITS)));
+        let overflowed = graph.register("overflowed", 1, 0);
+        overflowed.next(!start & (*overflowed | take & !fits));
+        graph.output("overflowed", overflowed.value());
+        // The packer hears a few cycles before the memory is full: lines are still on their way then.
+        let accepts = graph.register("accepts", 1, 0);
+        accepts.next(!next_stored.high(2).any());
+        graph.output("accepts", accepts.value());
+        send
+    } else {
+        take
+    };
+    request_valid.next(send | (*request_valid & !request_ready));
+    request_address.next_if(send, next_address.value());
+    request_tag.next_if(send, epoch.concat(next_slot.value()));
+    request_data.next_if(send, store.read(next_head).named("oldest"));
+    next_address.next_if(start | send, start.select(destination, next_address.plus(1)));
+    next_slot.next(start.select(next_slot.same(0), next_slot.value() + send.extend(slot_bits)));
 
     // Acknowledgements, in any order.
     let response_epoch = response_tag.high(EPOCH_BITS).named("response_epoch");
     let response = (response_valid & response_epoch.equals(epoch)).named("response");
-    let taken = next_slot.one_hot().gate(take).named("taken");
+    let taken = next_slot.one_hot().gate(send).named("taken");
     let freed = response_tag.low(slot_bits).one_hot().gate(response).named("freed");
     busy.next(start.select(busy.same(0), (*busy | taken) & !freed));
     let outstanding = graph.register("outstanding", slot_bits + 1, 0);
-    outstanding.next(start.select(outstanding.same(0), up_down(*outstanding, take, response)));
+    outstanding.next(start.select(outstanding.same(0), up_down(*outstanding, send, response)));
 
     graph.output("wr_req_valid", request_valid.value());
     graph.output("wr_req_address", request_address.value());
     graph.output("wr_req_tag", request_tag.value());
     graph.output("wr_req_data", request_data.value());
-    graph.output("take", take);
+    if !bounded {
+        graph.output("take", take);
+    }
     graph.output("response", response);
     graph.output("failed", response & response_error);
     graph.output("asking", request_valid.value());

@@ -1,7 +1,9 @@
 //! The accelerator: record layout, processing units, the controller around them, and the top over the line port.
 //!
-//! Data flows one way: collector → feeder → slots (one SCPU each) → packer → dispatcher. Control watches.
+//! Data flows one way: collector → feeder → slots (one SCPU each) → packer → dispatcher. Control watches. Where only
+//! contacts come back, sieve and backlog stand before the packer.
 
+mod backlog;
 mod collector;
 mod control;
 mod dispatcher;
@@ -10,10 +12,13 @@ mod files;
 mod generate;
 mod layout;
 mod packer;
+mod results;
 mod scpu;
+mod sieve;
 mod slot;
 mod spec;
 pub mod spl2;
+mod status;
 mod timing;
 mod top;
 

@@ -1,10 +1,12 @@
-//! The packer: takes the results of a cycle in order of pairs, packs them into lines, counts what they are.
+//! The packer: takes records in their order and packs them into lines. Where a record comes back for every pair it also
+//! counts what they are; where only contacts do, the [sieve](super::sieve) has counted.
 
 use std::sync::Arc;
 
+use crate::config::Results;
 use crate::hdl::{Errors, Graph, Module, Signal};
 
-use super::{COUNT_BITS, Spec};
+use super::{COUNT_BITS, Spec, status};
 
 /// From a group to the line that it fills.
 pub(super) const CYCLES_TO_LINE: u32 = 1;
@@ -13,12 +15,17 @@ pub(super) const CYCLES_TO_FLUSH: u32 = 1;
 
 /// Builds the module `contact_afu_packer`.
 pub(super) fn packer(spec: &Spec) -> Result<Arc<Module>, Errors> {
+    match spec.config.results {
+        Results::All => of_all(spec),
+        Results::Hits => of_hits(spec),
+    }
+}
+
+/// Results of a cycle in order of pairs, a record for each.
+fn of_all(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let graph = Graph::new("contact_afu_packer");
     graph.about("packs results into destination lines, counts contacts and invalid pairs");
-    let layout = spec.layout();
-    let (lanes, group_bits, record_bits) = (spec.lanes(), spec.group_bits(), layout.contact_bits());
-    let per_line = layout.contacts_per_line();
-    let place_bits = per_line.ilog2().max(1);
+    let (lanes, group_bits, record_bits) = (spec.lanes(), spec.group_bits(), spec.layout().contact_bits());
 
     let start = graph.input("start", 1);
     let count = graph.input("count", COUNT_BITS);
@@ -31,6 +38,53 @@ pub(super) fn packer(spec: &Spec) -> Result<Arc<Module>, Errors> {
         contacts.push(graph.input(&format!("contact_{lane}"), 1));
         invalids.push(graph.input(&format!("invalid_{lane}"), 1));
     }
+    let emerged = graph.register("emerged", COUNT_BITS, 0);
+    emerged.next(start.select(emerged.same(0), emerged.value() + group.extend(COUNT_BITS)));
+    let all_out = emerged.equals(count).named("all_out");
+    fill(&graph, spec, start, group, records, all_out);
+    status::count(&graph, start, *emerged, &contacts, &invalids);
+    graph.finish()
+}
+
+/// Contacts of a cycle in order of pairs, each a record with its number; `all_out` when no more will come.
+fn of_hits(spec: &Spec) -> Result<Arc<Module>, Errors> {
+    let graph = Graph::new("contact_afu_packer");
+    graph.about("packs contacts into destination lines");
+    let layout = spec.layout();
+    let entry_bits = spec.entry_bits();
+
+    let start = graph.input("start", 1);
+    let group = graph.input("group", spec.leaving_bits());
+    let records: Vec<_> = (0..spec.leaving())
+        .map(|lane| graph.input(&format!("record_{lane}"), entry_bits).extend(layout.contact_bits()))
+        .collect();
+    let all_out = graph.input("all_out", 1);
+    if layout.contacts_per_line() == 1 {
+        // A record is a line: there is nothing to gather.
+        let line_valid = graph.register("line_valid", 1, 0);
+        line_valid.next(!start & group);
+        graph.output("line_valid", line_valid.value());
+        graph.output("line", records[0].delay(1).named("line"));
+        graph.output("done", all_out & !*line_valid);
+    } else {
+        fill(&graph, spec, start, group, records, all_out);
+    }
+    graph.finish()
+}
+
+/// Packs the first `group` of `records` (as wide as in a line) behind those before them, as the outputs `line_valid`,
+/// `line` and `done`. At most as many as share a line come in one cycle. Once `all_out`, the line in hand goes out.
+fn fill<'g>(
+    graph: &'g Graph,
+    spec: &Spec,
+    start: Signal<'g>,
+    group: Signal<'g>,
+    mut records: Vec<Signal<'g>>,
+    all_out: Signal<'g>,
+) {
+    let layout = spec.layout();
+    let (lanes, record_bits, per_line) = (records.len() as u32, layout.contact_bits(), layout.contacts_per_line());
+    let place_bits = per_line.ilog2().max(1);
 
     // The line being filled, and a group shifted to the first free place in it.
     let filling = graph.register("filling", spec.line_bits, 0);
@@ -45,15 +99,12 @@ pub(super) fn packer(spec: &Spec) -> Result<Arc<Module>, Errors> {
         }
     }
     let merged = (filling.extend(shifted.width()) | shifted.named("shifted")).named("merged");
-    let sum_bits = place_bits.max(group_bits) + 1;
+    let sum_bits = place_bits.max(group.width()) + 1;
     let next_place = (place.extend(sum_bits) + group.extend(sum_bits)).named("next_place");
     let full = next_place.at_least(next_place.same(u128::from(per_line))).named("full");
     let over = if lanes == 1 { filling.same(0) } else { merged.drop_low(spec.line_bits).extend(spec.line_bits) };
 
-    // After the last pair the line in hand goes out as it is, its unused part zero.
-    let emerged = graph.register("emerged", COUNT_BITS, 0);
-    emerged.next(start.select(emerged.same(0), emerged.value() + group.extend(COUNT_BITS)));
-    let all_out = emerged.equals(count).named("all_out");
+    // After the last record the line in hand goes out as it is, its unused part zero.
     let flush = (all_out & place.any() & !group.any()).named("flush");
     let emptied = (start | flush).named("emptied");
     let kept = full.select(over, merged.low(spec.line_bits));
@@ -65,30 +116,4 @@ pub(super) fn packer(spec: &Spec) -> Result<Arc<Module>, Errors> {
     graph.output("line_valid", line_valid.value());
     graph.output("line", merged.low(spec.line_bits).delay(1).named("line"));
     graph.output("done", all_out & !place.any() & !*line_valid);
-
-    // Counters for the status.
-    let contact_count = graph.register("contact_count", COUNT_BITS, 0);
-    let invalid_count = graph.register("invalid_count", COUNT_BITS, 0);
-    let first_invalid = graph.register("first_invalid_pair", COUNT_BITS, u128::from(u32::MAX));
-    contact_count.next(start.select(contact_count.same(0), contact_count.value() + ones(&graph, &contacts)));
-    invalid_count.next(start.select(invalid_count.same(0), invalid_count.value() + ones(&graph, &invalids)));
-    let none_yet = !invalid_count.any();
-    let mut first = emerged.plus(u128::from(lanes - 1));
-    for lane in (0..lanes - 1).rev() {
-        first = invalids[lane as usize].select(emerged.plus(u128::from(lane)), first);
-    }
-    let some = invalids.iter().fold(graph.constant(1, 0), |any, bit| any | *bit).named("some_invalid");
-    let updated = (some & none_yet).select(first, *first_invalid);
-    first_invalid.next(start.select(first_invalid.same(u128::from(u32::MAX)), updated));
-    graph.output("contacts", contact_count.value());
-    graph.output("invalid", invalid_count.value());
-    graph.output("first_invalid", first_invalid.value());
-    graph.finish()
-}
-
-/// How many of the bits are set.
-fn ones<'g>(graph: &'g Graph, bits: &[Signal<'g>]) -> Signal<'g> {
-    let width = bits.len().ilog2() + 1;
-    let sum = bits.iter().fold(graph.constant(width, 0), |sum, bit| sum + bit.extend(width));
-    sum.extend(COUNT_BITS)
 }

@@ -39,7 +39,7 @@ pub(super) fn scpu(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>, Err
     let hit = kernel.output("hit").named("hit");
     let invalid = invalid.delay(latency).named("invalid_out");
     let record = if spec.config.contact == Fields::HIT {
-        hit
+        Some(hit).filter(|_| layout.result_bits() > 0)
     } else {
         let grazing = kernel.output("grazing").named("grazing");
         let flow = invalid.select(
@@ -53,9 +53,11 @@ pub(super) fn scpu(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>, Err
             .map(|word| CONTACT.get(word).map_or(flags, |name| kernel.output(name)))
             .collect();
         words.reverse();
-        Signal::join(&words).extend(layout.contact_bits())
+        Some(Signal::join(&words).extend(layout.result_bits()))
     };
-    graph.output("record", record);
+    if let Some(record) = record {
+        graph.output("record", record);
+    }
     graph.output("contact", hit);
     graph.output("invalid_pair", invalid);
     graph.finish()

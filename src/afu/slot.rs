@@ -43,7 +43,9 @@ pub(super) fn slot(spec: &Spec, scpu: &Arc<Module>) -> Result<Arc<Module>, Error
     for number in 0..lanes {
         let mine = out_lane.is(u128::from(number)) & out_group.greater_than(out_group.same(u128::from(number)));
         let mine = mine.delay(1).named(&format!("answers_lane_{number}"));
-        graph.output(&format!("record_{number}"), unit.output("record").gate(mine));
+        if layout.result_bits() > 0 {
+            graph.output(&format!("record_{number}"), unit.output("record").gate(mine));
+        }
         graph.output(&format!("contact_{number}"), unit.output("contact") & mine);
         graph.output(&format!("invalid_{number}"), unit.output("invalid_pair") & mine);
     }

@@ -3,7 +3,7 @@
 use crate::config::Config;
 use crate::hdl::Reset;
 
-use super::Layout;
+use super::{COUNT_BITS, Layout};
 
 /// Everything that decides the generated Verilog.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,8 +24,8 @@ pub enum SpecError {
     /// The configuration.
     #[error(transparent)]
     Config(#[from] crate::config::Error),
-    /// A line that holds no pair.
-    #[error("a line of {0} bits: use a power of two that holds a pair")]
+    /// A line that holds no record.
+    #[error("a line of {0} bits: use a power of two that holds a pair and a contact")]
     Line(u32),
     /// A number of requests that the tags cannot carry.
     #[error("{0} requests outstanding: use a power of two from 2 to 64")]
@@ -41,7 +41,7 @@ impl From<Config> for Spec {
 impl Spec {
     /// The record layout.
     pub fn layout(&self) -> Layout {
-        Layout::new(self.line_bits, self.config.contact)
+        Layout::of(self.line_bits, &self.config)
     }
 
     /// Pairs that can be handed to SCPUs in one cycle: those of one line.
@@ -54,11 +54,27 @@ impl Spec {
         self.lanes().ilog2() + 1
     }
 
+    /// Where only contacts come back: those that leave for their line in one cycle, at most.
+    pub(super) fn leaving(&self) -> u32 {
+        self.lanes().min(self.layout().contacts_per_line())
+    }
+
+    /// Bits that hold a number of contacts from none to [`Spec::leaving`].
+    pub(super) fn leaving_bits(&self) -> u32 {
+        self.leaving().ilog2() + 1
+    }
+
+    /// Bits of a contact with its number, without padding.
+    pub(super) fn entry_bits(&self) -> u32 {
+        COUNT_BITS + self.layout().result_bits()
+    }
+
     /// # Errors
     /// The first value out of range.
     pub fn check(&self) -> Result<(), SpecError> {
         self.config.check()?;
-        if !self.line_bits.is_power_of_two() || self.line_bits < self.layout().pair_bits() {
+        let layout = self.layout();
+        if !self.line_bits.is_power_of_two() || self.line_bits < layout.pair_bits().max(layout.contact_bits()) {
             return Err(SpecError::Line(self.line_bits));
         }
         if !self.max_outstanding.is_power_of_two() || !(2..=64).contains(&self.max_outstanding) {

@@ -2,34 +2,31 @@
 
 use std::sync::Arc;
 
+use crate::config::Results;
 use crate::hdl::{Errors, Graph, Module, Signal};
 
 use super::control::{MODE_BITS, control, room_bits};
+use super::results::{Parts, Room};
 use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, MAX_SCPUS, SCPU_BITS, Spec};
-use super::{collector, dispatcher, feeder, packer, scpu, slot};
+use super::{collector, dispatcher, feeder, scpu, slot};
 
 /// Register ranks round the slots: results are registered after they were or-ed together.
 pub(super) const RANKS_AFTER: u32 = 1;
-/// Cycles a result spends between the SCPUs and its write request, and some to ride out a stall of the link.
-const CYCLES_IN_DISPATCH: u32 = 16;
-/// Lines the dispatcher keeps at least.
-const LEAST_LINES: u32 = 16;
 
 /// The top over the plain line port.
 pub(super) fn line_top(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>, Errors> {
-    let layout = spec.layout();
     let (lanes, group_bits) = (spec.lanes(), spec.group_bits());
     let slot_latency = slot::latency(kernel.latency);
-    let in_flight = (slot_latency + CYCLES_IN_DISPATCH) * lanes;
-    let depth = (in_flight.div_ceil(layout.contacts_per_line()) + LEAST_LINES / 2).next_power_of_two().max(LEAST_LINES);
-    let capacity = depth * layout.contacts_per_line();
+    let has_records = spec.layout().result_bits() > 0;
+    let only_hits = spec.config.results == Results::Hits;
+    let places = Room::of(spec, slot_latency);
 
-    let control = control(spec, capacity)?;
+    let control = control(spec, places.results)?;
     let collector = collector::collector(spec)?;
-    let feeder = feeder::feeder(spec, room_bits(capacity))?;
+    let feeder = feeder::feeder(spec, room_bits(places.results))?;
     let slot = slot::slot(spec, &scpu::scpu(spec, kernel)?)?;
-    let packer = packer::packer(spec)?;
-    let dispatcher = dispatcher::dispatcher(spec, depth)?;
+    let results = Parts::new(spec, places)?;
+    let dispatcher = dispatcher::dispatcher(spec, places.lines)?;
 
     let graph = Graph::new("contact_afu");
     graph.about("collision-detection accelerator: a controller and SCPUS sphere collision processing units");
@@ -39,6 +36,7 @@ pub(super) fn line_top(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>,
     let start = graph.input("start", 1);
     let source = graph.input("source", ADDRESS_BITS);
     let destination = graph.input("destination", ADDRESS_BITS);
+    let destination_lines = only_hits.then(|| graph.input("destination_lines", COUNT_BITS));
     let count = graph.input("count", COUNT_BITS);
     let mode = graph.input("mode", MODE_BITS);
     let epoch = graph.input("epoch", EPOCH_BITS);
@@ -60,34 +58,39 @@ pub(super) fn line_top(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>,
     let (response, link_idle, asking) = (wire("response", 1), wire("link_idle", 1), wire("asking", 1));
     let (packed, dispatched) = (wire("packer_done", 1), wire("dispatched", 1));
     let (entered, emerged) = (wire("entered", group_bits), wire("emerged", group_bits));
-    let (line_left, take) = (wire("line_left", 1), wire("take_line", 1));
+    let (line_left, take) = if only_hits {
+        (wire("places_free_again", group_bits + 1), wire("take_line", 1))
+    } else {
+        (wire("line_left", 1), wire("take_line", 1))
+    };
+    let accepts = only_hits.then(|| wire("dispatcher_accepts", 1));
+    let overflowed = only_hits.then(|| wire("overflowed", 1));
     let (waits_for_input, waits_for_output) = (wire("waits_for_input", 1), wire("waits_for_output", 1));
-    let control = graph.instance(
-        "control",
-        &control,
-        &[
-            ("start", start),
-            ("source", source),
-            ("destination", destination),
-            ("count", count),
-            ("mode", mode),
-            ("epoch", epoch),
-            ("watchdog", watchdog),
-            ("abort_job", abort),
-            ("read_failed", read_failed),
-            ("write_failed", write_failed),
-            ("response", response),
-            ("link_idle", link_idle),
-            ("asking", asking),
-            ("packer_done", packed),
-            ("dispatched", dispatched),
-            ("entered", entered),
-            ("emerged", emerged),
-            ("line_left", line_left),
-            ("waits_for_input", waits_for_input),
-            ("waits_for_output", waits_for_output),
-        ],
-    );
+    let mut control_inputs = vec![
+        ("start", start),
+        ("source", source),
+        ("destination", destination),
+        ("count", count),
+        ("mode", mode),
+        ("epoch", epoch),
+        ("watchdog", watchdog),
+        ("abort_job", abort),
+        ("read_failed", read_failed),
+        ("write_failed", write_failed),
+        ("response", response),
+        ("link_idle", link_idle),
+        ("asking", asking),
+        ("packer_done", packed),
+        ("dispatched", dispatched),
+        ("entered", entered),
+        ("emerged", emerged),
+        (if only_hits { "places_freed" } else { "line_left" }, line_left),
+        ("waits_for_input", waits_for_input),
+        ("waits_for_output", waits_for_output),
+    ];
+    control_inputs.extend(destination_lines.map(|lines| ("destination_lines", lines)));
+    control_inputs.extend(overflowed.map(|overflowed| ("overflowed", overflowed)));
+    let control = graph.instance("control", &control, &control_inputs);
     let begin = control.output("begin_job");
     let run = control.output("run");
     let job_epoch = control.output("job_epoch");
@@ -146,29 +149,31 @@ pub(super) fn line_top(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>,
     );
     // The slots' answers come a cycle after `group_out`, and are registered once more after the or.
     let group_done = register(&graph, "group_done", register(&graph, "group_answered", group_out));
-    let lane_outputs: Vec<String> =
-        (0..lanes).flat_map(|lane| ["record", "contact", "invalid"].map(|what| format!("{what}_{lane}"))).collect();
-    let mut packer_inputs = vec![("start", begin), ("count", job_count), ("group", group_done)];
-    for name in &lane_outputs {
-        packer_inputs.push((name, slots.output(name).delay(RANKS_AFTER)));
+    let kinds = ["record", "contact", "invalid"].into_iter().filter(|kind| has_records || *kind != "record");
+    let lane_outputs: Vec<(String, Signal<'_>)> = (0..lanes)
+        .flat_map(|lane| kinds.clone().map(move |what| format!("{what}_{lane}")))
+        .map(|name| (name.clone(), slots.output(&name).delay(RANKS_AFTER)))
+        .collect();
+    let packed_results = results.instances(&graph, [begin, job_count, group_done], &lane_outputs, accepts);
+    let packer = packed_results.packer;
+    let mut dispatcher_inputs = vec![
+        ("start", begin),
+        ("run", run),
+        ("destination", control.output("job_destination")),
+        ("epoch", job_epoch),
+        ("line_valid", packer.output("line_valid")),
+        ("line", packer.output("line")),
+        ("wr_req_ready", wr_req_ready),
+        ("wr_rsp_valid", wr_rsp_valid),
+        ("wr_rsp_tag", wr_rsp_tag),
+        ("wr_rsp_error", wr_rsp_error),
+    ];
+    if only_hits {
+        dispatcher_inputs.push(("lines", control.output("job_destination_lines")));
     }
-    let packer = graph.instance("packer", &packer, &packer_inputs);
-    let dispatcher = graph.instance(
-        "dispatcher",
-        &dispatcher,
-        &[
-            ("start", begin),
-            ("run", run),
-            ("destination", control.output("job_destination")),
-            ("epoch", job_epoch),
-            ("line_valid", packer.output("line_valid")),
-            ("line", packer.output("line")),
-            ("wr_req_ready", wr_req_ready),
-            ("wr_rsp_valid", wr_rsp_valid),
-            ("wr_rsp_tag", wr_rsp_tag),
-            ("wr_rsp_error", wr_rsp_error),
-        ],
-    );
+    let dispatcher = graph.instance("dispatcher", &dispatcher, &dispatcher_inputs);
+    accepts.into_iter().for_each(|wire| wire.drive(dispatcher.output("accepts")));
+    overflowed.into_iter().for_each(|wire| wire.drive(dispatcher.output("overflowed")));
     read_failed.drive(collector.output("failed"));
     write_failed.drive(dispatcher.output("failed"));
     response.drive(collector.output("response") | dispatcher.output("response"));
@@ -177,13 +182,13 @@ pub(super) fn line_top(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>,
     packed.drive(packer.output("done"));
     dispatched.drive(dispatcher.output("empty"));
     emerged.drive(group_done);
-    line_left.drive(dispatcher.output("take"));
+    line_left.drive(packed_results.places_freed.unwrap_or_else(|| dispatcher.output("take")));
 
     for name in ["busy", "done", "error"] {
         graph.output(name, control.output(name));
     }
     for name in ["contacts", "invalid", "first_invalid"] {
-        graph.output(name, packer.output(name));
+        graph.output(name, packed_results.status.output(name));
     }
     for name in ["cycles_busy", "cycles_input", "cycles_output"] {
         graph.output(name, control.output(name));
@@ -219,15 +224,16 @@ fn alongside<'g>(graph: &'g Graph, group: Signal<'g>, turn: Signal<'g>, latency:
 }
 
 /// What the host may rely on: bits 7:0 SCPUs, 15:8 interval, 19:16 contact fields (hit, depth, normal, position from
-/// bit 16 up), 43:32 latency of an SCPU in cycles; the others are zero.
+/// bit 16 up), 24 set where only contacts come back, 43:32 latency of an SCPU in cycles; the others are zero.
 fn capability<'g>(graph: &'g Graph, spec: &Spec, scpus: Signal<'g>, latency: u32) -> Signal<'g> {
     let fields = spec.config.contact;
     let asked = [fields.position, fields.normal, fields.depth, true];
     let mask = asked.into_iter().fold(0, |mask, bit| mask << 1 | u128::from(bit));
+    let only_hits = u128::from(spec.config.results == Results::Hits);
     let constant = |width, value| graph.constant(width, value);
     Signal::join(&[
         constant(32, u128::from(latency.min(0xfff))),
-        constant(16, mask),
+        constant(16, only_hits << 8 | mask),
         constant(8, u128::from(spec.config.interval.min(0xff))),
         scpus.extend(8),
     ])

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::monitor::ProtocolError;
+use crate::config::Results;
 use crate::cosim::error::SimulationError;
 
 /// Why a job has no outcome.
@@ -26,6 +27,14 @@ pub enum DriveError {
         expected: u32,
         /// As the AFU says.
         found: u32,
+    },
+    /// The AFU gives other results than the job expects.
+    #[error("expected an AFU that gives {expected} results, this one gives {found}")]
+    Results {
+        /// As the job wants it.
+        expected: Results,
+        /// As the AFU says.
+        found: Results,
     },
     /// The job does not fit in memory.
     #[error("the job does not fit: {0}")]

@@ -5,6 +5,7 @@ use std::ops::Range;
 use super::error::DriveError;
 use super::ports::Ports;
 use crate::afu::JobError;
+use crate::config::Results;
 use crate::link::{LINE_BYTES, Line, Link, Memory, Replies, Requests, Traffic};
 
 /// Where sources lie unless the job says otherwise: a line address.
@@ -19,11 +20,14 @@ pub struct Capability {
     pub scpus: u32,
     /// Cycles from one pair to the next in an SCPU.
     pub interval: u32,
+    /// Which pairs come back.
+    pub results: Results,
 }
 
 impl Capability {
     pub(super) fn from_bits(bits: u64) -> Self {
-        Self { scpus: (bits & 0xff) as u32, interval: (bits >> 8 & 0xff) as u32 }
+        let results = if bits >> 24 & 1 == 1 { Results::Hits } else { Results::All };
+        Self { scpus: (bits & 0xff) as u32, interval: (bits >> 8 & 0xff) as u32, results }
     }
 }
 
@@ -34,8 +38,11 @@ pub struct Job<'a> {
     pub source: &'a [Line],
     /// Pairs in them.
     pub pairs: u32,
-    /// Lines that the results take.
+    /// Lines that the results take; where only contacts come back, lines there is room for.
     pub destination_lines: u64,
+    /// Contacts a destination line, where only contacts come back: the AFU must then write as many lines as its contacts
+    /// take. Without it, it must write every destination line.
+    pub hits_per_line: Option<u32>,
     /// Line address of the first source line.
     pub source_address: u64,
     /// Line address of the first destination line.
@@ -57,6 +64,7 @@ impl<'a> Job<'a> {
             source,
             pairs,
             destination_lines,
+            hits_per_line: None,
             source_address: SOURCE,
             destination_address: DESTINATION,
             mode: 0,
@@ -143,6 +151,7 @@ impl Outcome {
             2 => Some(JobError::Read),
             3 => Some(JobError::Write),
             4 => Some(JobError::Watchdog),
+            6 => Some(JobError::Overflow),
             8 => Some(JobError::Room),
             _ => Some(JobError::Mode),
         }
@@ -158,6 +167,7 @@ impl Outcome {
 #[derive(Clone, Debug)]
 pub(super) struct Running {
     destination: Range<u64>,
+    hits_per_line: Option<u32>,
     /// Cycles without a sign of life after which it is given up.
     pub(super) patience: u64,
     pub(super) max_cycles: Option<u64>,
@@ -175,6 +185,7 @@ impl Running {
     pub(super) fn new(job: &Job, patience: u64, cycle: u64, traffic: Traffic) -> Self {
         Self {
             destination: job.destination_range(),
+            hits_per_line: job.hits_per_line,
             patience,
             max_cycles: job.max_cycles,
             started: cycle,
@@ -183,6 +194,17 @@ impl Running {
             first_data: None,
             first_write: None,
             write_cycles: vec![None; usize::try_from(job.destination_lines).unwrap_or(0)],
+        }
+    }
+
+    /// The first line address that a job with so many contacts must leave unwritten.
+    pub(super) fn end(&self, contacts: u32) -> u64 {
+        match self.hits_per_line {
+            None => self.destination.end,
+            Some(per_line) => {
+                let lines = u64::from(contacts).div_ceil(u64::from(per_line.max(1)));
+                self.destination.start.saturating_add(lines).min(self.destination.end)
+            }
         }
     }
 

@@ -13,6 +13,7 @@ pub use job::{Capability, Job, Outcome};
 pub use monitor::ProtocolError;
 
 use super::instance::{Clock, Instance};
+use crate::config::Results;
 use crate::link::{Link, Traffic};
 use job::Running;
 use monitor::Monitor;
@@ -106,9 +107,13 @@ impl<'a> Driver<'a> {
     /// # Errors
     /// When the AFU is not the one that was expected or is busy, or as in [`Driver::step`].
     pub fn start(&mut self, job: &Job) -> Result<(), DriveError> {
-        let found = self.capability().scpus;
+        let Capability { scpus: found, results, .. } = self.capability();
         if let Some(expected) = job.scpus.filter(|&expected| expected != found) {
             return Err(DriveError::Scpus { expected, found });
+        }
+        let expected = if job.hits_per_line.is_some() { Results::Hits } else { Results::All };
+        if expected != results {
+            return Err(DriveError::Results { expected, found: results });
         }
         if self.ports.is_busy() {
             return Err(DriveError::Busy);
@@ -131,8 +136,9 @@ impl<'a> Driver<'a> {
     /// When the AFU breaks the protocol, gives no sign of life for longer than the link could explain, or ends itself.
     pub fn step(&mut self) -> Result<bool, DriveError> {
         if self.ports.is_done() {
-            let error = self.ports.error();
-            self.monitor.at_done(self.cycle, error, self.ports.is_busy(), &self.link.memory)?;
+            let (error, contacts) = (self.ports.error(), self.ports.counters().contacts);
+            let end = self.running.as_ref().map_or(0, |running| running.end(contacts));
+            self.monitor.at_done(self.cycle, error, self.ports.is_busy(), &self.link.memory, end)?;
             return Ok(true);
         }
         self.cycle_once()?;

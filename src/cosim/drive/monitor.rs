@@ -9,6 +9,8 @@ const SLOT_BITS: u32 = 6;
 
 /// The error code with which an AFU ends that will not wait for a lost response.
 const WATCHDOG: u8 = 4;
+/// The error code with which an AFU ends that found more contacts than there is room for.
+const OVERFLOW: u8 = 6;
 
 /// How an AFU broke the protocol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -233,8 +235,15 @@ impl Monitor {
         Ok(())
     }
 
-    /// Checks the end of a job.
-    pub(super) fn at_done(&self, cycle: u64, error: u8, busy: bool, memory: &Memory) -> Result<(), DriveError> {
+    /// Checks the end of a job that had to write its destination up to the line address `end`.
+    pub(super) fn at_done(
+        &self,
+        cycle: u64,
+        error: u8,
+        busy: bool,
+        memory: &Memory,
+        end: u64,
+    ) -> Result<(), DriveError> {
         let fail = |what| Err(DriveError::Protocol { cycle, what });
         if busy {
             return fail(ProtocolError::DoneAndBusy);
@@ -244,7 +253,7 @@ impl Monitor {
             return fail(ProtocolError::DoneEarly { reads, writes });
         }
         match memory.first_unwritten() {
-            Some(address) if error == 0 => fail(ProtocolError::Unwritten(address)),
+            Some(address) if matches!(error, 0 | OVERFLOW) && address < end => fail(ProtocolError::Unwritten(address)),
             _ => Ok(()),
         }
     }

@@ -14,6 +14,8 @@ pub(super) struct Ports<'a> {
     start: Port<'a>,
     source: Port<'a>,
     destination: Port<'a>,
+    /// Only where only contacts come back.
+    destination_lines: Option<Port<'a>>,
     count: Port<'a>,
     mode: Port<'a>,
     epoch: Port<'a>,
@@ -67,6 +69,7 @@ impl<'a> Ports<'a> {
             start: afu.input("start", 1)?,
             source: afu.input("source", 58)?,
             destination: afu.input("destination", 58)?,
+            destination_lines: optional(afu, "destination_lines", 32)?,
             count: afu.input("count", 32)?,
             mode: afu.input("mode", 4)?,
             epoch: afu.input("epoch", 4)?,
@@ -114,6 +117,9 @@ impl<'a> Ports<'a> {
     pub(super) fn start(&self, job: &Job, epoch: u8) {
         self.source.set(job.source_address);
         self.destination.set(job.destination_address);
+        if let Some(port) = self.destination_lines {
+            port.set(job.destination_lines.min(u64::from(u32::MAX)));
+        }
         self.count.set(job.pairs.into());
         self.mode.set(job.mode.into());
         self.epoch.set(epoch.into());
@@ -125,6 +131,9 @@ impl<'a> Ports<'a> {
     /// Takes `start` back, and everything that needs to be right only with it.
     pub(super) fn started(&self) {
         for port in [self.start, self.source, self.destination, self.count, self.mode, self.epoch, self.watchdog] {
+            port.set(0);
+        }
+        if let Some(port) = self.destination_lines {
             port.set(0);
         }
     }
@@ -192,4 +201,9 @@ impl<'a> Ports<'a> {
             self.wr_rsp_error.set(write.error.into());
         }
     }
+}
+
+/// An input that not every AFU has.
+fn optional<'a>(afu: &'a Instance, name: &str, bits: u32) -> Result<Option<Port<'a>>, SimulationError> {
+    if afu.has_port(name) { afu.input(name, bits).map(Some) } else { Ok(None) }
 }

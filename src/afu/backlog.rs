@@ -1,0 +1,94 @@
+//! The backlog: contacts between the sieve, which may find as many a cycle as there are lanes, and the packer, which
+//! takes no more than a line holds. It cannot overflow: a pair enters an SCPU only when there is a place here for its
+//! contact.
+
+use std::sync::Arc;
+
+use crate::hdl::{Errors, Graph, Module, Signal};
+
+use super::Spec;
+
+/// Builds the module `contact_afu_backlog` with `places` (a power of two) places, in a bank a lane: what comes in one
+/// cycle goes to as many banks, and so does what leaves.
+pub(super) fn backlog(spec: &Spec, places: u32) -> Result<Arc<Module>, Errors> {
+    let graph = Graph::new("contact_afu_backlog");
+    graph.about("keeps contacts, in their order, until the packer takes them");
+    let (lanes, leaving, entry_bits) = (spec.lanes(), spec.leaving(), spec.entry_bits());
+    let place_bits = places.ilog2();
+    let count_bits = place_bits + 1;
+
+    let start = graph.input("start", 1);
+    let put = graph.input("put", spec.group_bits());
+    let entries: Vec<_> = (0..lanes).map(|lane| graph.input(&format!("entry_{lane}"), entry_bits)).collect();
+    let may_leave = graph.input("may_leave", 1);
+
+    let tail = graph.register("tail", place_bits, 0);
+    let head = graph.register("head", place_bits, 0);
+    let stored = graph.register("stored", count_bits, 0);
+    // What stood in a bank a cycle ago: what its registered read has.
+    let readable = graph.register("readable", count_bits, 0);
+
+    let many = readable.at_least(readable.same(u128::from(leaving)));
+    let leaving_bits = spec.leaving_bits();
+    let most = graph.constant(leaving_bits, u128::from(leaving));
+    let group = many.select(most, readable.low(leaving_bits)).gate(may_leave).named("leaving");
+    let left = (stored.value() - group.extend(count_bits)).named("left");
+    stored.next(start.select(stored.same(0), left + put.extend(count_bits)));
+    readable.next(start.select(readable.same(0), left));
+    tail.next(start.select(tail.same(0), tail.value() + put.extend(place_bits)));
+    let next_head = (head.value() + group.extend(place_bits)).named("next_head");
+    head.next(start.select(head.same(0), next_head));
+
+    // Contact j goes to bank (tail + j) mod lanes; contact j of those that leave is in bank (head + j) mod lanes.
+    let arriving =
+        entries.iter().zip(0..).map(|(entry, lane)| put.greater_than(put.same(lane)).concat(*entry)).collect();
+    let arriving = rotate(arriving, tail.value(), Turn::Up);
+    let mut read = Vec::new();
+    for (bank, entry) in (0..lanes).zip(arriving) {
+        let store = graph.memory(&format!("bank_{bank}"), places / lanes, entry_bits);
+        store.write(entry.msb(), row(tail.value(), bank, lanes), entry.low(entry_bits));
+        read.push(store.read(row(next_head, bank, lanes)).named(&format!("oldest_{bank}")));
+    }
+    let leaves = rotate(read, head.value(), Turn::Down);
+
+    let group_out = graph.register("group_out", leaving_bits, 0);
+    group_out.next(group.gate(!start));
+    graph.output("group", group_out.value());
+    for (lane, entry) in leaves.into_iter().take(leaving as usize).enumerate() {
+        graph.output(&format!("record_{lane}"), entry.delay(1).named(&format!("leaving_{lane}")));
+    }
+    graph.output("empty", !stored.any() & !group_out.any());
+    graph.finish()
+}
+
+enum Turn {
+    /// Entry j to place j + by.
+    Up,
+    /// Entry j + by to place j.
+    Down,
+}
+
+/// Turns a row of a power of two entries by the low bits of `by`.
+fn rotate<'g>(mut row: Vec<Signal<'g>>, by: Signal<'g>, turn: Turn) -> Vec<Signal<'g>> {
+    let lanes = row.len();
+    for bit in 0..lanes.ilog2() {
+        let step = 1 << bit;
+        let from = |lane: usize| match turn {
+            Turn::Up => (lane + lanes - step) % lanes,
+            Turn::Down => (lane + step) % lanes,
+        };
+        row = (0..lanes).map(|lane| by.bit(bit).select(row[from(lane)], row[lane])).collect();
+    }
+    row
+}
+
+/// The row of a bank in which the first place from `place` on that is in it lies.
+fn row<'g>(place: Signal<'g>, bank: u32, lanes: u32) -> Signal<'g> {
+    let bank_bits = lanes.ilog2();
+    let row = place.drop_low(bank_bits);
+    if bank + 1 == lanes {
+        return row; // It is the last bank of its row whatever `place` is.
+    }
+    let passed = place.low(bank_bits);
+    row + passed.greater_than(passed.same(u128::from(bank))).extend(row.width())
+}

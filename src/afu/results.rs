@@ -1,0 +1,98 @@
+//! From the slots' results to the dispatcher: what keeps them, numbers them and packs them into lines.
+
+use std::sync::Arc;
+
+use crate::config::Results;
+use crate::hdl::{Errors, Graph, Instantiated, Module, Signal};
+
+use super::{Spec, backlog, packer, sieve};
+
+/// Cycles a result spends between the SCPUs and its write request, and some to ride out a stall of the link.
+const CYCLES_IN_DISPATCH: u32 = 16;
+/// Lines the dispatcher keeps at least.
+const LEAST_LINES: u32 = 16;
+
+/// How much there is room for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Room {
+    /// Results, from a pair's entrance on: in the dispatcher's lines, or in the backlog.
+    pub(super) results: u32,
+    /// Lines that the dispatcher keeps.
+    pub(super) lines: u32,
+}
+
+impl Room {
+    /// Enough for every pair on its way through SCPUs of this latency.
+    pub(super) fn of(spec: &Spec, slot_latency: u32) -> Self {
+        let layout = spec.layout();
+        let in_flight = (slot_latency + CYCLES_IN_DISPATCH) * spec.lanes();
+        match spec.config.results {
+            Results::All => {
+                let lines = in_flight.div_ceil(layout.contacts_per_line()) + LEAST_LINES / 2;
+                let lines = lines.next_power_of_two().max(LEAST_LINES);
+                Self { results: lines * layout.contacts_per_line(), lines }
+            }
+            Results::Hits => Self { results: in_flight.next_power_of_two(), lines: LEAST_LINES },
+        }
+    }
+}
+
+/// The modules.
+pub(super) struct Parts {
+    packer: Arc<Module>,
+    before: Option<[Arc<Module>; 2]>,
+}
+
+/// Their instances, as far as others hear of them.
+pub(super) struct Packed<'g> {
+    /// Gives lines, and says when the last has gone.
+    pub(super) packer: Instantiated<'g>,
+    /// Has the counts of the status.
+    pub(super) status: Instantiated<'g>,
+    /// Places that are free again, where only contacts come back.
+    pub(super) places_freed: Option<Signal<'g>>,
+}
+
+impl Parts {
+    pub(super) fn new(spec: &Spec, room: Room) -> Result<Self, Errors> {
+        let before = match spec.config.results {
+            Results::All => None,
+            Results::Hits => Some([sieve::sieve(spec)?, backlog::backlog(spec, room.results)?]),
+        };
+        Ok(Self { packer: packer::packer(spec)?, before })
+    }
+
+    /// The instances. `lanes` has the slots' outputs by name; `accepts` is high while the dispatcher has room for more.
+    pub(super) fn instances<'g>(
+        &self,
+        graph: &'g Graph,
+        [begin, count, group]: [Signal<'g>; 3],
+        lanes: &[(String, Signal<'g>)],
+        accepts: Option<Signal<'g>>,
+    ) -> Packed<'g> {
+        let mut inputs = vec![("start", begin), ("count", count), ("group", group)];
+        inputs.extend(lanes.iter().map(|(name, signal)| (name.as_str(), *signal)));
+        let (Some([sieve, backlog]), Some(accepts)) = (&self.before, accepts) else {
+            let packer = graph.instance("packer", &self.packer, &inputs);
+            return Packed { status: packer.clone(), packer, places_freed: None };
+        };
+        let outputs = |module: &Module, kind: &str| -> Vec<String> {
+            let ports = module.ports.iter().filter(|port| port.output && port.name.starts_with(kind));
+            ports.map(|port| port.name.clone()).collect()
+        };
+        let sieve_out = graph.instance("sieve", sieve, &inputs);
+        let entries = outputs(sieve, "entry_");
+        let mut inputs = vec![("start", begin), ("put", sieve_out.output("put")), ("may_leave", accepts)];
+        inputs.extend(entries.iter().map(|name| (name.as_str(), sieve_out.output(name))));
+        let backlog_out = graph.instance("backlog", backlog, &inputs);
+        let records = outputs(backlog, "record_");
+        let all_out = (sieve_out.output("all_out") & backlog_out.output("empty")).named("all_out");
+        let mut inputs = vec![("start", begin), ("group", backlog_out.output("group")), ("all_out", all_out)];
+        inputs.extend(records.iter().map(|name| (name.as_str(), backlog_out.output(name))));
+        let packer = graph.instance("packer", &self.packer, &inputs);
+        let dropped = sieve_out.output("dropped");
+        let width = dropped.width() + 1;
+        let freed = (dropped.extend(width) + backlog_out.output("group").extend(width)).named("places_freed");
+        Packed { packer, status: sieve_out, places_freed: Some(freed) }
+    }
+}

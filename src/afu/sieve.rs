@@ -1,0 +1,103 @@
+//! The sieve: where only contacts come back, gives each its pair's number and moves those of a cycle together, in their
+//! order; counts contacts and invalid pairs.
+
+use std::sync::Arc;
+
+use crate::hdl::{Errors, Graph, Module, Signal};
+
+use super::{COUNT_BITS, Spec, status};
+
+/// A contact on its way to the lanes before it.
+#[derive(Clone, Copy)]
+struct Lane<'g> {
+    valid: Signal<'g>,
+    /// Lanes it has still to move.
+    distance: Signal<'g>,
+    entry: Signal<'g>,
+}
+
+/// Register ranks: one after each step of the compaction, at least one.
+pub(super) fn ranks(lanes: u32) -> u32 {
+    lanes.ilog2().max(1)
+}
+
+/// Builds the module `contact_afu_sieve`.
+pub(super) fn sieve(spec: &Spec) -> Result<Arc<Module>, Errors> {
+    let graph = Graph::new("contact_afu_sieve");
+    graph.about("numbers contacts, moves those of a cycle together, counts contacts and invalid pairs");
+    let (lanes, group_bits, result_bits) = (spec.lanes(), spec.group_bits(), spec.layout().result_bits());
+
+    let start = graph.input("start", 1);
+    let count = graph.input("count", COUNT_BITS);
+    let group = graph.input("group", group_bits);
+    let mut records = Vec::new();
+    let mut contacts = Vec::new();
+    let mut invalids = Vec::new();
+    for lane in 0..lanes {
+        if result_bits > 0 {
+            records.push(graph.input(&format!("record_{lane}"), result_bits));
+        }
+        contacts.push(graph.input(&format!("contact_{lane}"), 1));
+        invalids.push(graph.input(&format!("invalid_{lane}"), 1));
+    }
+    let emerged = graph.register("emerged", COUNT_BITS, 0);
+    emerged.next(start.select(emerged.same(0), emerged.value() + group.extend(COUNT_BITS)));
+
+    // Each contact moves up by the number of lanes before it without one.
+    let steps = lanes.ilog2();
+    let distance_bits = steps.max(1);
+    let mut distance = graph.constant(distance_bits, 0);
+    let mut hits = graph.constant(group_bits, 0);
+    let mut row = Vec::new();
+    for lane in 0..lanes {
+        let index = lane as usize;
+        let number = emerged.plus(u128::from(lane)).named(&format!("number_{lane}"));
+        let entry = records.get(index).map_or(number, |record| record.concat(number));
+        row.push(Lane { valid: contacts[index], distance, entry });
+        distance = (distance + (!contacts[index]).extend(distance_bits)).named(&format!("gaps_to_{lane}"));
+        hits = (hits + contacts[index].extend(group_bits)).named(&format!("hits_to_{lane}"));
+    }
+    // The lowest bit of all distances first: then no contact moves onto another.
+    for step in 0..steps {
+        row = (0..row.len()).map(|lane| moved(&row, lane, step)).collect();
+    }
+    if steps == 0 {
+        row[0].entry = row[0].entry.delay(1);
+    }
+
+    // How many contacts there are travels beside them; how many pairs were none is known at once.
+    let mut put = hits;
+    let mut on_its_way = graph.constant(1, 0);
+    for rank in 0..ranks(lanes) {
+        let register = graph.register(&format!("hits_rank_{rank}"), group_bits, 0);
+        register.next(put.gate(!start));
+        put = register.value();
+        on_its_way = on_its_way | put.any();
+    }
+    let dropped = graph.register("dropped_pairs", group_bits, 0);
+    dropped.next((group - hits).gate(!start));
+    graph.output("put", put);
+    for (lane, contact) in row.iter().enumerate() {
+        graph.output(&format!("entry_{lane}"), contact.entry);
+    }
+    graph.output("dropped", dropped.value());
+    graph.output("all_out", emerged.equals(count) & !on_its_way);
+    status::count(&graph, start, *emerged, &contacts, &invalids);
+    graph.finish()
+}
+
+/// What is in a lane after a step of the compaction: the contact `2^step` lanes on if it moves that far, else the lane's
+/// own if it stays.
+fn moved<'g>(row: &[Lane<'g>], lane: usize, step: u32) -> Lane<'g> {
+    let own = row[lane];
+    let stays = own.valid & !own.distance.bit(step);
+    let (valid, distance, entry) = match row.get(lane + (1 << step)) {
+        None => (stays, own.distance, own.entry),
+        Some(other) => {
+            let comes = (other.valid & other.distance.bit(step)).named(&format!("comes_to_{lane}_in_{step}"));
+            let of = |other, own| comes.select(other, own);
+            (comes | stays, of(other.distance, own.distance), of(other.entry, own.entry))
+        }
+    };
+    Lane { valid: valid.delay(1), distance: distance.delay(1), entry: entry.delay(1) }
+}
