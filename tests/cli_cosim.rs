@@ -93,6 +93,27 @@ fn wrong_options_are_exit_2_before_anything_is_built() {
     }
 }
 
+/// Rows and bytes of contacts alone.
+#[test]
+fn hits_come_back_with_their_numbers() {
+    let room = room();
+    let csv = "x1,y1,z1,r1,x2,y2,z2,r2\n0,0,0,0.5,2,0,0,0.5\n0,0,0,0.5,1,0,0,0.5\nNaN,0,0,1,0,0,0,1\n3,4,5,1,3,4,5,2\n";
+    fs::write(room.path().join("four.csv"), csv).expect("written");
+    let arguments = ["cosim", "--results", "hits", "--pairs", "four.csv", "--json", "out.json", "--contacts"];
+    afu(room.path(), &[&arguments[..], &["out.csv"]].concat()).success();
+    let report = json(room.path(), "out.json");
+    assert_eq!(report["flows"], serde_json::json!({"fake": 1, "grazing": 1, "real": 1, "invalid": 1}));
+    assert_eq!((&report["pairs"], &report["contacts"], &report["mismatches"]), (&4.into(), &2.into(), &0.into()));
+    assert_eq!((&report["config"]["results"], &report["link"]["bytes_written"]), (&"hits".into(), &128.into()));
+    let contacts = fs::read_to_string(room.path().join("out.csv")).expect("written");
+    let rows: Vec<&str> = contacts.lines().skip(1).collect();
+    assert_eq!(rows, ["1,real,0.5,0,0,-1,0,0,0,0", "3,grazing,3,4,5,1,0,0,3,0"]);
+    afu(room.path(), &[&arguments[..], &["out.npy"]].concat()).success();
+    let bytes = fs::read(room.path().join("out.npy")).expect("written");
+    assert!(String::from_utf8_lossy(&bytes).contains("(2, 9)"));
+    assert_eq!(bytes[bytes.len() - 72..][..4], [1, 0, 0, 0]);
+}
+
 #[test]
 fn pairs_come_back_as_contacts_and_figures() {
     let room = room();

@@ -52,6 +52,34 @@ fn contacts_survive_both_formats() {
 }
 
 #[test]
+fn hits_survive_both_formats_with_their_numbers() {
+    let folder = folder();
+    let all = Reference::new(Format::WIDE, Fields::ALL).run_all(&Set::Random(5_000).pairs(4));
+    let hits: Vec<_> = (0..).zip(all).filter(|(_, contact)| contact.is_contact()).collect();
+    assert!(hits.len() > 1_000);
+    for (expected, name) in [(&hits[..], "hits.csv"), (&hits, "hits.npy"), (&[], "none.csv"), (&[], "none.npy")] {
+        let file = folder.path().join(name);
+        pairs::write_hits(&file, expected).unwrap();
+        assert_eq!(pairs::read_hits(&file).unwrap(), expected);
+    }
+    let text = fs::read_to_string(folder.path().join("hits.csv")).unwrap();
+    assert_eq!(text.lines().nth(1).unwrap().split(',').next(), Some(hits[0].0.to_string().as_str()));
+    // Nine words a record, the number first: an array that numpy reads.
+    let bytes = fs::read(folder.path().join("hits.npy")).unwrap();
+    let header = String::from_utf8_lossy(&bytes[..128]).into_owned();
+    assert!(header.contains("'<u4'") && header.contains(&format!("({}, 9)", hits.len())), "{header}");
+    let data = &bytes[bytes.len() - 36 * hits.len()..];
+    assert_eq!(data[..4], hits[0].0.to_le_bytes());
+    // Another order is somebody's mistake.
+    for name in ["hits.csv", "hits.npy"] {
+        let file = folder.path().join(name);
+        pairs::write_hits(&file, &[hits[1], hits[0]]).unwrap();
+        let error = pairs::read_hits(&file).unwrap_err().to_string();
+        assert!(error.contains(&hits[0].0.to_string()), "{error}");
+    }
+}
+
+#[test]
 fn csv_is_plain_to_read() {
     let folder = folder();
     let file = folder.path().join("pairs.csv");

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use contact_afu::afu::{Afu, Spec};
-use contact_afu::config::Config;
+use contact_afu::config::{Config, Results};
 use contact_afu::kernel::{PairRecord, Reference};
 use contact_afu::pairs;
 
@@ -44,6 +44,9 @@ fn configurations() -> Vec<Config> {
         with("e8f15", "normal", 300.0),
         with("e11f52", "position,depth", 200.0),
         with("e5f2z", "hit,depth,normal,position", 400.0),
+        Config { results: Results::Hits, ..Config::default() },
+        Config { results: Results::Hits, ..with("half", "hit", 200.0) },
+        Config { results: Results::Hits, ..with("half", "depth", 200.0) },
     ]
 }
 

@@ -2,7 +2,6 @@
 #![cfg(feature = "cosim")]
 
 use contact_afu::config::Config;
-use contact_afu::kernel::Fields;
 use contact_afu::link::LinkModel;
 use contact_afu::pairs::Set;
 use contact_afu::verify::{Bench, Verdict};
@@ -18,7 +17,7 @@ fn the_diamond_comes_back_right_and_at_the_link_s_speed() {
     let pairs = Set::Diamond(10).pairs(0);
     let verdict = bench.run(&pairs, &LinkModel::ideal(), 1).expect("it finishes");
     good(&verdict, "diamond");
-    assert_eq!(verdict.flows(Fields::ALL), [0, 9_420, 0, 2_934]);
+    assert_eq!(verdict.flows(&Config::default()), [0, 9_420, 0, 2_934]);
     assert!(verdict.outcome.efficiency() > 0.95, "{:?}", verdict.outcome.cycles);
     let verdict = bench.run(&Set::Random(20_000).pairs(3), &LinkModel::ideal(), 1).expect("it finishes");
     good(&verdict, "random");

@@ -55,7 +55,9 @@ pub(super) fn backlog(spec: &Spec, places: u32) -> Result<Arc<Module>, Errors> {
     group_out.next(group.gate(!start));
     graph.output("group", group_out.value());
     for (lane, entry) in leaves.into_iter().take(leaving as usize).enumerate() {
-        graph.output(&format!("record_{lane}"), entry.delay(1).named(&format!("leaving_{lane}")));
+        // The packer merges what comes: a lane without a contact is zero.
+        let taken = group.greater_than(group.same(lane as u128));
+        graph.output(&format!("record_{lane}"), entry.gate(taken).delay(1).named(&format!("leaving_{lane}")));
     }
     graph.output("empty", !stored.any() & !group_out.any());
     graph.finish()

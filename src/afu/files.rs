@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
-use crate::config::MANIFEST_SCHEMA;
+use crate::config::{MANIFEST_SCHEMA, Results};
 use crate::pipeline::KernelReport;
 
 use super::{Afu, spl2};
@@ -89,9 +89,19 @@ impl Afu {
         );
         for (output, width, name) in self.all_ports() {
             let direction = if output { "out" } else { "in" };
-            let _ = writeln!(out, "| `{name}` | {direction} | {width} | {} |", meaning(&name));
+            let _ = writeln!(out, "| `{name}` | {direction} | {width} | {}{} |", meaning(&name), self.more(&name));
         }
         out
+    }
+
+    /// What a port means beyond [`meaning`] in an AFU that differs from the default one.
+    fn more(&self, name: &str) -> &'static str {
+        match (self.spec().config.results, name) {
+            (Results::Hits, "error") => ", 6 more lines of contacts than `destination_lines`",
+            (Results::Hits, "capability") => ", 24 set: only contacts come back",
+            (Results::Hits, "contacts") => ": as many records, each beginning with its pair's number",
+            _ => "",
+        }
     }
 
     fn manifest(&self, files: &[(String, String)]) -> String {
@@ -169,6 +179,7 @@ fn meaning(name: &str) -> &'static str {
         "start" => "one cycle high starts a job; ignored while busy",
         "source" => "line address of the first source line",
         "destination" => "line address of the first destination line",
+        "destination_lines" => "lines there is room for at the destination; those beyond are not written",
         "count" => "pairs of the job; 0 is a job",
         "mode" => "0; anything else ends the job with error 5",
         "epoch" => "upper part of the job's tags: change it from job to job, so that late responses are known",

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::Args;
-use contact_afu::config::Config;
+use contact_afu::config::{Config, Results};
 use contact_afu::cosim::Trace;
 use contact_afu::kernel::PairRecord;
 use contact_afu::link::LinkModel;
@@ -32,7 +32,8 @@ pub struct Cosim {
     /// Pairs: diamond:H, random:N, hard:N, or a .csv or .npy file; given several times, several jobs
     #[arg(long, value_name = "SET|FILE", default_value = "diamond:10")]
     pairs: Vec<String>,
-    /// Write the contacts of the only job, as they lie in destination memory: .csv or .npy
+    /// Write the contacts of the only job, as they lie in destination memory: .csv or .npy; with --results hits, only those
+    /// of pairs that touch, each with its pair's number
     #[arg(long, value_name = "FILE")]
     contacts: Option<PathBuf>,
     /// Link between AFU and memory: ideal, late, shuffled, hostile, harp1, harp2, pcie3x8, or a .toml file of a link
@@ -87,7 +88,7 @@ pub fn run(options: &Cosim) -> Result<(), Failure> {
         if let Some(verdict) = &verdict {
             failed_pairs.extend(verdict.mismatches.iter().map(|mismatch| mismatch.pair));
             if let Some(path) = &options.contacts {
-                pairs::write_contacts(path, &verdict.contacts)?;
+                write_contacts(path, verdict, bench.config())?;
             }
         }
         for line in job.failures.iter().map(|failure| format!("{name}: {failure}")).chain([text.clone()]) {
@@ -179,7 +180,7 @@ impl Cosim {
         let name = name.to_owned();
         match done {
             Ok(verdict) => {
-                let tally = Tally::of(&verdict, bench.config().contact);
+                let tally = Tally::of(&verdict, bench.config());
                 Ok((Job { name, tally, failures: verdict.unmet.clone() }, Some(verdict)))
             }
             Err(error) if error.is_the_job_s() => {
@@ -218,6 +219,18 @@ impl Cosim {
         let message = format!("{bad} of {} jobs failed, {} mismatches", run.jobs.len(), run.total().mismatches);
         Err(Failure::new(Kind::Unmet, message))
     }
+}
+
+/// What came back: a contact for each pair, or, where only contacts come back, those with their pairs' numbers.
+fn write_contacts(path: &Path, verdict: &Verdict, config: &Config) -> Result<(), Failure> {
+    match config.results {
+        Results::All => pairs::write_contacts(path, &verdict.contacts)?,
+        Results::Hits => {
+            let hits = verdict.numbers.iter().copied().zip(verdict.contacts.iter().copied());
+            pairs::write_hits(path, &hits.collect::<Vec<_>>())?;
+        }
+    }
+    Ok(())
 }
 
 /// The first mismatches of a job, one by one, and how many more there are.

@@ -21,7 +21,7 @@ pub struct Machine {
     /// How pairs are given: direct (both spheres whole) [default: direct]
     #[arg(long, value_name = "KIND")]
     pub input: Option<Input>,
-    /// Which pairs come back: all [default: all]
+    /// Which pairs come back: all, or hits (those that touch, each with its number) [default: all]
     #[arg(long, value_name = "WHICH")]
     pub results: Option<Results>,
     /// What stands around the AFU's line port: line (nothing), spl2 (Intel HARP v1) [default: line]

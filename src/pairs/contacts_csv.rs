@@ -12,35 +12,54 @@ const FLOW: usize = 1;
 const NUMBERS: usize = 2;
 const INVALID: usize = 9;
 
+/// The contacts of a file with a row for each pair, in their order.
 pub fn read(file: &Path, text: &[u8]) -> Result<Vec<ContactRecord>, FileError> {
     let mut contacts = Vec::new();
     table::read(file, text, &COLUMNS, |row| {
         if row.text(PAIR).parse() != Ok(contacts.len()) {
             return Err(row.error(PAIR, format!("`{}` should be {}", row.text(PAIR), contacts.len())));
         }
-        let flow = Flow::ALL.into_iter().find(|flow| flow.name() == row.text(FLOW));
-        let flow = flow.ok_or_else(|| {
-            row.error(FLOW, format!("`{}` is none of fake, grazing, real and invalid", row.text(FLOW)))
-        })?;
-        let expected = if flow == Flow::Invalid { "1" } else { "0" };
-        if row.text(INVALID) != expected {
-            return Err(row.error(INVALID, format!("`{}` should be {expected} for flow {flow}", row.text(INVALID))));
-        }
-        let mut words = [flow.flags(); 8];
-        for (i, word) in words[..7].iter_mut().enumerate() {
-            *word = row.number(NUMBERS + i)?.to_bits();
-        }
-        contacts.push(ContactRecord(words));
+        contacts.push(contact(&row)?);
         Ok(())
     })?;
     Ok(contacts)
 }
 
+/// The contacts of a file with rows for some pairs, in their order, each with its pair's number.
+pub fn read_hits(file: &Path, text: &[u8]) -> Result<Vec<(u32, ContactRecord)>, FileError> {
+    let mut hits: Vec<(u32, ContactRecord)> = Vec::new();
+    table::read(file, text, &COLUMNS, |row| {
+        let least = hits.last().map_or(0, |(last, _)| u64::from(*last) + 1);
+        let number = row.text(PAIR).parse::<u32>().ok().filter(|&number| u64::from(number) >= least);
+        let number = number.ok_or_else(|| {
+            row.error(PAIR, format!("`{}` should be a number from {least} to {}", row.text(PAIR), u32::MAX))
+        })?;
+        hits.push((number, contact(&row)?));
+        Ok(())
+    })?;
+    Ok(hits)
+}
+
+fn contact(row: &table::Row<10>) -> Result<ContactRecord, FileError> {
+    let flow = Flow::ALL.into_iter().find(|flow| flow.name() == row.text(FLOW));
+    let flow = flow
+        .ok_or_else(|| row.error(FLOW, format!("`{}` is none of fake, grazing, real and invalid", row.text(FLOW))))?;
+    let expected = if flow == Flow::Invalid { "1" } else { "0" };
+    if row.text(INVALID) != expected {
+        return Err(row.error(INVALID, format!("`{}` should be {expected} for flow {flow}", row.text(INVALID))));
+    }
+    let mut words = [flow.flags(); 8];
+    for (i, word) in words[..7].iter_mut().enumerate() {
+        *word = row.number(NUMBERS + i)?.to_bits();
+    }
+    Ok(ContactRecord(words))
+}
+
 /// Flags that no kernel writes are written as far as the columns go: bits 2:1 as the flow, bit 3 as invalid.
-pub fn write(out: impl Write, contacts: &[ContactRecord]) -> io::Result<()> {
+pub fn write(out: impl Write, contacts: impl Iterator<Item = (u32, ContactRecord)>) -> io::Result<()> {
     let mut out = csv::Writer::from_writer(out);
     out.write_record(COLUMNS)?;
-    for (pair, contact) in contacts.iter().enumerate() {
+    for (pair, contact) in contacts {
         out.write_field(pair.to_string())?;
         out.write_field(Flow::ALL[(contact.flags() >> 1 & 3) as usize].name())?;
         for &word in &contact.0[..7] {

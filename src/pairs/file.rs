@@ -57,7 +57,7 @@ pub fn check_name(file: &Path) -> Result<(), FileError> {
 pub fn read_pairs(file: &Path) -> Result<Vec<PairRecord>, FileError> {
     match kind(file)? {
         Kind::Csv => pairs_csv::read(file, &bytes(file)?),
-        Kind::Npy => Ok(npy::read(file, &bytes(file)?, PAIR_TYPE)?.into_iter().map(PairRecord).collect()),
+        Kind::Npy => Ok(npy::read::<8>(file, &bytes(file)?, PAIR_TYPE)?.into_iter().map(PairRecord).collect()),
     }
 }
 
@@ -68,7 +68,26 @@ pub fn read_pairs(file: &Path) -> Result<Vec<PairRecord>, FileError> {
 pub fn read_contacts(file: &Path) -> Result<Vec<ContactRecord>, FileError> {
     match kind(file)? {
         Kind::Csv => contacts_csv::read(file, &bytes(file)?),
-        Kind::Npy => Ok(npy::read(file, &bytes(file)?, CONTACT_TYPE)?.into_iter().map(ContactRecord).collect()),
+        Kind::Npy => Ok(npy::read::<8>(file, &bytes(file)?, CONTACT_TYPE)?.into_iter().map(ContactRecord).collect()),
+    }
+}
+
+/// The contacts of a `.csv` or `.npy` file that has only some pairs', each with its pair's number.
+///
+/// # Errors
+/// As [`read_contacts`], and when the numbers don't increase.
+pub fn read_hits(file: &Path) -> Result<Vec<(u32, ContactRecord)>, FileError> {
+    match kind(file)? {
+        Kind::Csv => contacts_csv::read_hits(file, &bytes(file)?),
+        Kind::Npy => {
+            let records: Vec<[u32; 9]> = npy::read(file, &bytes(file)?, CONTACT_TYPE)?;
+            if let Some(wrong) = records.windows(2).position(|two| two[0][0] >= two[1][0]) {
+                let problem = format!("pair {} follows pair {}", records[wrong + 1][0], records[wrong][0]);
+                return Err(FileError::Npy { file: file.to_owned(), field: "data", problem });
+            }
+            let hit = |[number, contact @ ..]: [u32; 9]| (number, ContactRecord(contact));
+            Ok(records.into_iter().map(hit).collect())
+        }
     }
 }
 
@@ -89,8 +108,25 @@ pub fn write_pairs(file: &Path, pairs: &[PairRecord]) -> Result<(), FileError> {
 /// When the name has another ending or the file cannot be written.
 pub fn write_contacts(file: &Path, contacts: &[ContactRecord]) -> Result<(), FileError> {
     match kind(file)? {
-        Kind::Csv => write(file, |out| contacts_csv::write(out, contacts)),
+        Kind::Csv => write(file, |out| contacts_csv::write(out, (0..).zip(contacts.iter().copied()))),
         Kind::Npy => write(file, |out| npy::write(out, CONTACT_TYPE, contacts.iter().map(|contact| contact.0))),
+    }
+}
+
+/// Writes some pairs' contacts, in the order of the pairs' numbers, to a `.csv` or `.npy` file, which is there whole or
+/// not at all. In CSV each row names its pair; in npy the number is the first of nine words.
+///
+/// # Errors
+/// As [`write_contacts`].
+pub fn write_hits(file: &Path, hits: &[(u32, ContactRecord)]) -> Result<(), FileError> {
+    let words = |(number, contact): &(u32, ContactRecord)| {
+        let mut words = [*number; 9];
+        words[1..].copy_from_slice(&contact.0);
+        words
+    };
+    match kind(file)? {
+        Kind::Csv => write(file, |out| contacts_csv::write(out, hits.iter().copied())),
+        Kind::Npy => write(file, |out| npy::write(out, CONTACT_TYPE, hits.iter().map(words))),
     }
 }
 

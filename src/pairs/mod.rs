@@ -14,6 +14,8 @@ mod source;
 mod table;
 
 pub use error::FileError;
-pub use file::{LoadError, check_name, load, read_contacts, read_pairs, write_contacts, write_pairs};
+pub use file::{
+    LoadError, check_name, load, read_contacts, read_hits, read_pairs, write_contacts, write_hits, write_pairs,
+};
 pub use hard::{CATEGORIES, Category};
 pub use set::{Set, SetError};

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::table::{figure, grouped, table};
 use super::tally::{Flows, Tally};
-use crate::config::Config;
+use crate::config::{Config, Results};
 
 /// The JSON's schema. Within a number keys are only added.
 pub const SCHEMA: &str = "contact-afu/cosim/1";
@@ -169,14 +169,18 @@ impl Run {
             ("latency, line in to line out, cycles", Box::new(|t| t.latency_cycles.map_or("-".into(), grouped))),
             ("link allows, ns a pair", Box::new(move |t| figure(t.limit_per_pair().map(|c| c * ns), 2))),
             ("share of that reached", Box::new(|t| percent(t.efficiency()))),
+            ("bytes a pair, in", Box::new(|t| figure(t.read_per_pair(), 2))),
+            ("bytes a pair, out", Box::new(|t| figure(t.written_per_pair(), 2))),
             ("simulated in, seconds", Box::new(|t| format!("{:.1}", t.host_seconds))),
         ];
         let row = |(title, show): (&str, Show<'_>)| {
             [title.to_owned()].into_iter().chain(self.jobs.iter().map(|job| show(&job.tally))).collect::<Vec<_>>()
         };
+        let c = &self.config;
+        let only_hits = if c.results == Results::Hits { " of hits" } else { "" };
         let title = format!(
-            "{} SCPUs, {} arithmetic, {}, {} MHz; link {}, seed {}",
-            self.config.scpus, self.config.profile, self.config.contact, self.config.clock_mhz, self.link, self.seed
+            "{} SCPUs, {} arithmetic, {}{only_hits}, {} MHz; link {}, seed {}",
+            c.scpus, c.profile, c.contact, c.clock_mhz, self.link, self.seed
         );
         format!("{title}\n{}", table(&heading, rows.into_iter().map(row)))
     }
@@ -272,6 +276,8 @@ mod tests {
              latency, line in to line out, cycles           83           -
              link allows, ns a pair                       2.50           -
              share of that reached                      98.0 %           -
+             bytes a pair, in                            32.00           -
+             bytes a pair, out                           32.00           -
              simulated in, seconds                         0.2         0.0
             ───────────────────────────────────────────────────────────────"#]]
         .assert_eq(&run().table());

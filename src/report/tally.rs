@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::kernel::{Fields, Flow};
+use crate::config::Config;
+use crate::kernel::Flow;
 use crate::verify::Verdict;
 
 /// Contacts and others, as the AFU's own flags tell them.
@@ -49,13 +50,13 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Of a job through an AFU with these fields.
-    pub fn of(verdict: &Verdict, fields: Fields) -> Self {
-        let flows = verdict.flows(fields);
+    /// Of a job through an AFU of this configuration.
+    pub fn of(verdict: &Verdict, config: &Config) -> Self {
+        let flows = verdict.flows(config);
         let of = |flow: Flow| flows[flow as usize];
         let outcome = &verdict.outcome;
         Self {
-            pairs: verdict.contacts.len() as u64,
+            pairs: verdict.pairs as u64,
             flows: Flows {
                 fake: of(Flow::Fake),
                 grazing: of(Flow::Grazing),
@@ -101,6 +102,16 @@ impl Tally {
     /// The least number of cycles a pair that the link allows.
     pub fn limit_per_pair(&self) -> Option<f64> {
         per(self.limit_cycles, self.pairs)
+    }
+
+    /// Bytes read a pair: of the lines, so what the last one has over counts.
+    pub fn read_per_pair(&self) -> Option<f64> {
+        per(self.bytes_read as f64, self.pairs)
+    }
+
+    /// Bytes written a pair.
+    pub fn written_per_pair(&self) -> Option<f64> {
+        per(self.bytes_written as f64, self.pairs)
     }
 
     /// The share of the link's limit that was reached, 0 to 1.

@@ -137,6 +137,8 @@ mod tests {
             cycles_per_pair: Some(10.0),
             pairs_per_second: Some(2e7),
             efficiency: Some(0.05),
+            bytes_read: 320,
+            bytes_written: 320,
             latency_cycles: None,
             clock_mhz: 200.0,
             build_seconds: 1.5,

@@ -31,6 +31,10 @@ pub struct Row {
     pub pairs_per_second: Option<f64>,
     /// The share of the link's limit that was reached.
     pub efficiency: Option<f64>,
+    /// Bytes of the lines read.
+    pub bytes_read: u64,
+    /// Bytes of the lines written.
+    pub bytes_written: u64,
     /// Cycles from the first line of pairs in to the first line of contacts out.
     pub latency_cycles: Option<u64>,
     /// The clock, MHz.
@@ -46,7 +50,7 @@ pub struct Row {
 impl Row {
     /// Of what came of a job.
     pub(super) fn of(config: &Config, rtl_sha256: &str, verdict: &Verdict, build_seconds: f64) -> Self {
-        let tally = Tally::of(verdict, config.contact);
+        let tally = Tally::of(verdict, config);
         let cycles_per_pair = tally.cycles_per_pair();
         Self {
             scpus: config.scpus,
@@ -59,6 +63,8 @@ impl Row {
             cycles_per_pair,
             pairs_per_second: cycles_per_pair.map(|cycles| 1e6 * config.clock_mhz / cycles),
             efficiency: tally.efficiency(),
+            bytes_read: tally.bytes_read,
+            bytes_written: tally.bytes_written,
             latency_cycles: tally.latency_cycles,
             clock_mhz: config.clock_mhz,
             build_seconds,

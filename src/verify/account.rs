@@ -1,6 +1,7 @@
 //! A small job's cycles, one by one: which part of the AFU and of the link takes how many.
 
 use crate::afu::Afu;
+use crate::config::Results;
 use crate::link::{LinkModel, Order};
 
 /// A part of a job's way, and the cycles it takes.
@@ -17,7 +18,7 @@ pub struct Part {
 ///
 /// Nothing for a job or a link for which that is no sum: randomness (a tail, stalls, stragglers, reads in any order that
 /// wait for one another), fewer SCPUs than pairs
-/// in a line, an interval above 1, more lines than may be in flight or than the AFU takes in before its first write.
+/// in a line, an interval above 1, contacts alone as results, more lines than may be in flight or than the AFU takes in before its first write.
 pub fn account(afu: &Afu, link: &LinkModel, pairs: u32) -> Option<Vec<Part>> {
     let (timing, layout, config) = (afu.timing(), afu.layout(), &afu.spec().config);
     let part = |name, cycles: u64| Part { name, cycles };
@@ -30,7 +31,7 @@ pub fn account(afu: &Afu, link: &LinkModel, pairs: u32) -> Option<Vec<Part>> {
     let in_flight = [link.read.in_flight, link.write.in_flight, afu.spec().max_outstanding].into_iter().min()?;
     let is_steady = [link.read, link.write].iter().all(|d| d.tail == 0 && d.stalls.longest == 0);
     let no_stragglers = [link.read, link.write].iter().all(|d| d.stragglers.share == 0.0);
-    let wide = config.scpus >= layout.pairs_per_line() && config.interval == 1;
+    let wide = config.scpus >= layout.pairs_per_line() && config.interval == 1 && config.results == Results::All;
     if !(is_steady && no_stragglers && wide && sources.max(destinations) <= in_flight.into()) {
         return None;
     }

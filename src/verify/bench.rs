@@ -7,12 +7,12 @@ use super::check::{Verdict, check};
 use super::error::VerifyError;
 use super::lines;
 use crate::afu::{Afu, FILE_LIST, Layout, Spec, top_name};
-use crate::config::{self, Config, Shell};
+use crate::config::{self, Config, Results, Shell};
 use crate::cosim::spl2::{Machine, MachineError, Place, Session};
 use crate::cosim::{CosimError, Driver, File, Instance, Job, Model, Outcome, Source, Trace};
 use crate::kernel::{PairRecord, Reference};
 use crate::link::spl2::{Spl2, Spl2Model};
-use crate::link::{Link, LinkModel};
+use crate::link::{Link, LinkModel, Traffic};
 
 /// Its parameter that says how many SCPUs.
 const SCPUS: &str = "SCPUS";
@@ -95,7 +95,7 @@ impl Bench {
             config: config.clone(),
             source,
             model,
-            layout: Layout::new(LINE_BITS, config.contact),
+            layout: Layout::of(LINE_BITS, config),
             reference: Reference::new(config.profile.format(), config.contact),
         })
     }
@@ -124,7 +124,7 @@ impl Bench {
         self.run_with(pairs, link, seed, None, |_| {})
     }
 
-    /// [`Bench::run`] that writes a waveform and tells, now and then, how many pairs' contacts are written.
+    /// [`Bench::run`] that writes a waveform and tells, now and then, how many pairs are done.
     ///
     /// # Errors
     /// As `run`, and when the waveform cannot be written.
@@ -140,6 +140,8 @@ impl Bench {
         let source = lines::pack(&self.layout, pairs);
         let mut job = Job::new(&source, count, self.layout.destination_lines(u64::from(count)));
         job.scpus = Some(self.config.scpus);
+        let only_hits = self.config.results == Results::Hits;
+        job.hits_per_line = only_hits.then(|| self.layout.contacts_per_line());
 
         let begun = Instant::now();
         let instance = self.model.instance(seed)?;
@@ -148,10 +150,15 @@ impl Bench {
             instance.trace_open(path, half_period_ps).map_err(CosimError::from)?;
         }
         let link = Link::new(link.clone(), seed)?;
-        let mut written = |lines: u64| progress(lines * u64::from(self.layout.contacts_per_line()));
+        let mut tell = |traffic: Traffic| {
+            progress(match self.config.results {
+                Results::All => traffic.write_responses * u64::from(self.layout.contacts_per_line()),
+                Results::Hits => traffic.read_responses * u64::from(self.layout.pairs_per_line()),
+            });
+        };
         let outcome = match self.config.shell {
-            Shell::Spl2 => spl2(&instance, link, seed, &job, &mut written)?,
-            _ => line(&instance, link, &job, &mut written)?,
+            Shell::Spl2 => spl2(&instance, link, seed, &job, &mut tell)?,
+            _ => line(&instance, link, &job, &mut tell)?,
         };
         if waveform.is_some() {
             instance.trace_close().map_err(CosimError::from)?;
@@ -162,12 +169,12 @@ impl Bench {
 }
 
 /// Runs a job on the line port itself.
-fn line(afu: &Instance, link: Link, job: &Job, progress: &mut dyn FnMut(u64)) -> Result<Outcome, VerifyError> {
+fn line(afu: &Instance, link: Link, job: &Job, progress: &mut dyn FnMut(Traffic)) -> Result<Outcome, VerifyError> {
     let mut driver = Driver::new(afu, link)?;
     driver.start(job)?;
     while !driver.step()? {
         if driver.cycle().is_multiple_of(PROGRESS_CYCLES) {
-            progress(driver.link().traffic().write_responses);
+            progress(driver.link().traffic());
         }
     }
     Ok(driver.finish()?)
@@ -179,7 +186,7 @@ fn spl2(
     link: Link,
     seed: u64,
     job: &Job,
-    progress: &mut dyn FnMut(u64),
+    progress: &mut dyn FnMut(Traffic),
 ) -> Result<Outcome, VerifyError> {
     let mut machine = Machine::new(afu, Spl2::new(Spl2Model::default(), link, seed))?;
     let place = Place::for_lines(job.source.len() as u64, job.destination_lines);
@@ -191,7 +198,7 @@ fn spl2(
             Err(MachineError::NoStatus { .. }) if left > PROGRESS_CYCLES => left -= PROGRESS_CYCLES,
             ended => break ended?,
         }
-        progress(session.machine().spl().link().traffic().write_responses);
+        progress(session.machine().spl().link().traffic());
     };
     Ok(session.outcome(&status))
 }

@@ -2,6 +2,7 @@
 
 use super::lines::Contacts;
 use crate::afu::Layout;
+use crate::config::{Config, Results};
 use crate::cosim::Outcome;
 use crate::kernel::{ContactRecord, Fields, Flow, PairRecord};
 
@@ -16,15 +17,21 @@ pub struct Mismatch {
     pub pair: PairRecord,
     /// What the reference kernel gives.
     pub expected: ContactRecord,
-    /// What lies in destination memory; none: nothing does.
+    /// What lies in destination memory; none: nothing does. Where only contacts come back, zero words are expected of a
+    /// pair without one.
     pub got: Option<ContactRecord>,
 }
 
 /// What a job came to.
 #[derive(Clone, Debug)]
 pub struct Verdict {
-    /// The contacts, from destination memory; zero words where nothing was written, and for what is not asked for.
+    /// Pairs of the job.
+    pub pairs: usize,
+    /// What came back, from destination memory: for each pair, or only for those that touch. Zero words where nothing was
+    /// written, and for what is not asked for.
     pub contacts: Vec<ContactRecord>,
+    /// For each of `contacts` its pair's number in the job, from 0.
+    pub numbers: Vec<u32>,
     /// Records that differ from the reference's.
     pub mismatches: Vec<Mismatch>,
     /// What else is not as it should be: status, counters, unused bits.
@@ -41,17 +48,30 @@ impl Verdict {
         self.mismatches.is_empty() && self.unmet.is_empty()
     }
 
-    /// Contacts of each flow, in the order of [`Flow::ALL`]. One-bit records tell no invalid pairs apart from those
-    /// without contact: there the AFU's own count is taken.
-    pub fn flows(&self, fields: Fields) -> [u64; 4] {
+    /// Pairs of each flow, in the order of [`Flow::ALL`]. One-bit records, and those of contacts alone, tell no invalid
+    /// pairs apart from those without contact: there the AFU's own count is taken.
+    pub fn flows(&self, config: &Config) -> [u64; 4] {
         let of = |flow| self.contacts.iter().filter(|contact| contact.flow() == Some(flow)).count() as u64;
         let mut flows = Flow::ALL.map(of);
-        if fields == Fields::HIT {
+        if config.contact == Fields::HIT || config.results == Results::Hits {
             let invalid = u64::from(self.outcome.invalid);
+            let touching = flows[Flow::Grazing as usize] + flows[Flow::Real as usize];
             flows[Flow::Invalid as usize] = invalid;
-            flows[Flow::Fake as usize] = flows[Flow::Fake as usize].saturating_sub(invalid);
+            flows[Flow::Fake as usize] = (self.pairs as u64).saturating_sub(touching + invalid);
         }
         flows
+    }
+
+    /// A contact for each pair, in their order; where only contacts came back, the others read as pairs without one.
+    pub fn by_pair(&self) -> Vec<ContactRecord> {
+        let apart = ContactRecord([0, 0, 0, 0, 0, 0, 0, Flow::Fake.flags()]);
+        let mut all = vec![apart; self.pairs];
+        for (&number, &contact) in self.numbers.iter().zip(&self.contacts) {
+            if let Some(place) = all.get_mut(number as usize) {
+                *place = contact;
+            }
+        }
+        all
     }
 }
 
@@ -63,41 +83,190 @@ pub(super) fn check(
     outcome: Outcome,
     seconds: f64,
 ) -> Verdict {
-    let mut verdict = Verdict {
-        contacts: Vec::with_capacity(pairs.len()),
-        mismatches: Vec::new(),
-        unmet: Vec::new(),
-        outcome,
-        seconds,
-    };
-    let Verdict { contacts, mismatches, unmet, outcome, .. } = &mut verdict;
     let memory = Contacts::new(layout, &outcome.lines);
-    for (number, (&pair, &record)) in pairs.iter().zip(reference).enumerate() {
-        let (expected, got) = (memory.seen(record), memory.get(number));
-        contacts.push(got.unwrap_or_default());
-        if got != Some(expected) {
-            let cycle = outcome.write_cycles.get(memory.line(number)).copied().flatten();
-            mismatches.push(Mismatch { number, cycle, pair, expected, got });
-        }
-    }
+    let mut unmet = Vec::new();
     if let Some(error) = outcome.job_error() {
         unmet.push(format!("the job ended with error {} ({error:?})", outcome.error));
     }
-    if !memory.rest_is_zero(pairs.len()) {
+    let job = Job { pairs, reference, memory: &memory, outcome: &outcome };
+    let came = if layout.number_words() > 0 { job.hits(&mut unmet) } else { job.all() };
+    if !memory.rest_is_zero(came.records) {
         unmet.push("unused bits of the destination lines are not zero".to_owned());
     }
-    let count = |test: fn(&ContactRecord) -> bool| reference.iter().filter(|record| test(record)).count();
-    let hits = count(|record| record.is_contact());
-    let invalid = count(|record| record.flow() == Some(Flow::Invalid));
-    let first = reference.iter().position(|record| record.flow() == Some(Flow::Invalid));
-    let mut counter = |what: &str, got: String, expected: String| {
-        if got != expected {
-            unmet.push(format!("status: {what} is {got}, should be {expected}"));
+    job.status(&mut unmet);
+    let Came { numbers, contacts, mismatches, .. } = came;
+    Verdict { pairs: pairs.len(), contacts, numbers, mismatches, unmet, outcome, seconds }
+}
+
+/// What is compared with what.
+struct Job<'a> {
+    pairs: &'a [PairRecord],
+    reference: &'a [ContactRecord],
+    memory: &'a Contacts<'a>,
+    outcome: &'a Outcome,
+}
+
+/// What came back.
+#[derive(Default)]
+struct Came {
+    /// Records there must be in destination memory.
+    records: usize,
+    numbers: Vec<u32>,
+    contacts: Vec<ContactRecord>,
+    mismatches: Vec<Mismatch>,
+}
+
+impl Job<'_> {
+    fn mismatch(
+        &self,
+        number: usize,
+        index: Option<usize>,
+        expected: ContactRecord,
+        got: Option<ContactRecord>,
+    ) -> Mismatch {
+        let written = |index| self.outcome.write_cycles.get(self.memory.line(index)).copied().flatten();
+        Mismatch { number, cycle: index.and_then(written), pair: self.pairs[number], expected, got }
+    }
+
+    /// A record for each pair.
+    fn all(&self) -> Came {
+        let mut came = Came { records: self.pairs.len(), ..Came::default() };
+        for (number, &record) in self.reference.iter().enumerate() {
+            let (expected, got) = (self.memory.seen(record), self.memory.get(number));
+            came.numbers.push(number as u32);
+            came.contacts.push(got.unwrap_or_default());
+            if got != Some(expected) {
+                came.mismatches.push(self.mismatch(number, Some(number), expected, got));
+            }
         }
-    };
-    counter("contacts", outcome.contacts.to_string(), hits.to_string());
-    counter("invalid", outcome.invalid.to_string(), invalid.to_string());
-    let number = |pair: Option<usize>| pair.map_or_else(|| "none".to_owned(), |pair| pair.to_string());
-    counter("first_invalid", number(outcome.first_invalid.map(|pair| pair as usize)), number(first));
-    verdict
+        came
+    }
+
+    /// A record for each pair that touches: as many as the AFU counted, in the order of their numbers, and nothing behind.
+    fn hits(&self, unmet: &mut Vec<String>) -> Came {
+        let mut came = Came { records: self.outcome.contacts as usize, ..Came::default() };
+        // Where the pairs' records lie.
+        let mut place = vec![None; self.pairs.len()];
+        let mut last = None;
+        for index in 0..came.records {
+            let Some((number, contact)) = self.memory.hit(index) else {
+                unmet.push(format!("contact {index} of {} was never written", came.records));
+                break;
+            };
+            let Some(free) = place.get_mut(number as usize).filter(|_| last < Some(number)) else {
+                let after = last.map_or_else(|| "none".to_owned(), |last| format!("pair {last}"));
+                unmet
+                    .push(format!("contact {index} is of pair {number}, after {after}, of {} pairs", self.pairs.len()));
+                break;
+            };
+            (*free, last) = (Some(index), Some(number));
+            came.numbers.push(number);
+            came.contacts.push(contact);
+        }
+        let lines = came.records.checked_sub(1).map_or(0, |last| self.memory.line(last) + 1);
+        if self.outcome.lines.iter().skip(lines).any(Option::is_some) {
+            unmet.push("a line behind the last contact's was written".to_owned());
+        }
+        for (number, (&record, &index)) in self.reference.iter().zip(&place).enumerate() {
+            let expected = record.is_contact().then(|| self.memory.seen(record));
+            let got = index.map(|index| came.contacts[index]);
+            if got != expected {
+                came.mismatches.push(self.mismatch(number, index, expected.unwrap_or_default(), got));
+            }
+        }
+        came
+    }
+
+    /// What the AFU says of the job beside its records.
+    fn status(&self, unmet: &mut Vec<String>) {
+        let (reference, outcome) = (self.reference, self.outcome);
+        let count = |test: fn(&ContactRecord) -> bool| reference.iter().filter(|record| test(record)).count();
+        let hits = count(|record| record.is_contact());
+        let invalid = count(|record| record.flow() == Some(Flow::Invalid));
+        let first = reference.iter().position(|record| record.flow() == Some(Flow::Invalid));
+        let mut counter = |what: &str, got: String, expected: String| {
+            if got != expected {
+                unmet.push(format!("status: {what} is {got}, should be {expected}"));
+            }
+        };
+        counter("contacts", outcome.contacts.to_string(), hits.to_string());
+        counter("invalid", outcome.invalid.to_string(), invalid.to_string());
+        let number = |pair: Option<usize>| pair.map_or_else(|| "none".to_owned(), |pair| pair.to_string());
+        counter("first_invalid", number(outcome.first_invalid.map(|pair| pair as usize)), number(first));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::Reference;
+    use crate::number::Format;
+
+    /// The outcome of a job whose destination holds these records, one a line, and nothing else.
+    fn outcome(records: &[(u32, ContactRecord)], lines: usize) -> Outcome {
+        let line = |(number, contact): &(u32, ContactRecord)| {
+            let mut line = [0; 16];
+            line[0] = *number;
+            line[1..9].copy_from_slice(&contact.0);
+            Some(line)
+        };
+        let mut all: Vec<_> = records.iter().map(line).collect();
+        all.resize(lines, None);
+        Outcome {
+            cycles: 10,
+            error: 0,
+            contacts: records.len() as u32,
+            invalid: 0,
+            first_invalid: None,
+            cycles_busy: 9,
+            cycles_input: 0,
+            cycles_output: 0,
+            latency_cycles: None,
+            bytes_read: 0,
+            bytes_written: 0,
+            limit_cycles: 1.0,
+            write_cycles: vec![Some(5); lines],
+            lines: all,
+        }
+    }
+
+    #[test]
+    fn hits_that_are_missing_wrong_twice_or_too_many_are_found() {
+        let config = Config { results: Results::Hits, ..Config::default() };
+        let layout = Layout::of(512, &config);
+        let pair = |x: f32| PairRecord::from_spheres([0.0, 0.0, 0.0, 1.0], [x, 0.0, 0.0, 1.0]);
+        let pairs = [9.0, 1.0, 8.0, 0.0, 1.5].map(pair);
+        let reference = Reference::new(Format::WIDE, config.contact).run_all(&pairs);
+        let hit = |number: usize| (number as u32, reference[number]);
+        let judge = |records: &[(u32, ContactRecord)]| check(&layout, &pairs, &reference, outcome(records, 5), 0.0);
+
+        let right = judge(&[hit(1), hit(3), hit(4)]);
+        assert!(right.is_good(), "{right:?}");
+        assert_eq!((right.pairs, right.numbers.as_slice()), (5, [1, 3, 4].as_slice()));
+        assert_eq!(right.flows(&config), [0, 2, 1, 2]);
+        assert_eq!(right.by_pair(), reference);
+
+        let wrong = |records: &[(u32, ContactRecord)]| {
+            let verdict = judge(records);
+            let numbers: Vec<_> = verdict.mismatches.iter().map(|mismatch| mismatch.number).collect();
+            (numbers, verdict.unmet.len())
+        };
+        let mut flipped = hit(3);
+        flipped.1.0[6] ^= 1;
+        assert_eq!(wrong(&[hit(1), flipped, hit(4)]), (vec![3], 0));
+        // One too few or too many: the count is wrong too.
+        assert_eq!(wrong(&[hit(1), hit(4)]), (vec![3], 1));
+        assert_eq!(wrong(&[hit(0), hit(1), hit(3), hit(4)]), (vec![0], 1));
+        // Out of order, twice, of no pair: what follows is not believed.
+        assert_eq!(wrong(&[hit(3), hit(1), hit(4)]), (vec![1, 4], 1));
+        assert_eq!(wrong(&[hit(1), hit(1), hit(4)]), (vec![3, 4], 1));
+        assert_eq!(wrong(&[hit(1), hit(3), (5, reference[4])]), (vec![4], 1));
+        // A line that should not be there.
+        let mut more = outcome(&[hit(1), hit(3), hit(4)], 5);
+        more.lines[4] = Some([0; 16]);
+        assert_eq!(
+            check(&layout, &pairs, &reference, more, 0.0).unmet,
+            ["a line behind the last contact's was written"]
+        );
+    }
 }

@@ -64,6 +64,6 @@ impl Engine for BenchEngine<'_> {
         self.totals.jobs += 1;
         self.totals.pairs += pairs.len() as u64;
         self.totals.cycles += verdict.outcome.cycles;
-        Ok(verdict.contacts)
+        Ok(verdict.by_pair())
     }
 }

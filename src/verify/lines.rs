@@ -32,33 +32,44 @@ impl<'a> Contacts<'a> {
         Self { layout, words: layout.contact_words(), lines }
     }
 
-    /// The line and the place in it of a pair's contact.
-    fn place(&self, number: usize) -> (usize, usize) {
+    /// The line and the place in it of the record with this index.
+    fn place(&self, index: usize) -> (usize, usize) {
         let per_line = self.layout.contacts_per_line() as usize;
-        (number / per_line, number % per_line)
+        (index / per_line, index % per_line)
     }
 
-    /// The line of a pair's contact.
-    pub(super) fn line(&self, number: usize) -> usize {
-        self.place(number).0
+    /// The line of the record with this index: a pair's number, or, where only contacts come back, how many come before.
+    pub(super) fn line(&self, index: usize) -> usize {
+        self.place(index).0
     }
 
-    /// A pair's contact; nothing if its line was never written. Words that are not in the record are zero. Of one-bit
-    /// records only a contact is known: it reads as real or fake.
-    pub(super) fn get(&self, number: usize) -> Option<ContactRecord> {
-        let (line, place) = self.place(number);
+    /// The contact with this index; nothing if its line was never written. Words that are not in the record are zero. Of
+    /// records without words of the contact only the contact is known: it reads as real or fake.
+    pub(super) fn get(&self, index: usize) -> Option<ContactRecord> {
+        self.record(index).map(|(_, contact)| contact)
+    }
+
+    /// The contact with this index where only contacts come back, with its pair's number before it.
+    pub(super) fn hit(&self, index: usize) -> Option<(u32, ContactRecord)> {
+        let (number, contact) = self.record(index)?;
+        Some((number?, contact))
+    }
+
+    fn record(&self, index: usize) -> Option<(Option<u32>, ContactRecord)> {
+        let (line, place) = self.place(index);
         let line = self.lines.get(line)?.as_ref()?;
         let mut record = ContactRecord::default();
-        if self.words.is_empty() {
-            let hit = line[place / WORD] >> (place % WORD) & 1 == 1;
-            record.0[7] = if hit { Flow::Real } else { Flow::Fake }.flags();
-            return Some(record);
-        }
         let first = place * self.layout.contact_bits() as usize / WORD;
-        for (slot, &word) in self.words.iter().enumerate() {
-            record.0[word] = line[first + slot];
+        let behind = first + self.layout.number_words();
+        let number = (behind > first).then(|| line[first]);
+        if self.words.is_empty() {
+            let hit = number.is_some() || line[place / WORD] >> (place % WORD) & 1 == 1;
+            record.0[7] = if hit { Flow::Real } else { Flow::Fake }.flags();
         }
-        Some(record)
+        for (slot, &word) in self.words.iter().enumerate() {
+            record.0[word] = line[behind + slot];
+        }
+        Some((number, record))
     }
 
     /// What of the reference's record is in destination memory, in the same form as [`Contacts::get`] gives it.
@@ -76,7 +87,7 @@ impl<'a> Contacts<'a> {
     /// Whether everything behind the last of `count` contacts is zero, in each slot and at the end of the last line.
     pub(super) fn rest_is_zero(&self, count: usize) -> bool {
         let bits = self.layout.contact_bits() as usize;
-        let used = if self.words.is_empty() { 1 } else { self.words.len() * WORD };
+        let used = ((self.layout.number_words() + self.words.len()) * WORD).max(1);
         let per_line = self.layout.contacts_per_line() as usize;
         let clean = |(number, line): (usize, &Option<Line>)| {
             let Some(line) = line else { return true };
@@ -95,6 +106,7 @@ impl<'a> Contacts<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::config::{Config, Results};
     use crate::kernel::Fields;
 
     fn records(count: u32) -> Vec<ContactRecord> {
@@ -140,6 +152,35 @@ mod tests {
             assert!(!Contacts::new(&layout, &lines).rest_is_zero(records.len()), "{fields}");
             lines[0] = None;
             assert_eq!(Contacts::new(&layout, &lines).get(0), None);
+        }
+    }
+
+    #[test]
+    fn hits_read_back_with_their_numbers() {
+        for contact in ["hit", "depth", "depth,normal,position"] {
+            let config =
+                Config { contact: contact.parse().expect("fields"), results: Results::Hits, ..Config::default() };
+            let layout = Layout::of(512, &config);
+            let words = layout.contact_words();
+            let per_line = layout.contacts_per_line() as usize;
+            // Numbers with gaps, then the words asked for, then nothing up to the next power of two.
+            let mut lines: Vec<Option<Line>> = vec![Some([0; 16]); 33_usize.div_ceil(per_line)];
+            let records = records(33);
+            for (i, record) in records.iter().enumerate() {
+                let line = lines[i / per_line].as_mut().expect("there");
+                let first = i % per_line * 16 / per_line;
+                line[first] = 7 * i as u32;
+                for (slot, &word) in words.iter().enumerate() {
+                    line[first + 1 + slot] = record.0[word];
+                }
+            }
+            let contacts = Contacts::new(&layout, &lines);
+            for (i, &record) in records.iter().enumerate() {
+                let known =
+                    if contact == "hit" { ContactRecord([0, 0, 0, 0, 0, 0, 0, 7]) } else { contacts.seen(record) };
+                assert_eq!(contacts.hit(i), Some((7 * i as u32, known)), "{contact}, {i}");
+            }
+            assert!(contacts.rest_is_zero(33) && !contacts.rest_is_zero(31), "{contact}");
         }
     }
 

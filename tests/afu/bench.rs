@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use contact_afu::afu::{Afu, Spec};
-use contact_afu::config::Config;
+use contact_afu::config::{Config, Results};
 use contact_afu::cosim::{Driver, File, Instance, Job, Model, Outcome, Source, Trace};
 use contact_afu::kernel::{ContactRecord, Fields, Flow, PairRecord, Reference};
 use contact_afu::link::{Line, Link};
@@ -56,6 +56,8 @@ pub struct Case {
     source: Vec<Line>,
     /// The destination.
     pub lines: Vec<Line>,
+    /// Lines of room where only contacts come back, and how many of them share one.
+    hits: Option<(u64, u32)>,
     status: Status,
 }
 
@@ -72,9 +74,19 @@ impl Case {
         let count = |test: fn(&ContactRecord) -> bool| records.iter().filter(|record| test(record)).count() as u32;
         let is_invalid: fn(&ContactRecord) -> bool = |record| record.flow() == Some(Flow::Invalid);
         let words: Vec<u32> = pairs.iter().flat_map(|pair| pair.0).collect();
+        let size = hit_words(config.contact, 0, &ContactRecord::default()).len();
+        let (lines_of, hits) = match config.results {
+            Results::All => (destination(config.contact, &records), None),
+            Results::Hits => {
+                let hits = (0..).zip(&records).filter(|(_, record)| record.is_contact());
+                let words: Vec<u32> = hits.flat_map(|(pair, hit)| hit_words(config.contact, pair, hit)).collect();
+                (lines(&words), Some(((pairs.len() * size).div_ceil(16) as u64, 16 / size as u32)))
+            }
+        };
         Self {
             source: lines(&words),
-            lines: destination(config.contact, &records),
+            lines: lines_of,
+            hits,
             status: (
                 count(|record| record.is_contact()),
                 count(is_invalid),
@@ -90,7 +102,14 @@ impl Case {
     }
 
     pub fn job(&self) -> Job<'_> {
-        Job::new(&self.source, self.pairs.len() as u32, self.lines.len() as u64)
+        let room = self.hits.map_or(self.lines.len() as u64, |(room, _)| room);
+        let hits_per_line = self.hits.map(|(_, per_line)| per_line);
+        Job { hits_per_line, ..Job::new(&self.source, self.pairs.len() as u32, room) }
+    }
+
+    /// The same job with room for so many lines only.
+    pub fn job_with_room(&self, lines: u64) -> Job<'_> {
+        Job { destination_lines: lines, ..self.job() }
     }
 
     /// Every word and every figure of a job that went well.
@@ -98,7 +117,7 @@ impl Case {
     pub fn check(&self, outcome: &Outcome, what: &str) {
         assert_eq!(outcome.job_error(), None, "{what}");
         self.check_written(outcome, what);
-        assert!(outcome.lines.iter().all(Option::is_some), "{what}: a line is missing");
+        assert!(outcome.lines.iter().take(self.lines.len()).all(Option::is_some), "{what}: a line is missing");
         assert_eq!(status(outcome), self.status, "{what}: contacts, invalid, first invalid");
         let bytes = |lines: &[Line]| 64 * lines.len() as u64;
         let traffic = (outcome.bytes_read, outcome.bytes_written);
@@ -110,7 +129,10 @@ impl Case {
     /// Whatever was written is right; how many lines were.
     #[track_caller]
     pub fn check_written(&self, outcome: &Outcome, what: &str) -> usize {
-        assert_eq!(outcome.lines.len(), self.lines.len());
+        if self.hits.is_none() {
+            assert_eq!(outcome.lines.len(), self.lines.len());
+        }
+        assert!(outcome.lines.iter().skip(self.lines.len()).all(Option::is_none), "{what}: a line too many");
         let mut written = 0;
         for (number, (got, wanted)) in outcome.lines.iter().zip(&self.lines).enumerate() {
             let Some(got) = got else { continue };
@@ -129,6 +151,19 @@ impl Case {
     pub fn wrong_lines(&self, outcome: &Outcome) -> Vec<usize> {
         (0..self.lines.len()).filter(|&line| outcome.lines[line] != Some(self.lines[line])).collect()
     }
+}
+
+/// A contact where only contacts come back: its pair's number, then the words asked for, padded to a power of two.
+fn hit_words(fields: Fields, pair: u32, record: &ContactRecord) -> Vec<u32> {
+    let mut words = vec![pair];
+    let any = fields != Fields::HIT;
+    for (asked, part) in [(fields.position, 0..3), (fields.normal, 3..6), (fields.depth, 6..7), (any, 7..8)] {
+        if asked {
+            words.extend_from_slice(&record.0[part]);
+        }
+    }
+    words.resize(words.len().next_power_of_two(), 0);
+    words
 }
 
 /// Words in lines, the unused part of the last zero.

@@ -9,7 +9,7 @@ use contact_afu::cosim::drive::{DriveError, ProtocolError};
 use contact_afu::cosim::{Driver, File, Job, Model, Outcome, Source, Trace};
 use contact_afu::link::{Direction, Fault, Link, LinkModel, Order};
 use contact_afu::pairs::Set;
-use contact_afu::verify::{Bench, Verdict};
+use contact_afu::verify::{Bench, Verdict, VerifyError};
 
 use crate::bench::{Case, committed, config, driver, of, source};
 
@@ -24,14 +24,23 @@ fn change(text: &str, left: &str, right: impl Fn(&str) -> String) -> String {
 }
 
 /// The way of `afu cosim --rtl`: a folder that `afu rtl` wrote, one line of which was changed.
-fn verdict(config: &Config, file: &str, left: &str, right: impl Fn(&str) -> String) -> Verdict {
+pub fn try_verdict(
+    config: &Config,
+    file: &str,
+    left: &str,
+    right: impl Fn(&str) -> String,
+) -> Result<Verdict, VerifyError> {
     let folder = tempfile::tempdir().unwrap();
     for (name, text) in Afu::generate(Spec::from(config.clone())).unwrap().files() {
         let text = if name == file { change(&text, left, &right) } else { text };
         fs::write(folder.path().join(name), text).unwrap();
     }
     let bench = Bench::of_folder(folder.path(), None, Trace::Off).unwrap();
-    bench.run(&Set::Random(2_000).pairs(1), &LinkModel::shuffled(), 1).unwrap()
+    bench.run(&Set::Random(2_000).pairs(1), &LinkModel::shuffled(), 1)
+}
+
+pub fn verdict(config: &Config, file: &str, left: &str, right: impl Fn(&str) -> String) -> Verdict {
+    try_verdict(config, file, left, right).unwrap()
 }
 
 #[test]

@@ -7,6 +7,7 @@
 
 mod bench;
 mod faults;
+mod hits;
 mod matrix;
 mod ports;
 mod records;

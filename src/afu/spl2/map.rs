@@ -229,7 +229,8 @@ pub mod status {
         low: 8,
         bits: 4,
         name: "error",
-        meaning: "how: 0 well, 1 aborted, 2 read error, 3 write error, 4 watchdog, 5 unknown mode, 8 more pairs than the \
+        meaning: "how: 0 well, 1 aborted, 2 read error, 3 write error, 4 watchdog, 5 unknown mode, 6 more contacts \
+                  than the destination has lines for (where only contacts come back), 8 more pairs than the \
                   buffers have lines for",
     };
     /// The job.

@@ -12,6 +12,7 @@ mod transmit;
 
 use std::sync::Arc;
 
+use crate::config::Results;
 use crate::hdl::{Errors, Graph, Module};
 
 use super::control::{ERROR_BITS, JobError};
@@ -108,29 +109,29 @@ pub(super) fn afu_top(spec: &Spec, core: &Arc<Module>) -> Result<Arc<Module>, Er
     let core_answered = (rd_valid & is_core_s(mdata0, epoch, slot_bits)).named("core_answered");
     let (rd_ready, wr_ready) = (wire("core_rd_ready", 1), wire("core_wr_ready", 1));
     let never = graph.constant(1, 0);
-    let core = graph.instance(
-        "core",
-        core,
-        &[
-            ("start", start),
-            ("source", sequence.output("source")),
-            ("destination", sequence.output("destination")),
-            ("count", sequence.output("count")),
-            ("mode", sequence.output("mode")),
-            ("epoch", core_epoch),
-            ("watchdog", sequence.output("watchdog")),
-            ("abort_job", sequence.output("abort_job")),
-            ("rd_req_ready", rd_ready),
-            ("rd_rsp_valid", core_answered),
-            ("rd_rsp_tag", mdata0.low(EPOCH_BITS + slot_bits)),
-            ("rd_rsp_data", data),
-            ("rd_rsp_error", never),
-            ("wr_req_ready", wr_ready),
-            ("wr_rsp_valid", acknowledge.output("valid")),
-            ("wr_rsp_tag", acknowledge.output("tag")),
-            ("wr_rsp_error", never),
-        ],
-    );
+    let mut core_inputs = vec![
+        ("start", start),
+        ("source", sequence.output("source")),
+        ("destination", sequence.output("destination")),
+        ("count", sequence.output("count")),
+        ("mode", sequence.output("mode")),
+        ("epoch", core_epoch),
+        ("watchdog", sequence.output("watchdog")),
+        ("abort_job", sequence.output("abort_job")),
+        ("rd_req_ready", rd_ready),
+        ("rd_rsp_valid", core_answered),
+        ("rd_rsp_tag", mdata0.low(EPOCH_BITS + slot_bits)),
+        ("rd_rsp_data", data),
+        ("rd_rsp_error", never),
+        ("wr_req_ready", wr_ready),
+        ("wr_rsp_valid", acknowledge.output("valid")),
+        ("wr_rsp_tag", acknowledge.output("tag")),
+        ("wr_rsp_error", never),
+    ];
+    if spec.config.results == Results::Hits {
+        core_inputs.push(("destination_lines", sequence.output("destination_lines")));
+    }
+    let core = graph.instance("core", core, &core_inputs);
     capability.drive(core.output("capability"));
     core_done.drive(core.output("done"));
     core_error.drive(core.output("error"));

@@ -1,11 +1,11 @@
-//! The controller around a kernel of fixed delay, run in the evaluator over small links of the test's own: every
-//! pair comes back once, in order, whatever the link does.
+//! The controller around a kernel of fixed delay, in the evaluator, at one end of a small link of its own; and what must
+//! come back.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
 
 use contact_afu::afu::{Afu, Spec};
-use contact_afu::config::Config;
+use contact_afu::config::{Config, Results};
 use contact_afu::hdl::{Evaluator, Graph, Module, Pin};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -71,24 +71,35 @@ const NAMES: [&str; 30] = [
     "wr_req_data",
 ];
 
-struct Bench {
-    run: Evaluator,
+pub struct Bench {
+    spec: Spec,
+    /// Which pairs hit.
+    pub hits: fn(u64) -> bool,
+    pub run: Evaluator,
     ports: Ports,
     random: Xoshiro256PlusPlus,
     /// Chance in 8 that the link is ready or answers in a cycle; 8 is an ideal link.
     eagerness: u32,
-    reads: Vec<(u64, u64)>,
-    writes: VecDeque<u64>,
-    written: Vec<(u64, Vec<u64>)>,
+    pub reads: Vec<(u64, u64)>,
+    pub writes: VecDeque<u64>,
+    pub written: Vec<(u64, Vec<u64>)>,
 }
 
 impl Bench {
-    fn new(scpus: u32, eagerness: u32, seed: u64) -> Self {
-        let afu = Afu::around(Spec::from(Config { scpus, ..Config::default() }), kernel()).unwrap();
+    pub fn new(scpus: u32, eagerness: u32, seed: u64) -> Self {
+        Self::of(Spec::from(Config { scpus, ..Config::default() }), eagerness, seed)
+    }
+
+    pub fn of(spec: Spec, eagerness: u32, seed: u64) -> Self {
+        let scpus = spec.config.scpus;
+        let afu = Afu::around(spec.clone(), kernel()).unwrap();
         let mut run = Evaluator::new(afu.top(), &[("SCPUS", scpus)]).unwrap();
         run.reset();
-        let pins = NAMES.iter().map(|name| (*name, run.pin(name).unwrap())).collect();
+        let more = (spec.config.results == Results::Hits).then_some("destination_lines");
+        let pins = NAMES.into_iter().chain(more).map(|name| (name, run.pin(name).unwrap())).collect();
         Self {
+            spec,
+            hits: |pair| mixed(pair) & 1 == 1,
             run,
             ports: Ports { pins },
             random: Xoshiro256PlusPlus::seed_from_u64(seed),
@@ -99,12 +110,12 @@ impl Bench {
         }
     }
 
-    fn set(&mut self, name: &str, value: u64) {
+    pub fn set(&mut self, name: &str, value: u64) {
         let pin = self.ports.pin(name);
         self.run.write(pin, value);
     }
 
-    fn get(&mut self, name: &str) -> u64 {
+    pub fn get(&mut self, name: &str) -> u64 {
         let pin = self.ports.pin(name);
         self.run.read(pin)
     }
@@ -114,7 +125,7 @@ impl Bench {
     }
 
     /// One cycle of a link that answers in random order, at random times.
-    fn cycle(&mut self) {
+    pub fn cycle(&mut self) {
         let (read_ready, write_ready) = (self.eager(), self.eager());
         self.set("rd_req_ready", u64::from(read_ready));
         self.set("wr_req_ready", u64::from(write_ready));
@@ -125,7 +136,8 @@ impl Bench {
             let (address, tag) = self.reads.remove(index);
             self.set("rd_rsp_tag", tag);
             let pin = self.ports.pin("rd_rsp_data");
-            self.run.write_words(pin, &line(address));
+            let line = self.line(address);
+            self.run.write_words(pin, &line);
         }
         let answer_write = self.eager() && !self.writes.is_empty();
         self.set("wr_rsp_valid", u64::from(answer_write));
@@ -145,14 +157,27 @@ impl Bench {
             assert!(!self.writes.contains(&tag), "a write tag is used twice");
             self.writes.push_back(tag);
             let pin = self.ports.pin("wr_req_data");
-            let mut data = vec![0; 8];
+            let mut data = vec![0; self.spec.line_bits as usize / 64];
             self.run.read_words(pin, &mut data);
             self.written.push((address, data));
         }
         self.run.step();
     }
 
-    fn start(&mut self, count: u64, epoch: u64) {
+    /// A line of pairs.
+    fn line(&self, address: u64) -> Vec<u64> {
+        let per_line = u64::from(self.spec.line_bits / 256);
+        let first = per_line * (address - 1000);
+        let words: Vec<u64> = (first..first + per_line).flat_map(|pair| words(self.x1(pair), pair)).collect();
+        words.chunks(2).map(|two| two[0] | two[1] << 32).collect()
+    }
+
+    /// The first word of a pair: a number of its own, never a NaN or an infinity.
+    fn x1(&self, pair: u64) -> u64 {
+        mixed(pair) & !1 | u64::from((self.hits)(pair))
+    }
+
+    pub fn start(&mut self, count: u64, epoch: u64) {
         self.written.clear();
         for (name, value) in [("source", 1000), ("destination", 5000), ("count", count), ("epoch", epoch), ("start", 1)]
         {
@@ -163,7 +188,7 @@ impl Bench {
     }
 
     /// Runs to the end of the job; gives the cycles it took.
-    fn finish(&mut self) -> u64 {
+    pub fn finish(&mut self) -> u64 {
         for cycles in 1..200_000 {
             if self.get("done") == 1 {
                 return cycles;
@@ -173,7 +198,7 @@ impl Bench {
         panic!("the job does not end");
     }
 
-    fn check(&mut self, count: u64) {
+    pub fn check(&mut self, count: u64) {
         assert_eq!(self.get("error"), 0);
         assert!(self.reads.is_empty() && self.writes.is_empty());
         self.written.sort();
@@ -183,149 +208,61 @@ impl Bench {
             for half in 0..2 {
                 let pair = 2 * index as u64 + half;
                 let got = &data[4 * half as usize..4 * half as usize + 4];
-                let expected = if pair < count { expected(pair) } else { [0; 4] };
+                let expected = if pair < count { expected(self.x1(pair), pair) } else { [0; 4] };
                 assert_eq!(got, expected, "pair {pair} of {count}");
             }
         }
-        let contacts = (0..count).filter(|pair| x1(*pair) & 1 == 1).count() as u64;
+        let contacts = (0..count).filter(|pair| (self.hits)(*pair)).count() as u64;
         assert_eq!(self.get("contacts"), contacts);
+    }
+
+    /// Only contacts, in order, densely packed, as far as there is room for their lines; but all are counted.
+    pub fn check_hits(&mut self, count: u64, room: u64) {
+        let what = format!("{count} pairs, {:?}", self.spec);
+        let hits: Vec<u64> = (0..count).filter(|pair| (self.hits)(*pair)).collect();
+        let contact = self.spec.config.contact;
+        let record = |&pair: &u64| {
+            // Number, then the words in use, up to a power of two.
+            let full = expected(self.x1(pair), pair);
+            let word = |index: usize| full[index / 2] >> (index % 2 * 32) & 0xffff_ffff;
+            let mut words = vec![pair];
+            for (asked, part) in [(contact.position, 0..3), (contact.normal, 3..6), (contact.depth, 6..7)] {
+                words.extend(part.filter(|_| asked).map(word));
+            }
+            words.extend(contact.need_distance().then(|| word(7)));
+            words.resize(words.len().next_power_of_two(), 0);
+            words
+        };
+        let mut words: Vec<u64> = hits.iter().flat_map(record).collect();
+        let line_words = self.spec.line_bits as usize / 32;
+        words.resize(words.len().next_multiple_of(line_words), 0);
+        let lines: Vec<Vec<u64>> =
+            words.chunks(line_words).map(|line| line.chunks(2).map(|two| two[0] | two[1] << 32).collect()).collect();
+        let fits = lines.len() as u64 <= room;
+        assert_eq!(self.get("error"), if fits { 0 } else { 6 }, "{what}");
+        assert_eq!(self.get("contacts"), hits.len() as u64, "{what}");
+        assert!(self.reads.is_empty() && self.writes.is_empty());
+        self.written.sort();
+        let expected = (5000..).zip(lines).take(room as usize).collect::<Vec<_>>();
+        assert!(self.written == expected, "{what}: {:x?}, not {expected:x?}", self.written);
     }
 }
 
-/// The first word of a pair: a number of its own, never a NaN or an infinity.
-fn x1(pair: u64) -> u64 {
+/// A number of its own for each pair.
+pub fn mixed(pair: u64) -> u64 {
     (pair.wrapping_mul(2_654_435_761) ^ pair << 3) & 0x3fff_ffff
 }
 
-fn words(pair: u64) -> [u64; 8] {
+fn words(x1: u64, pair: u64) -> [u64; 8] {
     let mut words = [pair & 0xffff; 8];
-    words[0] = x1(pair);
+    words[0] = x1;
     words
 }
 
-fn line(address: u64) -> Vec<u64> {
-    let first = 2 * (address - 1000);
-    let words: Vec<u64> = [first, first + 1].into_iter().flat_map(words).collect();
-    words.chunks(2).map(|pair| pair[0] | pair[1] << 32).collect()
-}
-
-fn expected(pair: u64) -> [u64; 4] {
-    let mut record = words(pair);
+fn expected(x1: u64, pair: u64) -> [u64; 4] {
+    let mut record = words(x1, pair);
     let hit = record[0] & 1;
     let flow = if hit == 0 { 1 } else { 3 - (record[0] >> 1 & 1) };
     record[7] = hit | flow << 1;
     std::array::from_fn(|index| record[2 * index] | record[2 * index + 1] << 32)
-}
-
-#[test]
-fn every_pair_comes_back_once_and_in_order() {
-    for scpus in [1, 2, 3, 7, 10, 16] {
-        for eagerness in [8, 5, 2] {
-            let mut bench = Bench::new(scpus, eagerness, u64::from(scpus));
-            for (epoch, count) in [0, 1, 2, 3, 257, 128, 1].into_iter().enumerate() {
-                bench.start(count, epoch as u64);
-                bench.finish();
-                bench.check(count);
-            }
-        }
-    }
-}
-
-#[test]
-fn an_ideal_link_is_kept_busy() {
-    let mut bench = Bench::new(2, 8, 1);
-    bench.start(4000, 1);
-    let cycles = bench.finish();
-    assert!(cycles < 2000 + 60, "4000 pairs on two SCPUs took {cycles} cycles");
-    let mut bench = Bench::new(1, 8, 1);
-    bench.start(4000, 1);
-    let cycles = bench.finish();
-    assert!(cycles < 4000 + 60, "4000 pairs on one SCPU took {cycles} cycles");
-}
-
-#[test]
-fn an_aborted_job_ends_and_the_next_is_right() {
-    for at in 0..120 {
-        let mut bench = Bench::new(3, 5, at);
-        bench.start(60, 1);
-        for _ in 0..at {
-            bench.cycle();
-        }
-        let ended = bench.get("done") == 1;
-        bench.set("abort_job", 1);
-        bench.cycle();
-        bench.set("abort_job", 0);
-        bench.finish();
-        if !ended {
-            let error = bench.get("error");
-            assert!(error == 1 || error == 0 && bench.written.len() == 30, "aborted after {at} cycles: error {error}");
-        }
-        assert!(bench.reads.is_empty() && bench.writes.is_empty(), "ended with requests unanswered");
-        bench.start(33, 2);
-        bench.finish();
-        bench.check(33);
-    }
-}
-
-#[test]
-fn after_a_reset_stale_responses_do_no_harm() {
-    for at in 0..120 {
-        let mut bench = Bench::new(3, 3, at);
-        bench.start(60, 1);
-        for _ in 0..at {
-            bench.cycle();
-        }
-        bench.run.reset();
-        bench.start(33, 2);
-        bench.finish();
-        bench.reads.retain(|(_, tag)| tag >> 6 == 2);
-        bench.writes.retain(|tag| tag >> 6 == 2);
-        bench.check(33);
-    }
-}
-
-#[test]
-fn a_lost_response_ends_in_the_watchdog() {
-    let mut bench = Bench::new(3, 8, 1);
-    bench.set("watchdog", 50);
-    bench.start(60, 1);
-    for _ in 0..10 {
-        bench.cycle();
-    }
-    bench.reads.remove(0);
-    bench.finish();
-    assert_eq!(bench.get("error"), 4);
-    bench.start(33, 2);
-    bench.finish();
-    bench.check(33);
-}
-
-#[test]
-fn error_responses_and_unknown_modes_end_the_job() {
-    for (port, code) in [("rd_rsp_error", 2), ("wr_rsp_error", 3)] {
-        let mut bench = Bench::new(3, 8, 1);
-        bench.start(300, 1);
-        for _ in 0..40 {
-            bench.cycle();
-        }
-        bench.set(port, 1);
-        for _ in 0..3 {
-            bench.cycle();
-        }
-        bench.set(port, 0);
-        bench.finish();
-        assert_eq!(bench.get("error"), code);
-        bench.start(33, 2);
-        bench.finish();
-        bench.check(33);
-    }
-    let mut bench = Bench::new(3, 8, 1);
-    bench.set("mode", 1);
-    bench.start(33, 1);
-    bench.finish();
-    assert_eq!(bench.get("error"), 5);
-    bench.set("mode", 0);
-    bench.start(33, 2);
-    bench.finish();
-    bench.check(33);
 }

@@ -1,0 +1,177 @@
+//! Only contacts come back: the same lines for every number of SCPUs over every link, at the speed of the input.
+
+use contact_afu::afu::JobError;
+use contact_afu::config::{Config, Results};
+use contact_afu::cosim::drive::DriveError;
+use contact_afu::cosim::{Instance, Job};
+use contact_afu::kernel::PairRecord;
+use contact_afu::link::{Fault, LinkModel};
+use contact_afu::pairs::Set;
+
+use crate::bench::{Case, config, driver, generated};
+use crate::faults::verdict;
+
+fn hits(scpus: u32, profile: &str, contact: &str) -> Config {
+    Config { results: Results::Hits, ..config(scpus, profile, contact) }
+}
+
+/// Two spheres that touch or don't.
+fn pair(touching: bool, number: u16) -> PairRecord {
+    let far = if touching { 1.5 } else { 2.5 };
+    PairRecord::from_spheres([f32::from(number), 0.0, 0.0, 1.0], [f32::from(number), far, 0.0, 1.0])
+}
+
+/// None, a few, all, and invalid pairs among them; none, one, two, many.
+fn cases(config: &Config) -> Vec<Case> {
+    let kinds: [fn(u16) -> bool; 3] = [|_| false, |number| number % 20 == 7, |_| true];
+    let mut cases: Vec<Case> = [0, 1, 2, 3, 177].into_iter().map(|n| Case::random(config, n, n + 5)).collect();
+    for touching in kinds {
+        let mut pairs: Vec<_> = (0..203).map(|number| pair(touching(number), number)).collect();
+        cases.push(Case::new(config, pairs.clone()));
+        for number in [0, 3, 4, 9, 202] {
+            pairs[number].0[7] = f32::NAN.to_bits();
+        }
+        cases.push(Case::new(config, pairs));
+    }
+    cases
+}
+
+/// The whole record, one a line.
+const WHOLE: &str = "depth,normal,position";
+
+#[test]
+fn the_same_hits_for_every_number_of_scpus_over_every_link() {
+    // One, four and sixteen records a line.
+    for (numbers, contact) in [(&[1, 2, 3, 7, 10, 16][..], WHOLE), (&[1, 7], "depth"), (&[2], "hit")] {
+        let cases = cases(&hits(1, "e8f3z", contact));
+        for &scpus in numbers {
+            let model = generated(&hits(scpus, "e8f3z", contact));
+            for (link, seed) in LinkModel::PRESETS.into_iter().zip(1..) {
+                let afu = model.instance(seed).unwrap();
+                let mut driver = driver(&afu, link, seed);
+                assert_eq!(driver.capability().results, Results::Hits);
+                for case in &cases {
+                    let what = format!("{scpus} SCPUs, {contact}, {link}, {} pairs", case.pairs.len());
+                    let outcome = driver.run(&case.job()).unwrap_or_else(|e| panic!("{what}: {e}"));
+                    case.check(&outcome, &what);
+                }
+            }
+        }
+    }
+}
+
+fn afu(scpus: u32) -> Instance {
+    generated(&hits(scpus, "e8f3z", WHOLE)).instance(1).unwrap()
+}
+
+/// One pair in twenty touches: a line of pairs a cycle goes in, and 64 bytes come out for a contact.
+#[test]
+fn few_hits_cost_no_time_and_few_bytes() {
+    let config = hits(2, "e8f3z", WHOLE);
+    let pairs: Vec<_> = (0..8_000).map(|number| pair(number % 20 == 7, number)).collect();
+    let case = Case::new(&config, pairs);
+    for scpus in [2, 10] {
+        let outcome = driver(&afu(scpus), "ideal", 1).run(&case.job()).unwrap();
+        case.check(&outcome, "one in twenty");
+        assert_eq!((outcome.bytes_read, outcome.bytes_written), (8_000 * 32, 400 * 64));
+        let share = 0.5 * 8_000.0 / outcome.cycles as f64;
+        assert!((0.97..=1.0).contains(&share), "{scpus} SCPUs: {} cycles", outcome.cycles);
+    }
+}
+
+/// What there is no room for is not written, but all contacts are counted: the host knows how much room to give.
+#[test]
+fn more_hits_than_room_end_in_an_error_of_their_own() {
+    let case = Case::new(&hits(3, "e8f3z", WHOLE), (0..100).map(|number| pair(number % 3 > 0, number)).collect());
+    let afu = afu(3);
+    for (link, seed) in LinkModel::PRESETS.into_iter().zip(1..) {
+        let mut driver = driver(&afu, link, seed);
+        for room in [0, 1, 65, 66, 0, 100] {
+            let outcome = driver.run(&case.job_with_room(room)).unwrap_or_else(|e| panic!("{link}, {room} lines: {e}"));
+            assert_eq!(outcome.job_error(), (room < 66).then_some(JobError::Overflow), "{link}, {room} lines");
+            assert_eq!(case.check_written(&outcome, "as far as there is room") as u64, room.min(66));
+            assert!(case.status_is_right(&outcome), "{link}, {room} lines: {outcome:?}");
+        }
+    }
+}
+
+#[test]
+fn aborts_resets_and_faults_of_the_link_leave_nothing_to_the_next_job() {
+    let config = hits(3, "e8f3z", WHOLE);
+    let spoilt = Case::new(&config, (0..301).map(|number| pair(number % 4 > 0, number)).collect());
+    let next = Case::random(&config, 57, 22);
+    let afu = afu(3);
+    for (link, seed) in LinkModel::PRESETS.into_iter().zip(1..) {
+        let mut driver = driver(&afu, link, seed);
+        for moment in (0..40).chain((40..700).step_by(53)) {
+            let what = format!("{link}, after {moment} cycles");
+            driver.start(&spoilt.job()).unwrap();
+            let done = (0..moment).any(|_| driver.step().unwrap());
+            if moment % 2 == 0 {
+                driver.reset().unwrap();
+            } else {
+                driver.abort();
+                while !driver.step().unwrap() {}
+                let outcome = driver.finish().unwrap();
+                assert_eq!(outcome.job_error(), (!done).then_some(JobError::Aborted), "{what}");
+                spoilt.check_written(&outcome, &what);
+            }
+            let elsewhere = Job { destination_address: 1 << 41, ..next.job() };
+            let outcome = driver.run(&elsewhere).unwrap_or_else(|e| panic!("{what}: {e}"));
+            next.check(&outcome, &what);
+        }
+        for (fault, error) in [(Fault::ReadError(30), JobError::Read), (Fault::WriteError(30), JobError::Write)] {
+            driver.link_mut().plan(&[fault]);
+            let outcome = driver.run(&spoilt.job()).unwrap();
+            assert_eq!(outcome.job_error(), Some(error), "{link}");
+            driver.link_mut().plan(&[]);
+            let elsewhere = Job { destination_address: 1 << 41, ..next.job() };
+            next.check(&driver.run(&elsewhere).unwrap(), link);
+        }
+    }
+}
+
+/// A job and an AFU that don't fit are no job.
+#[test]
+fn a_job_that_expects_all_results_is_refused() {
+    let case = Case::random(&config(3, "e8f3z", WHOLE), 10, 1);
+    let error = driver(&afu(3), "ideal", 1).run(&case.job()).unwrap_err();
+    assert_eq!(error, DriveError::Results { expected: Results::All, found: Results::Hits });
+}
+
+/// The comparison can fail: in the sieve a number, the order of two neighbours, a count; in the kernel a rounding; on
+/// the link a bit.
+#[test]
+fn planted_faults_are_found() {
+    let config = hits(2, "bfloat", "depth");
+    let right = verdict(&config, "fp_mul_e8f7.v", "wire round_up = ", str::to_owned);
+    assert!(right.is_good(), "{:?} {:?}", right.mismatches.first(), right.unmet);
+    assert_eq!((right.pairs, right.contacts.len()), (2_000, right.numbers.len()));
+    for (file, left, wrong) in [
+        ("fp_mul_e8f7.v", "wire round_up = ", "1'b0"),
+        ("contact_afu_sieve.v", "number_1 = ", "emerged"),
+        ("contact_afu_sieve.v", "comes_to_0_in_0 = ", "1'b0"),
+        ("contact_afu_sieve.v", "assign all_out = ", "emerged == count"),
+        ("contact_afu_packer.v", "wire flush = ", "1'b0"),
+    ] {
+        let verdict = verdict_or_end(&config, file, left, wrong);
+        assert!(verdict, "{file}: {left}{wrong}");
+    }
+    let case = Case::new(&hits(3, "e8f3z", WHOLE), Set::Random(301).pairs(5));
+    let afu = afu(3);
+    let mut driver = driver(&afu, "shuffled", 1);
+    case.check(&driver.run(&case.job()).unwrap(), "without a fault");
+    driver.link_mut().plan(&[Fault::ReadFlipped { read: 100, bit: 29 }]);
+    let outcome = driver.run(&case.job()).unwrap();
+    assert!(!case.wrong_lines(&outcome).is_empty() || !case.status_is_right(&outcome));
+}
+
+/// Whether a fault shows: as a verdict that is not good, or as a job that does not end or breaks the protocol.
+fn verdict_or_end(config: &Config, file: &str, left: &str, wrong: &str) -> bool {
+    use contact_afu::verify::VerifyError;
+    match crate::faults::try_verdict(config, file, left, |_| wrong.to_owned()) {
+        Ok(verdict) => !verdict.is_good(),
+        Err(VerifyError::Drive(_)) => true,
+        Err(error) => panic!("{file}: {error}"),
+    }
+}
