@@ -9,7 +9,7 @@ use contact_afu::cosim::drive::{DriveError, ProtocolError};
 use contact_afu::cosim::{Driver, File, Job, Model, Outcome, Source, Trace};
 use contact_afu::link::{Direction, Fault, Link, LinkModel, Order};
 use contact_afu::pairs::Set;
-use contact_afu::verify::{Bench, Verdict, VerifyError};
+use contact_afu::verify::{Bench, Verdict};
 
 use crate::bench::{Case, committed, config, driver, of, source};
 
@@ -24,23 +24,14 @@ fn change(text: &str, left: &str, right: impl Fn(&str) -> String) -> String {
 }
 
 /// The way of `afu cosim --rtl`: a folder that `afu rtl` wrote, one line of which was changed.
-pub fn try_verdict(
-    config: &Config,
-    file: &str,
-    left: &str,
-    right: impl Fn(&str) -> String,
-) -> Result<Verdict, VerifyError> {
+fn verdict(config: &Config, file: &str, left: &str, right: impl Fn(&str) -> String) -> Verdict {
     let folder = tempfile::tempdir().unwrap();
     for (name, text) in Afu::generate(Spec::from(config.clone())).unwrap().files() {
         let text = if name == file { change(&text, left, &right) } else { text };
         fs::write(folder.path().join(name), text).unwrap();
     }
     let bench = Bench::of_folder(folder.path(), None, Trace::Off).unwrap();
-    bench.run(&Set::Random(2_000).pairs(1), &LinkModel::shuffled(), 1)
-}
-
-pub fn verdict(config: &Config, file: &str, left: &str, right: impl Fn(&str) -> String) -> Verdict {
-    try_verdict(config, file, left, right).unwrap()
+    bench.run(&Set::Random(2_000).pairs(1), &LinkModel::shuffled(), 1).unwrap()
 }
 
 #[test]
@@ -61,7 +52,7 @@ fn a_wrong_gate_a_wrong_rounding_and_a_flipped_bit_are_mismatches() {
 
 /// How a fault shows.
 #[derive(Debug, PartialEq)]
-enum Found {
+pub enum Found {
     Nothing,
     /// So many destination lines differ from the reference's.
     WrongLines(usize),
@@ -71,7 +62,7 @@ enum Found {
     Error(DriveError),
 }
 
-fn judge(case: &Case, outcome: Result<Outcome, DriveError>) -> Found {
+pub fn judge(case: &Case, outcome: Result<Outcome, DriveError>) -> Found {
     match outcome {
         Err(error) => Found::Error(error),
         Ok(outcome) => match case.wrong_lines(&outcome).len() {
@@ -86,7 +77,7 @@ fn judge(case: &Case, outcome: Result<Outcome, DriveError>) -> Found {
 /// long then that it never ends a job): each wants only a line, but a model of its own would take some seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(u32)]
-enum Planted {
+enum Controller {
     Nothing,
     /// The last pair is neither taken nor missed.
     LastPairDropped,
@@ -102,74 +93,77 @@ enum Planted {
     HalfCounted,
 }
 
-/// File, the assignment's line, the fault, and what is assigned then.
-const FAULTS: [(&str, &str, Planted, &str); 8] = [
+/// File, the assignment's line, the fault's number from 1, and what is assigned then.
+pub type Planted = (&'static str, &'static str, u32, &'static str);
+
+const FAULTS: [Planted; 8] = [
     (
         "contact_afu_feeder.v",
         "remaining <= start",
-        Planted::LastPairDropped,
+        Controller::LastPairDropped as u32,
         "start ? (count - 32'd1) : (remaining - {30'd0, group})",
     ),
-    ("contact_afu_packer.v", "wire all_out = ", Planted::LastPairDropped, "emerged == (count - 32'd1)"),
-    ("contact_afu.v", "slots_record_0_d1 <= ", Planted::LanesSwapped, "slots_record_1"),
-    ("contact_afu.v", "slots_record_1_d1 <= ", Planted::LanesSwapped, "slots_record_0"),
-    ("contact_afu_dispatcher.v", "assign idle = ", Planted::DoneEarly, "~wr_req_valid"),
-    ("contact_afu_collector.v", "assign response = ", Planted::EpochIgnored, "rd_rsp_valid"),
-    ("contact_afu_control.v", "room <= begin_job", Planted::CreditsIgnored, "room"),
+    ("contact_afu_packer.v", "wire all_out = ", Controller::LastPairDropped as u32, "emerged == (count - 32'd1)"),
+    ("contact_afu.v", "slots_record_0_d1 <= ", Controller::LanesSwapped as u32, "slots_record_1"),
+    ("contact_afu.v", "slots_record_1_d1 <= ", Controller::LanesSwapped as u32, "slots_record_0"),
+    ("contact_afu_dispatcher.v", "assign idle = ", Controller::DoneEarly as u32, "~wr_req_valid"),
+    ("contact_afu_collector.v", "assign response = ", Controller::EpochIgnored as u32, "rd_rsp_valid"),
+    ("contact_afu_control.v", "room <= begin_job", Controller::CreditsIgnored as u32, "room"),
     (
         "contact_afu_packer.v",
         "invalid_count <= start",
-        Planted::HalfCounted,
+        Controller::HalfCounted as u32,
         "start ? 32'd0 : (invalid_count + {31'd0, invalid_0})",
     ),
 ];
 
-const SELECTOR_BIT: u32 = 28;
+pub const SELECTOR_BIT: u32 = 28;
 
-fn model_of_faults(config: &Config) -> Model {
+/// A model with all these faults, none of which acts in a job whose watchdog has zero at the top.
+pub fn model_of_faults(config: &Config, faults: &[Planted]) -> Model {
     let mut files: Vec<File> = source(config).files().to_vec();
-    for (name, left, planted, wrong) in FAULTS {
+    for &(name, left, planted, wrong) in faults {
         let file = files.iter_mut().find(|file| file.name == name).unwrap();
-        let chosen = format!("contact_afu.control.job_watchdog[31:{SELECTOR_BIT}] == 4'd{}", planted as u32);
+        let chosen = format!("contact_afu.control.job_watchdog[31:{SELECTOR_BIT}] == 4'd{planted}");
         file.text = change(&file.text, left, |right| format!("({chosen}) ? ({wrong}) : ({right})"));
     }
     let source = Source::new("contact_afu", files).parameter("SCPUS", config.scpus.into());
     Model::build(&source, Trace::Off).unwrap()
 }
 
-fn job<'a>(case: &'a Case, planted: Planted) -> Job<'a> {
+fn job<'a>(case: &'a Case, planted: Controller) -> Job<'a> {
     Job { watchdog: (planted as u32) << SELECTOR_BIT, max_cycles: Some(20_000), ..case.job() }
 }
 
 #[test]
 fn faults_of_the_controller_are_found() {
     let config = config(2, "e8f3z", "depth");
-    let model = model_of_faults(&config);
+    let model = model_of_faults(&config, &FAULTS);
     let case = Case::random(&config, 4_003, 3);
     // Writes so slow that results wait for them in all the room there is.
     let (read, name) = (Direction::steady(3, 0), "slow writes".to_owned());
     let write = Direction { lines_per_cycle: 0.05, ..read };
     let link = LinkModel { name, read, write, order: Order::InOrder, ..LinkModel::ideal() };
-    let run = |planted: Planted| {
+    let run = |planted: Controller| {
         let afu = model.instance(1).unwrap();
         let mut driver = Driver::new(&afu, Link::new(link.clone(), 1).unwrap()).unwrap();
         judge(&case, driver.run(&job(&case, planted)))
     };
-    assert_eq!(run(Planted::Nothing), Found::Nothing);
-    assert_eq!(run(Planted::LastPairDropped), Found::WrongLines(1));
-    assert_eq!(run(Planted::LanesSwapped), Found::WrongLines(case.lines.len()));
-    let early = run(Planted::DoneEarly);
+    assert_eq!(run(Controller::Nothing), Found::Nothing);
+    assert_eq!(run(Controller::LastPairDropped), Found::WrongLines(1));
+    assert_eq!(run(Controller::LanesSwapped), Found::WrongLines(case.lines.len()));
+    let early = run(Controller::DoneEarly);
     assert!(
         matches!(early, Found::Error(DriveError::Protocol { what: ProtocolError::DoneEarly { .. }, .. })),
         "{early:?}"
     );
-    let crowded = run(Planted::CreditsIgnored);
+    let crowded = run(Controller::CreditsIgnored);
     assert!(!matches!(crowded, Found::Nothing | Found::WrongStatus), "{crowded:?}");
-    assert_eq!(run(Planted::HalfCounted), Found::WrongStatus);
+    assert_eq!(run(Controller::HalfCounted), Found::WrongStatus);
 
     // This one shows only after a reset.
     let spoilt = Case::random(&config, 301, 4);
-    let harm_after_resets = |planted: Planted| {
+    let harm_after_resets = |planted: Controller| {
         let afu = model.instance(1).unwrap();
         let mut driver = driver(&afu, "hostile", 1);
         (20..400).step_by(20).any(|moment| {
@@ -180,8 +174,8 @@ fn faults_of_the_controller_are_found() {
             judge(&case, driver.run(&next)) != Found::Nothing
         })
     };
-    assert!(!harm_after_resets(Planted::Nothing));
-    assert!(harm_after_resets(Planted::EpochIgnored));
+    assert!(!harm_after_resets(Controller::Nothing));
+    assert!(harm_after_resets(Controller::EpochIgnored));
 }
 
 /// The host's side of the same: what the link does to the data is seen in the contacts.
