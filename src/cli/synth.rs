@@ -1,14 +1,14 @@
 //! `afu synth`: an operator, an SCPU or an AFU through Yosys and nextpnr.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use contact_afu::config::Config;
 use contact_afu::hdl::DelayModel;
 use contact_afu::number::Format;
 use contact_afu::operator::Operator;
-use contact_afu::report::synth as report;
-use contact_afu::synth::{self, SynthError, Target, Unit, synthesise};
+use contact_afu::report::{operators, synth as report};
+use contact_afu::synth::{self, Figures, SynthError, Target, Unit, synthesise};
 
 use super::failure::{Failure, Kind};
 use super::list::List;
@@ -24,6 +24,12 @@ pub struct Synth {
     /// One SCPU: the kernel with detection of invalid pairs. With neither this nor --operator: the whole AFU
     #[arg(long)]
     kernel: bool,
+    /// Fit the target's delay model to routed graphs, and write it and how good it is to FILE
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["operator", "kernel", "json", "check"])]
+    fit: Option<PathBuf>,
+    /// Read figures that --json wrote, and print docs/operators.md: them beside the best public cores
+    #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with_all = ["operator", "kernel", "json", "check", "fit"])]
+    table: Vec<PathBuf>,
     /// Seeds of the placer; the clock is their median
     #[arg(long, value_name = "LIST", default_value = "1,2,3")]
     seeds: List,
@@ -41,10 +47,16 @@ pub struct Synth {
 }
 
 pub fn run(options: &Synth) -> Result<(), Failure> {
+    if !options.table.is_empty() {
+        return page(&options.table);
+    }
     let target = match &options.one.machine.target {
         Some(word) => word.parse().map_err(|error| Failure::caused(Kind::Usage, error))?,
         None => Target::Ecp5,
     };
+    if let Some(file) = &options.fit {
+        return fit(file, target, &options.seeds.0);
+    }
     let config = options.one.config_for_any_target()?;
     let seeds = if options.no_route { Vec::new() } else { options.seeds.0.clone() };
     let how = synth::Options { target, seeds };
@@ -71,6 +83,33 @@ pub fn run(options: &Synth) -> Result<(), Failure> {
             Err(Failure::new(Kind::Unmet, message))
         }
     }
+}
+
+fn page(files: &[PathBuf]) -> Result<(), Failure> {
+    let mut all: Vec<Figures> = Vec::new();
+    for file in files {
+        let fail = |error: &dyn std::fmt::Display| Failure::new(Kind::Usage, format!("{}: {error}", file.display()));
+        let text = std::fs::read_to_string(file).map_err(|error| fail(&error))?;
+        // One unit's figures, or a list of several's.
+        if text.trim_start().starts_with('[') {
+            all.extend(serde_json::from_str::<Vec<Figures>>(&text).map_err(|error| fail(&error))?);
+        } else {
+            all.push(serde_json::from_str(&text).map_err(|error| fail(&error))?);
+        }
+    }
+    let page = operators::page(&all).map_err(|error| Failure::caused(Kind::Other, error))?;
+    output::show(page.trim_end(), false)
+}
+
+fn fit(file: &Path, target: Target, seeds: &[u32]) -> Result<(), Failure> {
+    let spinner = progress::spinner("");
+    let fit = synth::fit::fit(target, seeds, |what| spinner.set_message(what.to_owned()))?;
+    spinner.finish_and_clear();
+    let Some(fit) = fit else {
+        return Err(Failure::new(Kind::Usage, format!("--target {target}: there is no router for it here")));
+    };
+    output::show(&report::fit(&fit), output::is_stdout(file))?;
+    output::json(file, &fit)
 }
 
 fn units(options: &Synth, config: &Config) -> Result<Vec<Unit>, Failure> {

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::module::{Module, Node, Op};
+use super::module::{Module, Node, NodeId, Op};
 
 /// What a clocked design of a target can do between two registers.
 ///
@@ -20,8 +20,11 @@ pub struct DelayModel {
     pub lut: f64,
     /// Inputs of a look-up table.
     pub lut_inputs: u32,
-    /// One level of two-way multiplexers: their select lines go far.
+    /// One level of two-way multiplexers, beside what its select line takes.
     pub mux: f64,
+    /// A line that goes to 2^n places takes n times this longer.
+    #[serde(default)]
+    pub fanout: f64,
     /// Into a carry chain and out of it at a sum bit.
     pub carry: f64,
     /// One bit of a carry chain.
@@ -36,12 +39,20 @@ pub struct DelayModel {
 
 impl Default for DelayModel {
     fn default() -> Self {
+        Self::guess()
+    }
+}
+
+impl DelayModel {
+    /// Where a fit begins: read off a dozen figures by hand.
+    pub fn guess() -> Self {
         Self {
             name: "ecp5".to_owned(),
             register: 1.0,
             lut: 0.62,
             lut_inputs: 4,
             mux: 0.65,
+            fanout: 0.0,
             carry: 0.85,
             carry_bit: 0.0295,
             carry_out: 0.52,
@@ -49,9 +60,33 @@ impl Default for DelayModel {
             multiplier_bits: 18,
         }
     }
-}
 
-impl DelayModel {
+    /// What a fit may change: every time in it. Positive, since it is moved by factors.
+    pub fn parameters(&self) -> [f64; 8] {
+        let Self { register, lut, mux, fanout, carry, carry_bit, carry_out, multiplier, .. } = *self;
+        [register, lut, mux, fanout, carry, carry_bit, carry_out, multiplier].map(|time| time.max(0.01))
+    }
+
+    /// The same target with other times, in the order of [`DelayModel::parameters`]; those not given stay.
+    #[must_use]
+    pub fn with_parameters(&self, times: &[f64]) -> Self {
+        let mut model = self.clone();
+        let DelayModel { register, lut, mux, fanout, carry, carry_bit, carry_out, multiplier, .. } = &mut model;
+        let places = [register, lut, mux, fanout, carry, carry_bit, carry_out, multiplier];
+        places.into_iter().zip(times).for_each(|(place, time)| *place = *time);
+        model
+    }
+
+    /// The longest way through a combinational module, from inputs to outputs.
+    pub fn longest(&self, module: &Module) -> f64 {
+        let mut arrival: Vec<f64> = Vec::with_capacity(module.nodes.len());
+        for node in &module.nodes {
+            let before = node.operands.iter().filter_map(|id| arrival.get(id.index())).copied().fold(0.0, f64::max);
+            arrival.push(before + self.delay(module, node));
+        }
+        arrival.into_iter().fold(0.0, f64::max)
+    }
+
     /// The time between two register ranks at `clock_mhz` that is left for logic.
     pub fn budget(&self, clock_mhz: f64) -> f64 {
         1000.0 / clock_mhz - self.register
@@ -69,9 +104,9 @@ impl DelayModel {
         match node.op {
             // An inverter is absorbed by the table before or after it.
             Op::Not | Op::Wire | Op::Slice { .. } | Op::Concat => 0.0,
-            Op::And | Op::Or | Op::Xor => self.gate(),
-            Op::Mux if constant(1) || constant(2) => self.gate(),
-            Op::Mux => self.mux,
+            Op::And | Op::Or | Op::Xor => self.gate() + self.line(copies(module, node)),
+            Op::Mux if constant(1) || constant(2) => self.gate() + self.line(node.width),
+            Op::Mux => self.mux + self.line(node.width),
             Op::Add | Op::Sub => self.adder(node.width),
             Op::Less => self.tree(2 * width(0)).min(self.adder(width(0)) + self.carry_out),
             Op::Equal if constant(0) || constant(1) => self.tree(width(0)),
@@ -83,6 +118,11 @@ impl DelayModel {
             Op::Input | Op::Parameter(_) | Op::Constant(_) => 0.0,
             Op::Delay { .. } | Op::Register { .. } | Op::MemoryRead { .. } | Op::InstanceOutput { .. } => 0.0,
         }
+    }
+
+    /// What a line to so many places takes beyond one to a single place.
+    fn line(&self, places: u32) -> f64 {
+        self.fanout * f64::from(places.max(1)).log2()
     }
 
     /// A gate of two inputs: a table of 2^n inputs takes a tree of them n levels deep.
@@ -115,6 +155,18 @@ impl DelayModel {
         let blocks = self.multiplier + adders(tiles, wide + narrow - bits.min(narrow + wide - 1));
         blocks.min(self.gate() + adders(narrow, wide + narrow))
     }
+}
+
+/// How often the most repeated bit stands in an operand: a gate with it is a line to so many places.
+fn copies(module: &Module, node: &Node) -> u32 {
+    let repeats = |id: &NodeId| {
+        let operand = module.node(*id);
+        match (&operand.op, operand.operands.first()) {
+            (Op::Concat, Some(first)) if operand.operands.iter().all(|part| part == first) => operand.operands.len(),
+            _ => 1,
+        }
+    };
+    node.operands.iter().map(repeats).max().unwrap_or(1) as u32
 }
 
 #[cfg(test)]

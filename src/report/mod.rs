@@ -9,6 +9,7 @@ pub mod junit;
 pub mod manifest;
 #[cfg(feature = "cosim")]
 pub mod mismatch;
+pub mod operators;
 pub mod synth;
 pub mod table;
 #[cfg(feature = "cosim")]

@@ -1,6 +1,7 @@
 //! What `afu synth` says.
 
 use super::table::{figure, grouped, table};
+use crate::synth::fit::{Fit, Point};
 use crate::synth::{Figures, Hop};
 
 /// The figures of units side by side, then each one's critical path.
@@ -46,4 +47,23 @@ fn path(hops: &[Hop]) -> String {
     let mut lines: Vec<String> = hops.iter().map(line).collect();
     lines.push(format!("  {:<9} {logic:5.2} ns in cells {routing:5.2} on wires", "together"));
     lines.join("\n")
+}
+
+/// A fitted model's graphs, and how far it is off.
+pub fn fit(fit: &Fit) -> String {
+    let row = |point: &Point| {
+        let set = if point.fitted { "fit" } else { "test" };
+        let [routed, modelled] = [point.routed_mhz, point.modelled_mhz].map(|clock| figure(Some(clock), 0));
+        [point.graph.clone(), set.to_owned(), routed, modelled, format!("{:+.1} %", 100.0 * point.error())]
+    };
+    let worst = |fitted: bool| {
+        let errors = fit.points.iter().filter(|point| point.fitted == fitted).map(|point| point.error().abs());
+        100.0 * errors.fold(0.0, f64::max)
+    };
+    format!(
+        "{}\nworst: {:.1} % over the fit, {:.1} % over the test",
+        table(&["graph", "set", "routed MHz", "modelled MHz", "error"], fit.points.iter().map(row)),
+        worst(true),
+        worst(false)
+    )
 }

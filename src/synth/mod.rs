@@ -8,6 +8,7 @@ mod cache;
 mod cells;
 mod error;
 mod figures;
+pub mod fit;
 mod names;
 mod route;
 mod run;

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fs;
 
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use super::cache::{self, Cache};
@@ -46,6 +47,22 @@ struct Report {
     critical_paths: Vec<Path>,
     fmax: BTreeMap<String, Fmax>,
     utilization: BTreeMap<String, Used>,
+    #[serde(default)]
+    detailed_net_timings: Vec<Net>,
+}
+
+#[derive(Deserialize)]
+struct Net {
+    event: String,
+    endpoints: Vec<End>,
+}
+
+#[derive(Deserialize)]
+struct End {
+    cell: String,
+    event: String,
+    /// Earliest and latest arrival.
+    delay: [f64; 2],
 }
 
 #[derive(Deserialize)]
@@ -65,42 +82,79 @@ struct Used {
     used: u64,
 }
 
-/// Places and routes a netlist with a seed, or finds the result in the cache.
-pub(super) fn route(
-    nextpnr: &Program,
-    netlist: &Netlist,
-    target: Target,
-    device: &[&str],
-    seed: u32,
-    unit: &str,
-    cache: &Cache,
-) -> Result<Routed, SynthError> {
-    let seed = seed.to_string();
-    let fixed = ["--top", wrapper::TOP, "--freq", GOAL_MHZ, "--timing-allow-fail", "-q"];
-    let mut parts = vec!["route 1", nextpnr.version(), &netlist.key, target.name(), &seed];
-    parts.extend(device);
-    parts.extend(fixed);
-    let key = cache::key(&parts);
-    if let Some(routed) = cache.get(&key) {
-        return Ok(routed);
+/// A run of nextpnr on a netlist.
+pub(super) struct Run<'a> {
+    /// The program.
+    pub nextpnr: &'a Program,
+    /// The netlist.
+    pub netlist: &'a Netlist,
+    /// The family.
+    pub target: Target,
+    /// The options of its device.
+    pub device: &'a [&'a str],
+    /// The placer's seed.
+    pub seed: u32,
+    /// What it is, for messages.
+    pub unit: &'a str,
+}
+
+impl Run<'_> {
+    /// Places and routes, or finds the result in the cache.
+    pub fn route(&self, cache: &Cache) -> Result<Routed, SynthError> {
+        self.cached(cache, &[], |report| {
+            let fastest = report.fmax.values().map(|clock| clock.achieved).reduce(f64::min);
+            let clock_mhz = fastest.ok_or_else(|| self.unexpected("no clock in its report"))?;
+            let clocked = |path: &&Path| path.from.starts_with("posedge") && path.to.starts_with("posedge");
+            let path = report.critical_paths.iter().find(clocked).map(|path| path.path.clone()).unwrap_or_default();
+            let used = report.utilization.into_iter().map(|(kind, used)| (kind, used.used)).collect();
+            Ok(Routed { clock_mhz, used, path })
+        })
     }
-    let room = cache.scratch()?;
-    let file = room.path().join("netlist.json");
-    fs::copy(&netlist.path, &file).map_err(|e| SynthError::io("write", &file, e))?;
-    let mut command = nextpnr.command();
-    command.args(device).args(fixed).args(["--json", "netlist.json", "--seed", &seed, "--report", "report.json"]);
-    run(nextpnr, command.current_dir(room.path()), unit)?;
-    let report: Report = read(nextpnr, &room.path().join("report.json"), unit)?;
-    let fastest = report.fmax.values().map(|clock| clock.achieved).reduce(f64::min);
-    let clock_mhz = fastest.ok_or_else(|| SynthError::Unexpected {
-        program: nextpnr.name().to_owned(),
-        unit: unit.to_owned(),
-        what: "no clock in its report".to_owned(),
-    })?;
-    let clocked = |path: &&Path| path.from.starts_with("posedge") && path.to.starts_with("posedge");
-    let path = report.critical_paths.iter().find(clocked).map(|path| path.path.clone()).unwrap_or_default();
-    let used = report.utilization.into_iter().map(|(kind, used)| (kind, used.used)).collect();
-    let routed = Routed { clock_mhz, used, path };
-    cache.put(&key, &routed)?;
-    Ok(routed)
+
+    /// The latest arrival at each cell from other registers, in ns after the clock; likewise.
+    pub fn arrivals(&self, cache: &Cache) -> Result<BTreeMap<String, f64>, SynthError> {
+        self.cached(cache, &["--detailed-timing-report"], |report| {
+            let mut latest = BTreeMap::new();
+            for net in report.detailed_net_timings.iter().filter(|net| net.event.starts_with("posedge")) {
+                for end in net.endpoints.iter().filter(|end| end.event.starts_with("posedge")) {
+                    let arrival: &mut f64 = latest.entry(end.cell.clone()).or_default();
+                    *arrival = arrival.max(end.delay[1]);
+                }
+            }
+            Ok(latest)
+        })
+    }
+
+    pub fn unexpected(&self, what: &str) -> SynthError {
+        let program = self.nextpnr.name().to_owned();
+        SynthError::Unexpected { program, unit: self.unit.to_owned(), what: what.to_owned() }
+    }
+
+    fn cached<T: Serialize + DeserializeOwned>(
+        &self,
+        cache: &Cache,
+        options: &[&str],
+        take: impl FnOnce(Report) -> Result<T, SynthError>,
+    ) -> Result<T, SynthError> {
+        let seed = self.seed.to_string();
+        let fixed = ["--top", wrapper::TOP, "--freq", GOAL_MHZ, "--timing-allow-fail", "-q"];
+        let mut parts = vec!["route 1", self.nextpnr.version(), &self.netlist.key, self.target.name(), &seed];
+        parts.extend(self.device);
+        parts.extend(fixed);
+        parts.extend(options);
+        let key = cache::key(&parts);
+        if let Some(kept) = cache.get(&key) {
+            return Ok(kept);
+        }
+        let room = cache.scratch()?;
+        let file = room.path().join("netlist.json");
+        fs::copy(&self.netlist.path, &file).map_err(|e| SynthError::io("write", &file, e))?;
+        let mut command = self.nextpnr.command();
+        command.args(self.device).args(fixed).args(options);
+        command.args(["--json", "netlist.json", "--seed", &seed, "--report", "report.json"]);
+        run(self.nextpnr, command.current_dir(room.path()), self.unit)?;
+        let made = take(read(self.nextpnr, &room.path().join("report.json"), self.unit)?)?;
+        cache.put(&key, &made)?;
+        Ok(made)
+    }
 }

@@ -6,7 +6,7 @@ use super::cache::{self, Cache};
 use super::cells::{area, placed};
 use super::figures::{Figures, SCHEMA, Seed, Tools};
 use super::names::Source;
-use super::route::{Routed, route};
+use super::route::{Routed, Run};
 use super::yosys::{Design, Netlist, synthesise as cells};
 use super::{Area, SynthError, Target, Trimmed, Unit, wrapper};
 use crate::tools::Program;
@@ -60,7 +60,8 @@ pub fn synthesise(unit: &Unit, options: &Options, mut progress: impl FnMut(&str)
     if let (Some(nextpnr), Some((_, device))) = (&nextpnr, router) {
         for &seed in &options.seeds {
             progress(&format!("{name}: nextpnr, seed {seed}"));
-            routed.push((seed, route(nextpnr, &whole, target, device, seed, &name, &cache)?));
+            let run = Run { nextpnr, netlist: &whole, target, device, seed, unit: &name };
+            routed.push((seed, run.route(&cache)?));
         }
     }
     let seeds = routed.iter().map(|(seed, run)| Seed { seed: *seed, clock_mhz: run.clock_mhz }).collect();

@@ -1,0 +1,140 @@
+//! Fitting a delay model to what the router says.
+//!
+//! Small graphs of one kind each are placed and routed, those of about the same delay side by side in one design, so
+//! that none is neglected by a placer that looks at the slowest. Each graph's delay is the latest arrival at its own
+//! registers, the median of the seeds. The model's parameters are those for which the relative errors of the clock are
+//! least, by their squares, over one part of the graphs; the other part says how good it is.
+
+mod graphs;
+mod least_squares;
+
+use serde::{Deserialize, Serialize};
+
+use self::graphs::{Sample, port, samples, together};
+use super::cache::Cache;
+use super::route::Run;
+use super::yosys::{Design, synthesise as cells};
+use super::{SynthError, Target, Unit, wrapper};
+use crate::config::Profile;
+use crate::hdl::{DelayModel, Errors};
+use crate::tools::Program;
+
+/// The schema of the JSON.
+pub const SCHEMA: &str = "contact-afu/fit/1";
+/// Graphs whose modelled delays differ by more than this factor are not put into one design.
+const SPREAD: f64 = 1.25;
+
+/// A fitted model, and how well it says what the router says.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Fit {
+    /// [`SCHEMA`].
+    pub schema: String,
+    /// The family.
+    pub target: Target,
+    /// What Yosys and nextpnr say of themselves.
+    pub tools: [String; 2],
+    /// The placer's seeds.
+    pub seeds: Vec<u32>,
+    /// The model.
+    pub model: DelayModel,
+    /// The graphs.
+    pub points: Vec<Point>,
+}
+
+/// A graph's clock.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Point {
+    /// The graph, as in `add_24`: an addition of 24 bits.
+    pub graph: String,
+    /// Whether the fit saw it.
+    pub fitted: bool,
+    /// The clock that the router's delay allows, MHz: median of the seeds.
+    pub routed_mhz: f64,
+    /// The model's, MHz.
+    pub modelled_mhz: f64,
+}
+
+impl Point {
+    /// How far the model is above the router, as a share.
+    pub fn error(&self) -> f64 {
+        self.modelled_mhz / self.routed_mhz - 1.0
+    }
+}
+
+/// Routes the graphs and fits a model for a target; nothing for a target without a router.
+///
+/// # Errors
+/// As of [`super::synthesise`].
+pub fn fit(target: Target, seeds: &[u32], mut progress: impl FnMut(&str)) -> Result<Option<Fit>, SynthError> {
+    let Some((architecture, device)) = target.router() else { return Ok(None) };
+    let (yosys, nextpnr, cache) = (Program::yosys()?, Program::nextpnr(architecture)?, Cache::open()?);
+    let start = DelayModel::guess();
+    let delay = |sample: Sample| Ok((start.longest(&*sample.module()?), sample));
+    let mut sorted = samples().into_iter().map(delay).collect::<Result<Vec<_>, Errors>>()?;
+    sorted.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+    let samples: Vec<Sample> = sorted.iter().map(|(_, sample)| *sample).collect();
+
+    let mut measured = Vec::new();
+    for group in groups(&sorted) {
+        let unit = Unit::pipeline("samples", &Profile::WIDE, 400.0, together(&group)?);
+        let files = Unit::files(&unit.wrapped()?);
+        let design = Design { unit: &unit.name, files: &files, top: wrapper::TOP };
+        progress(&format!("{} graphs: Yosys", group.len()));
+        let netlist = cells(&yosys, &design, target, &cache)?;
+        let mut runs = Vec::new();
+        for &seed in seeds {
+            progress(&format!("{} graphs: nextpnr, seed {seed}", group.len()));
+            let run = Run { nextpnr: &nextpnr, netlist: &netlist, target, device, seed, unit: &unit.name };
+            runs.push(run.arrivals(&cache)?);
+        }
+        for sample in &group {
+            // A register's cell is named by the port it drives, and what kind of cell it is.
+            let mark = format!("{}_TRELLIS_FF", port(&sample.name()));
+            let latest = runs.iter().map(|run| {
+                let ends = run.iter().filter(|(cell, _)| cell.contains(&mark));
+                ends.map(|(_, arrival)| *arrival).fold(0.0, f64::max)
+            });
+            let mut latest: Vec<f64> = latest.collect();
+            latest.sort_by(f64::total_cmp);
+            measured.push(latest[latest.len() / 2]);
+        }
+    }
+    if let Some(missing) = measured.iter().position(|ns| *ns <= 0.0) {
+        let what = format!("no register of {} in its report", samples[missing].name());
+        return Err(SynthError::Unexpected { program: nextpnr.name().to_owned(), unit: "samples".to_owned(), what });
+    }
+
+    let modules = samples.iter().map(Sample::module).collect::<Result<Vec<_>, _>>()?;
+    let period = |model: &DelayModel, index: usize| model.register + model.longest(&modules[index]);
+    let found = least_squares::fit(&start.parameters(), |parameters| {
+        let model = start.with_parameters(parameters);
+        let fitted = (0..samples.len()).filter(|index| samples[*index].fitted);
+        fitted.map(|index| period(&model, index) / measured[index] - 1.0).collect()
+    });
+    let model = DelayModel { name: target.name().to_owned(), ..start.with_parameters(&found) };
+    let point = |(index, sample): (usize, &Sample)| Point {
+        graph: sample.name(),
+        fitted: sample.fitted,
+        routed_mhz: 1000.0 / measured[index],
+        modelled_mhz: 1000.0 / period(&model, index),
+    };
+    let points = samples.iter().enumerate().map(point).collect();
+    let tools = [yosys.version().to_owned(), nextpnr.version().to_owned()];
+    Ok(Some(Fit { schema: SCHEMA.to_owned(), target, tools, seeds: seeds.to_vec(), model, points }))
+}
+
+/// Samples in the order of their delays, cut where it has grown by the spread.
+fn groups(sorted: &[(f64, Sample)]) -> Vec<Vec<Sample>> {
+    let mut groups: Vec<Vec<Sample>> = Vec::new();
+    let mut first = 0.0;
+    for (delay, sample) in sorted {
+        match groups.last_mut() {
+            Some(group) if (1.0 + delay) < SPREAD * (1.0 + first) => group.push(*sample),
+            _ => {
+                first = *delay;
+                groups.push(vec![*sample]);
+            }
+        }
+    }
+    groups
+}
