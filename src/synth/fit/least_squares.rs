@@ -16,7 +16,7 @@ pub fn fit(start: &[f64], residuals: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
     let mut now = at(&logs);
     let mut damping = 1e-2;
     for _ in 0..STEPS {
-        let slopes = slopes(&logs, &now, &at);
+        let slopes = slopes(&logs, &now, at);
         let normal = slopes.transpose() * &slopes;
         let gradient = slopes.transpose() * &now;
         let damped = &normal + DMatrix::identity(start.len(), start.len()) * damping;
