@@ -15,6 +15,7 @@ fn simple() -> DelayModel {
         carry_out: 0.0,
         multiplier: 50.0,
         multiplier_bits: 18,
+        ..DelayModel::default()
     }
 }
 
