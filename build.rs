@@ -37,6 +37,9 @@ mod cosim {
     const HARNESS: Harness<'static> =
         Harness { header: include_str!("tb/harness.h"), source: include_str!("tb/harness.cpp") };
 
+    /// The default AFU's top module.
+    const TOP: &str = "afu_top";
+
     pub fn main(target: &str) {
         for path in ["tb", "src/cosim/verilate", "rtl"] {
             println!("cargo:rerun-if-changed={path}");
@@ -100,7 +103,7 @@ mod cosim {
             return Err("there is no rtl/contact_afu.f; `afu rtl --out rtl` writes it".to_owned());
         }
         let files = verilate::read_file_list(list).map_err(|e| e.to_string())?;
-        let design = Design { files: &files, top: "contact_afu", parameters: &[], trace: Trace::Off, harness: HARNESS };
+        let design = Design { files: &files, top: TOP, parameters: &[], trace: Trace::Off, harness: HARNESS };
         let host = env::var("HOST").unwrap_or_else(|_| target.to_owned());
         let tool = Tool::find().map_err(|e| e.to_string())?;
         println!("cargo:rerun-if-changed={}", tool.program().display());

@@ -6,7 +6,7 @@
 use std::fs;
 
 use contact_afu::afu::{Afu, Spec};
-use contact_afu::config::Config;
+use contact_afu::config::{Config, Shell};
 use contact_afu::link::Description;
 use contact_afu::pairs::Set;
 use contact_afu::report::table;
@@ -18,7 +18,7 @@ fn main() -> anyhow::Result<()> {
     let numbers: Vec<u32> = arguments.map(|number| number.parse()).collect::<Result<_, _>>()?;
     let numbers = if numbers.is_empty() { vec![1, 2, 20] } else { numbers };
 
-    let config = Config::default();
+    let config = Config { shell: Shell::Line, ..Config::default() };
     let description: Description =
         if name.ends_with(".toml") { Description::parse(&name, &fs::read_to_string(&name)?)? } else { name.parse()? };
     let mut link = description.at(config.clock_mhz)?;

@@ -1,3 +1,6 @@
+spl2_transmit.v
+spl2_sequence.v
+spl2_registers.v
 contact_afu_control.v
 contact_afu_collector.v
 contact_afu_dispatcher.v
@@ -17,3 +20,5 @@ sphere_kernel.v
 scpu.v
 scpu_slot.v
 contact_afu.v
+spl2_acknowledge.v
+afu_top.v

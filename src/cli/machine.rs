@@ -24,7 +24,7 @@ pub struct Machine {
     /// Which pairs come back: all, or hits (those that touch, each with its number) [default: all]
     #[arg(long, value_name = "WHICH")]
     pub results: Option<Results>,
-    /// What stands around the AFU's line port: line (nothing), spl2 (Intel HARP v1) [default: line]
+    /// What stands around the AFU's line port: spl2 (Intel HARP v1), line (nothing) [default: spl2]
     #[arg(long, value_name = "SHELL")]
     pub shell: Option<Shell>,
     /// Clock that pipelines are cut for and time is told in, MHz [default: 200]

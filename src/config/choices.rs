@@ -70,7 +70,7 @@ choice!(
 
 choice!(
     /// What stands around the line port.
-    Shell, "shell", default Line,
+    Shell, "shell", default Spl2,
     /// Nothing: the line port is the top.
     Line = "line",
     /// Intel HARP v1, as in the paper.

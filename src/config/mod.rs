@@ -49,7 +49,7 @@ impl Default for Config {
             contact: Fields::ALL,
             input: Input::Direct,
             results: Results::All,
-            shell: Shell::Line,
+            shell: Shell::Spl2,
             clock_mhz: 200.0,
         }
     }

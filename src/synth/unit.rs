@@ -58,7 +58,7 @@ impl Unit {
         Ok(Self { name: "scpu".to_owned(), latency, module, ..Self::of(config, &afu) })
     }
 
-    /// The whole AFU of a configuration.
+    /// The whole AFU of a configuration, without its shell, which is a matter of its platform.
     ///
     /// # Errors
     /// A configuration that cannot be generated.
@@ -71,7 +71,7 @@ impl Unit {
             name: format!("afu of {} SCPUs", config.scpus),
             profile: config.profile.clone(),
             clock_mhz: config.clock_mhz,
-            module: afu.top().clone(),
+            module: afu.core().clone(),
             latency: None,
         }
     }

@@ -1,7 +1,7 @@
 //! A small job's cycles, one by one: which part of the AFU and of the link takes how many.
 
 use crate::afu::Afu;
-use crate::config::Results;
+use crate::config::{Results, Shell};
 use crate::link::{LinkModel, Order};
 
 /// A part of a job's way, and the cycles it takes.
@@ -16,10 +16,13 @@ pub struct Part {
 /// The cycles of a job of `pairs` pairs over `link`, from the cycle in which `start` is high to the one in which `done`
 /// is, part by part; their sum is the job's to the cycle.
 ///
-/// Nothing for a job or a link for which that is no sum: randomness (a tail, stalls, stragglers, reads in any order that
-/// wait for one another), fewer SCPUs than pairs
-/// in a line, an interval above 1, contacts alone as results, more lines than may be in flight or than the AFU takes in before its first write.
+/// Nothing for a job or a link for which that is no sum: a shell that polls, randomness (a tail, stalls, stragglers,
+/// reads in any order that wait for one another), fewer SCPUs than pairs in a line, an interval above 1, contacts alone
+/// as results, more lines than may be in flight or than the AFU takes in before its first write.
 pub fn account(afu: &Afu, link: &LinkModel, pairs: u32) -> Option<Vec<Part>> {
+    if afu.spec().config.shell != Shell::Line {
+        return None;
+    }
     let (timing, layout, config) = (afu.timing(), afu.layout(), &afu.spec().config);
     let part = |name, cycles: u64| Part { name, cycles };
     let of = |name, cycles: u32| part(name, cycles.into());

@@ -4,27 +4,28 @@
 use std::path::Path;
 
 use contact_afu::afu::{Afu, Spec};
-use contact_afu::config::{Config, Results};
+use contact_afu::config::{Config, Results, Shell};
 use contact_afu::cosim::{Driver, File, Instance, Job, Model, Outcome, Source, Trace};
 use contact_afu::kernel::{ContactRecord, Fields, Flow, PairRecord, Reference};
 use contact_afu::link::{Line, Link};
 use contact_afu::pairs::Set;
 
-/// The committed `rtl/`, for any number of SCPUs: no text is generated.
+/// The core in the committed `rtl/`, for any number of SCPUs: no text is generated.
 pub fn committed(scpus: u32) -> Model {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("rtl");
     let source = Source::from_folder(&folder, "contact_afu").unwrap().parameter("SCPUS", scpus.into());
     Model::build(&source, Trace::Off).unwrap()
 }
 
-/// The default configuration but for the number of SCPUs.
+/// The default configuration but for the number of SCPUs, with the AFU's own port as its top: what the driver of these
+/// tests knows.
 pub fn of(scpus: u32) -> Config {
-    Config { scpus, ..Config::default() }
+    Config { scpus, shell: Shell::Line, ..Config::default() }
 }
 
 /// A configuration by its words.
 pub fn config(scpus: u32, profile: &str, contact: &str) -> Config {
-    Config { scpus, profile: profile.parse().unwrap(), contact: contact.parse().unwrap(), ..Config::default() }
+    Config { profile: profile.parse().unwrap(), contact: contact.parse().unwrap(), ..of(scpus) }
 }
 
 /// The Verilog of a configuration as generated now. The number of SCPUs is a parameter and not in the text, so that

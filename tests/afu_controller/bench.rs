@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use contact_afu::afu::{Afu, Spec};
-use contact_afu::config::{Config, Results};
+use contact_afu::config::{Config, Results, Shell};
 use contact_afu::hdl::{Evaluator, Graph, Module, Pin};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -90,7 +90,9 @@ impl Bench {
         Self::of(Spec::from(Config { scpus, ..Config::default() }), eagerness, seed)
     }
 
-    pub fn of(spec: Spec, eagerness: u32, seed: u64) -> Self {
+    /// The core alone, whatever shell the specification names.
+    pub fn of(mut spec: Spec, eagerness: u32, seed: u64) -> Self {
+        spec.config.shell = Shell::Line;
         let scpus = spec.config.scpus;
         let afu = Afu::around(spec.clone(), kernel()).unwrap();
         let mut run = Evaluator::new(afu.top(), &[("SCPUS", scpus)]).unwrap();
