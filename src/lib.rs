@@ -8,6 +8,7 @@ pub mod config;
 #[cfg(feature = "cosim")]
 pub mod cosim;
 pub mod hdl;
+pub mod host;
 pub mod kernel;
 pub mod link;
 pub mod number;

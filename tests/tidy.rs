@@ -17,12 +17,13 @@ const HOUSE: &[(&str, &[&str])] = &[
     ("afu", &["config", "pipeline", "operator", "kernel", "hdl", "number"]),
     ("link", &["number"]),
     ("cosim", &["config", "afu", "link", "pairs", "kernel", "number"]),
-    ("verify", &["cosim", "link", "pairs", "afu", "config", "kernel", "number"]),
+    ("host", &["cosim", "link", "afu", "config", "kernel", "number"]),
+    ("verify", &["host", "cosim", "link", "pairs", "afu", "config", "kernel", "number"]),
     ("tools", &["cosim"]),
     ("synth", &["tools", "config", "afu", "pipeline", "operator", "kernel", "hdl", "number"]),
-    ("report", &["synth", "verify", "tools", "cosim", "config", "afu", "link", "pairs", "kernel", "number"]),
+    ("report", &["synth", "verify", "host", "tools", "cosim", "config", "afu", "link", "pairs", "kernel", "number"]),
     ("accuracy", &["report", "config", "ode", "pairs", "kernel", "number"]),
-    ("sweep", &["report", "verify", "cosim", "config", "afu", "link", "pairs", "kernel", "number"]),
+    ("sweep", &["report", "verify", "host", "cosim", "config", "afu", "link", "pairs", "kernel", "number"]),
 ];
 
 /// Longer than this, a file is two things.

@@ -1,5 +1,7 @@
 //! How many cycles each part of an AFU takes, from the numbers its hardware is generated with.
 
+use crate::config::Results;
+
 use super::{Afu, collector, control, dispatcher, feeder, packer, slot, top};
 
 /// Cycles on the way of a line that meets nothing in its way, part by part, without those that the link takes.
@@ -30,6 +32,21 @@ pub struct Timing {
 }
 
 impl Afu {
+    /// What the AFU says of itself in its capability word: bits 7:0 SCPUs, 15:8 interval, 19:16 contact fields (hit,
+    /// depth, normal, position from bit 16 up), 24 whether contacts alone come back, 43:32 latency of an SCPU in cycles.
+    pub fn capability(&self) -> u64 {
+        let config = &self.spec().config;
+        let fields = [config.contact.position, config.contact.normal, config.contact.depth, true];
+        let mask = fields.into_iter().fold(0, |mask, bit| mask << 1 | u64::from(bit));
+        let only_hits = u64::from(config.results == Results::Hits);
+        let latency = u64::from(self.kernel().latency.min(0xfff));
+        latency << 32
+            | only_hits << 24
+            | mask << 16
+            | u64::from(config.interval.min(0xff)) << 8
+            | u64::from(config.scpus)
+    }
+
     /// What each part takes.
     pub fn timing(&self) -> Timing {
         Timing {

@@ -155,7 +155,6 @@ impl LinkModel {
 
     /// The longest wait for one response that is no fault, in cycles; beyond it an AFU waits in vain. A generous bound:
     /// a response may queue behind all others.
-    #[cfg(feature = "cosim")]
     pub(crate) fn patience_cycles(&self) -> u64 {
         let slowest = |d: &Direction| {
             let each = u64::from(d.latency) + u64::from(d.tail) + u64::from(d.stragglers.cycles);

@@ -5,11 +5,11 @@ use std::time::Instant;
 
 use super::check::{Verdict, check};
 use super::error::VerifyError;
-use super::lines;
 use crate::afu::{Afu, FILE_LIST, Layout, Spec, top_name};
 use crate::config::{self, Config, Results, Shell};
 use crate::cosim::spl2::{Machine, MachineError, Place, Session};
 use crate::cosim::{CosimError, Driver, File, Instance, Job, Model, Outcome, Source, Trace};
+use crate::host::lines;
 use crate::kernel::{PairRecord, Reference};
 use crate::link::spl2::{Spl2, Spl2Model};
 use crate::link::{Link, LinkModel, Traffic};
@@ -108,6 +108,11 @@ impl Bench {
     /// Where the model came from.
     pub fn origin(&self) -> Origin {
         self.model.shared_object().map_or(Origin::BuiltIn, |path| Origin::Library(path.to_owned()))
+    }
+
+    /// The model, for a driver of the caller's.
+    pub fn model(&self) -> &Model {
+        &self.model
     }
 
     /// SHA-256 of the Verilog, in hex.

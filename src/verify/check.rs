@@ -1,9 +1,9 @@
 //! What came of a job, compared.
 
-use super::lines::Contacts;
 use crate::afu::Layout;
 use crate::config::{Config, Results};
 use crate::cosim::Outcome;
+use crate::host::lines::Contacts;
 use crate::kernel::{ContactRecord, Fields, Flow, PairRecord};
 
 /// One record that is not what it should be.

@@ -6,7 +6,6 @@ mod check;
 pub mod corpus;
 mod engine;
 mod error;
-mod lines;
 
 pub use account::{Part, account};
 pub use bench::{Bench, Origin, rtl_sha256};

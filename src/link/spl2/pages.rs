@@ -14,7 +14,7 @@ const LINE_ENTRIES: u64 = 8;
 
 /// The table, as read from memory when SPL is enabled.
 #[derive(Clone, Debug)]
-pub(super) struct Pages {
+pub struct Pages {
     /// The number of the first virtual page.
     first: u64,
     /// The first line of each physical page.
@@ -29,7 +29,10 @@ fn qword(line: &Line, index: usize) -> u64 {
 impl Pages {
     /// Reads SPL2's context at a physical byte address, and the table it names. Context: qword 0 the table's physical
     /// address, qword 1 the virtual address of the first page, dword 4 the page size (1: 2 MB), dword 5 the entries.
-    pub(super) fn read(memory: &Memory, context: u64) -> Result<Self, Spl2Error> {
+    ///
+    /// # Errors
+    /// [`Spl2Error::Context`] when one of the two is none.
+    pub fn read(memory: &Memory, context: u64) -> Result<Self, Spl2Error> {
         let fail = |why| Err(Spl2Error::Context(why));
         let Some(line) = memory.get(context / LINE_BYTES) else { return fail("nothing was written there") };
         let (table, first, size, entries) = (qword(line, 0), qword(line, 1), line[4], u64::from(line[5]));
@@ -57,7 +60,7 @@ impl Pages {
     }
 
     /// The physical line of a virtual one.
-    pub(super) fn translate(&self, line: u64) -> Option<u64> {
+    pub fn translate(&self, line: u64) -> Option<u64> {
         let page = (line / PAGE_LINES).checked_sub(self.first)?;
         let first = self.lines.get(usize::try_from(page).ok()?)?;
         Some(first + line % PAGE_LINES)

@@ -8,7 +8,7 @@ use crate::link::Line;
 const WORD: usize = 32;
 
 /// The source lines of pairs; what is unused of the last is zero.
-pub(super) fn pack(layout: &Layout, pairs: &[PairRecord]) -> Vec<Line> {
+pub(crate) fn pack(layout: &Layout, pairs: &[PairRecord]) -> Vec<Line> {
     let words = layout.pair_bits() as usize / WORD;
     let line = |pairs: &[PairRecord]| {
         let mut line: Line = [0; 16];
@@ -20,15 +20,41 @@ pub(super) fn pack(layout: &Layout, pairs: &[PairRecord]) -> Vec<Line> {
     pairs.chunks(layout.pairs_per_line() as usize).map(line).collect()
 }
 
+/// The pairs of source lines.
+pub(crate) fn unpack_pairs(layout: &Layout, lines: &[Line], count: usize) -> Vec<PairRecord> {
+    let words = layout.pair_bits() as usize / WORD;
+    let slots = lines.iter().flat_map(|line| line.chunks(words));
+    slots.take(count).map(|slot| PairRecord(std::array::from_fn(|word| slot[word]))).collect()
+}
+
+/// The destination lines of contacts where each pair has one; what is unused of the last is zero.
+pub(crate) fn pack_contacts(layout: &Layout, records: &[ContactRecord]) -> Vec<Line> {
+    let (words, bits) = (layout.contact_words(), layout.contact_bits() as usize);
+    let line = |records: &[ContactRecord]| {
+        let mut line: Line = [0; 16];
+        for (place, record) in records.iter().enumerate() {
+            let at = place * bits;
+            if words.is_empty() {
+                line[at / WORD] |= u32::from(record.is_contact()) << (at % WORD);
+            }
+            for (slot, &word) in words.iter().enumerate() {
+                line[at / WORD + slot] = record.0[word];
+            }
+        }
+        line
+    };
+    records.chunks(layout.contacts_per_line() as usize).map(line).collect()
+}
+
 /// Destination lines as records.
-pub(super) struct Contacts<'a> {
+pub(crate) struct Contacts<'a> {
     layout: &'a Layout,
     words: Vec<usize>,
     lines: &'a [Option<Line>],
 }
 
 impl<'a> Contacts<'a> {
-    pub(super) fn new(layout: &'a Layout, lines: &'a [Option<Line>]) -> Self {
+    pub(crate) fn new(layout: &'a Layout, lines: &'a [Option<Line>]) -> Self {
         Self { layout, words: layout.contact_words(), lines }
     }
 
@@ -39,18 +65,20 @@ impl<'a> Contacts<'a> {
     }
 
     /// The line of the record with this index: a pair's number, or, where only contacts come back, how many come before.
-    pub(super) fn line(&self, index: usize) -> usize {
+    #[cfg_attr(not(feature = "cosim"), allow(dead_code))] // for `verify` alone
+    pub(crate) fn line(&self, index: usize) -> usize {
         self.place(index).0
     }
 
     /// The contact with this index; nothing if its line was never written. Words that are not in the record are zero. Of
     /// records without words of the contact only the contact is known: it reads as real or fake.
-    pub(super) fn get(&self, index: usize) -> Option<ContactRecord> {
+    pub(crate) fn get(&self, index: usize) -> Option<ContactRecord> {
         self.record(index).map(|(_, contact)| contact)
     }
 
     /// The contact with this index where only contacts come back, with its pair's number before it.
-    pub(super) fn hit(&self, index: usize) -> Option<(u32, ContactRecord)> {
+    #[cfg_attr(not(feature = "cosim"), allow(dead_code))] // for `verify` alone
+    pub(crate) fn hit(&self, index: usize) -> Option<(u32, ContactRecord)> {
         let (number, contact) = self.record(index)?;
         Some((number?, contact))
     }
@@ -73,7 +101,8 @@ impl<'a> Contacts<'a> {
     }
 
     /// What of the reference's record is in destination memory, in the same form as [`Contacts::get`] gives it.
-    pub(super) fn seen(&self, record: ContactRecord) -> ContactRecord {
+    #[cfg_attr(not(feature = "cosim"), allow(dead_code))] // for `verify` alone
+    pub(crate) fn seen(&self, record: ContactRecord) -> ContactRecord {
         let mut seen = ContactRecord::default();
         if self.words.is_empty() {
             seen.0[7] = if record.is_contact() { Flow::Real } else { Flow::Fake }.flags();
@@ -85,7 +114,8 @@ impl<'a> Contacts<'a> {
     }
 
     /// Whether everything behind the last of `count` contacts is zero, in each slot and at the end of the last line.
-    pub(super) fn rest_is_zero(&self, count: usize) -> bool {
+    #[cfg_attr(not(feature = "cosim"), allow(dead_code))] // for `verify` alone
+    pub(crate) fn rest_is_zero(&self, count: usize) -> bool {
         let bits = self.layout.contact_bits() as usize;
         let used = ((self.layout.number_words() + self.words.len()) * WORD).max(1);
         let per_line = self.layout.contacts_per_line() as usize;
@@ -141,6 +171,7 @@ mod tests {
             let layout = Layout::new(512, fields);
             let records = records(1025);
             let mut lines = lines(&layout, fields, &records);
+            assert_eq!(pack_contacts(&layout, &records).into_iter().map(Some).collect::<Vec<_>>(), lines, "{fields}");
             let contacts = Contacts::new(&layout, &lines);
             for (i, record) in records.iter().enumerate() {
                 assert_eq!(contacts.get(i), Some(contacts.seen(*record)), "{fields}, {i}");
@@ -192,5 +223,6 @@ mod tests {
         assert_eq!(lines[0], std::array::from_fn(|word| word as u32));
         assert_eq!(lines[1], std::array::from_fn(|word| if word < 8 { 16 + word as u32 } else { 0 }));
         assert!(pack(&layout, &[]).is_empty());
+        assert_eq!(unpack_pairs(&layout, &lines, 3), pairs);
     }
 }

@@ -1,0 +1,28 @@
+//! A session as an engine: batches as transactions.
+
+use super::error::HostError;
+use super::session::Session;
+use super::transport::Transport;
+use crate::kernel::{ContactRecord, Engine, EngineError, PairRecord};
+
+impl<T: Transport> Session<T> {
+    /// The contacts of `pairs`: in one transaction, or in several where the buffers hold fewer. None without pairs.
+    ///
+    /// # Errors
+    /// As the steps of [`Transaction`](super::Transaction).
+    pub fn run(&mut self, pairs: &[PairRecord]) -> Result<Vec<ContactRecord>, HostError> {
+        let capacity = usize::try_from(self.workspace().capacity()).unwrap_or(usize::MAX);
+        let mut contacts = Vec::with_capacity(pairs.len());
+        for pairs in pairs.chunks(capacity) {
+            let done = self.transaction().send(pairs)?.start()?.confirm()?.wait()?;
+            contacts.extend(done.retrieve()?.end()?.contacts);
+        }
+        Ok(contacts)
+    }
+}
+
+impl<T: Transport> Engine for Session<T> {
+    fn contacts(&mut self, pairs: &[PairRecord]) -> Result<Vec<ContactRecord>, EngineError> {
+        Ok(self.run(pairs)?)
+    }
+}

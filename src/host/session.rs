@@ -1,0 +1,223 @@
+//! A device with its workspace, and what transactions do with both.
+
+use super::error::HostError;
+use super::report::Report;
+use super::transaction::{Pointed, Transaction};
+use super::transport::{Transport, TransportError};
+use super::workspace::{AFU_DSM, SPL_CONTEXT, SPL_DSM, Workspace};
+use crate::afu::spl2::map::{self, Csr, control, identity, status};
+use crate::afu::{Afu, BuildError, Layout, Spec};
+use crate::config::Config;
+use crate::link::spl2::CsrOffset;
+use crate::link::{LINE_BYTES, Line};
+
+/// Cycles that a device with everything it needs may take beyond the link's own patience.
+const PATIENCE_CYCLES: u64 = 20_000;
+/// Cycles a job may take for each that the link's limit says.
+const SLACK: f64 = 16.0;
+/// Cycles between two looks at memory.
+const POLL_CYCLES: u64 = 16;
+
+/// The AFU that a session expects.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Expected {
+    /// Its capability word.
+    pub capability: u64,
+    /// Where records lie in its lines.
+    pub layout: Layout,
+}
+
+impl Expected {
+    /// The AFU of a configuration.
+    ///
+    /// # Errors
+    /// When it cannot be generated.
+    pub fn new(config: &Config) -> Result<Self, BuildError> {
+        let afu = Afu::generate(Spec::from(config.clone()))?;
+        Ok(Self { capability: afu.capability(), layout: afu.layout() })
+    }
+
+    /// Compares the parts of a capability word.
+    fn check(&self, found: u64) -> Result<(), HostError> {
+        let parts = [
+            ("a number of SCPUs of", 0, 8),
+            ("an interval of", 8, 8),
+            ("contact fields (a mask)", 16, 4),
+            ("results (1: contacts alone)", 24, 1),
+            ("an SCPU latency (another profile or clock) of", 32, 12),
+        ];
+        for (what, low, bits) in parts {
+            let part = |word: u64| word >> low & ((1 << bits) - 1);
+            let (expected, found) = (part(self.capability), part(found));
+            if expected != found {
+                return Err(HostError::Capability { what, expected, found });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A device and a workspace: one transaction after another. The workspace's pages are pinned once, for all of them.
+#[derive(Debug)]
+pub struct Session<T: Transport> {
+    pub(super) transport: T,
+    pub(super) workspace: Workspace,
+    expected: Expected,
+    /// The last transaction's number.
+    pub(super) sequence: u32,
+    /// Cycles without a response, with one owed, after which the AFU gives a job up; 0: never.
+    pub watchdog: u32,
+    /// Cycles that a status may take; without it, what the link explains.
+    pub max_cycles: Option<u64>,
+    pub(super) reports: Vec<Report>,
+}
+
+impl<T: Transport> Session<T> {
+    /// A session with the device behind `transport`, over `workspace`, which is to be of the expected AFU's layout.
+    pub fn new(transport: T, workspace: Workspace, expected: Expected) -> Self {
+        Self { transport, workspace, expected, sequence: 0, watchdog: 0, max_cycles: None, reports: Vec::new() }
+    }
+
+    /// A transaction: the paper's step 1, in which the host gets its pointers.
+    pub fn transaction(&mut self) -> Transaction<'_, T, Pointed> {
+        Transaction::new(self)
+    }
+
+    /// The workspace.
+    pub fn workspace(&self) -> &Workspace {
+        &self.workspace
+    }
+
+    /// The device.
+    pub fn transport(&self) -> &T {
+        &self.transport
+    }
+
+    /// The device, to plant faults.
+    pub fn transport_mut(&mut self) -> &mut T {
+        &mut self.transport
+    }
+
+    /// What each transaction took that came to its end, in their order.
+    pub fn reports(&self) -> &[Report] {
+        &self.reports
+    }
+
+    /// Writes both halves of a 64-bit CSR.
+    fn write_pointer(&mut self, high: u32, low: u32, address: u64) -> Result<(), TransportError> {
+        self.transport.write_csr(high, (address >> 32) as u32)?;
+        self.transport.write_csr(low, address as u32)
+    }
+
+    fn zero(&mut self, address: u64, lines: u64) {
+        let first = address / LINE_BYTES;
+        (first..first + lines).for_each(|line| self.transport.memory_mut().set(line, &[0; 16]));
+    }
+
+    pub(super) fn patience(&self, lines_read: u64, lines_written: u64) -> u64 {
+        let link = self.transport.link();
+        let work = SLACK * link.limit_cycles(lines_read, lines_written);
+        PATIENCE_CYCLES + link.patience_cycles() + u64::from(self.watchdog) + work as u64
+    }
+
+    /// Resets SPL and AFU, gives them their memory, waits for the AFU to say who it is, enables it.
+    pub(super) fn start_spl(&mut self) -> Result<(), HostError> {
+        let pair = |high: Csr, low: Csr| (high.offset, low.offset);
+        self.transport.write_csr(CsrOffset::Control as u32, 1)?;
+        self.zero(SPL_DSM, 1);
+        self.write_pointer(CsrOffset::DsmHigh as u32, CsrOffset::DsmLow as u32, SPL_DSM)?;
+        self.wait_for(|session| session.line_at(SPL_DSM)[0] != 0)?;
+        self.zero(AFU_DSM, map::DSM_BYTES / LINE_BYTES);
+        let (high, low) = pair(map::DSM_BASE_HIGH, map::DSM_BASE_LOW);
+        self.write_pointer(high, low, AFU_DSM)?;
+        self.wait_for(|session| identity::AFU_ID.get(&session.dsm(map::IDENTITY_LINE)) != 0)?;
+        self.check_identity()?;
+        self.workspace.describe(self.transport.memory_mut())?;
+        let status = self.workspace.line(self.workspace.context(), map::STATUS_LINE.into())?;
+        self.transport.watch(status..status + 1);
+        self.write_pointer(CsrOffset::ContextHigh as u32, CsrOffset::ContextLow as u32, SPL_CONTEXT)?;
+        let (high, low) = pair(map::CONTEXT_BASE_HIGH, map::CONTEXT_BASE_LOW);
+        self.write_pointer(high, low, self.workspace.context())?;
+        Ok(self.transport.write_csr(CsrOffset::Control as u32, 2)?)
+    }
+
+    /// Disables SPL, then resets it.
+    pub(super) fn stop_spl(&mut self) -> Result<(), HostError> {
+        self.transport.write_csr(CsrOffset::Control as u32, 0)?;
+        Ok(self.transport.write_csr(CsrOffset::Control as u32, 1)?)
+    }
+
+    /// Waits for an identity in a DSM.
+    fn wait_for(&mut self, is_there: impl Fn(&Self) -> bool) -> Result<(), HostError> {
+        let (begun, patience) = (self.transport.cycle(), self.patience(0, 0));
+        while !is_there(self) {
+            let waited = self.transport.cycle() - begun;
+            if waited > patience {
+                return Err(HostError::NoIdentity(waited));
+            }
+            self.transport.advance(POLL_CYCLES)?;
+        }
+        Ok(())
+    }
+
+    /// Whether the DSM is of the AFU that is expected.
+    pub(super) fn check_identity(&self) -> Result<(), HostError> {
+        let line = self.dsm(map::IDENTITY_LINE);
+        let (afu_id, version) = (identity::AFU_ID.get(&line), identity::VERSION.get(&line) as u32);
+        if (afu_id, version) != (map::AFU_ID, map::VERSION) {
+            return Err(HostError::Identity { afu_id, version });
+        }
+        self.expected.check(identity::CAPABILITY.get(&line) as u64)
+    }
+
+    fn line_at(&self, address: u64) -> Line {
+        self.transport.memory().get(address / LINE_BYTES).copied().unwrap_or_default()
+    }
+
+    /// A line of the AFU's DSM.
+    pub(super) fn dsm(&self, line: u32) -> Line {
+        self.line_at(AFU_DSM + u64::from(line) * LINE_BYTES)
+    }
+
+    /// Writes the control memory.
+    pub(super) fn set_control(&mut self, pairs: u32, abort: bool) -> Result<(), HostError> {
+        let mut line = [0; 16];
+        control::COUNT.set(&mut line, pairs.into());
+        control::SEQUENCE.set(&mut line, self.sequence.into());
+        control::ABORT.set(&mut line, abort.into());
+        control::WATCHDOG.set(&mut line, self.watchdog.into());
+        control::START.set(&mut line, map::START_WORD.into());
+        let at = self.workspace.line(self.workspace.source(), map::CONTROL_LINE.into())?;
+        self.transport.memory_mut().set(at, &line);
+        Ok(())
+    }
+
+    /// The status of the transaction that runs, among the device's writes from `logged` on: the line, its cycle.
+    fn arrived(&self, logged: usize) -> Result<Option<(Line, u64)>, HostError> {
+        let at = self.workspace.line(self.workspace.context(), map::STATUS_LINE.into())?;
+        let of_this = |line: &Line| status::SEQUENCE.get(line) == self.sequence.into() && status::DONE.get(line) == 1;
+        let new = self.transport.device_writes().get(logged..).unwrap_or_default();
+        Ok(new.iter().find(|write| write.address == at && of_this(&write.data)).map(|write| (write.data, write.cycle)))
+    }
+
+    /// Waits for the status.
+    pub(super) fn wait_for_status(&mut self, logged: usize, patience: u64) -> Result<(Line, u64), HostError> {
+        let (begun, before) = (self.transport.cycle(), self.transport.traffic());
+        loop {
+            if let Some(status) = self.arrived(logged)? {
+                return Ok(status);
+            }
+            let cycles = self.transport.cycle() - begun;
+            if cycles > patience {
+                let now = self.transport.traffic();
+                let owed = |asked: u64, answered: u64| asked.saturating_sub(answered);
+                return Err(HostError::NoStatus {
+                    cycles,
+                    reads: owed(now.reads - before.reads, now.read_responses - before.read_responses),
+                    writes: owed(now.writes - before.writes, now.write_responses - before.write_responses),
+                });
+            }
+            self.transport.advance(POLL_CYCLES)?;
+        }
+    }
+}

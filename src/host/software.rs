@@ -1,0 +1,251 @@
+//! The AFU in software: the same registers, the same lines in memory, the reference kernel between them.
+//!
+//! A job takes no time of its own: cycle counters and latencies in the DSM are zero. Everything else is written as the
+//! hardware writes it, and in its order.
+
+use std::collections::HashMap;
+use std::ops::Range;
+
+use super::lines::{pack_contacts, unpack_pairs};
+use super::transport::{Transport, TransportError};
+use crate::afu::spl2::map::{self, control, identity, latency, performance, pointers, scratch, status};
+use crate::afu::{Afu, BuildError, JobError, Layout, Spec};
+use crate::config::Config;
+use crate::kernel::{Flow, Reference};
+use crate::link::spl2::{CsrOffset, DeviceWrite, Pages, SPL_ID};
+use crate::link::{LINE_BYTES, Line, LinkModel, Memory, Traffic};
+
+/// What reads of lines find that nobody wrote, as the simulated link has it.
+const UNWRITTEN: Line = [0xDEAD_BEEF; 16];
+const DSM_LINES: u64 = map::DSM_BYTES / LINE_BYTES;
+/// The status of a job that found no invalid pair.
+const NONE: u128 = u32::MAX as u128;
+
+/// SPL2 and an AFU below it, in software.
+#[derive(Debug)]
+pub struct Software {
+    capability: u64,
+    layout: Layout,
+    reference: Reference,
+    link: LinkModel,
+    memory: Memory,
+    cycle: u64,
+    /// CSRs as written last.
+    csrs: HashMap<u32, u32>,
+    /// Line addresses that the AFU was given since the last reset: its DSM's first, its context's.
+    dsm: Option<u64>,
+    context: Option<u64>,
+    pages: Option<Pages>,
+    /// The last job's number since SPL was enabled.
+    job: Option<u32>,
+    watched: Vec<Range<u64>>,
+    log: Vec<DeviceWrite>,
+    traffic: Traffic,
+}
+
+impl Software {
+    /// The AFU of a configuration; of the link only what its description states counts.
+    ///
+    /// # Errors
+    /// When there is no such AFU.
+    pub fn new(config: &Config, link: LinkModel) -> Result<Self, BuildError> {
+        let afu = Afu::generate(Spec::from(config.clone()))?;
+        Ok(Self {
+            capability: afu.capability(),
+            layout: afu.layout(),
+            reference: Reference::new(config.profile.format(), config.contact),
+            link,
+            memory: Memory::new(),
+            cycle: 0,
+            csrs: HashMap::new(),
+            dsm: None,
+            context: None,
+            pages: None,
+            job: None,
+            watched: Vec::new(),
+            log: Vec::new(),
+            traffic: Traffic::default(),
+        })
+    }
+
+    /// The address whose low half was just written.
+    fn address(&self, high: u32, low: u32) -> u64 {
+        u64::from(self.csrs.get(&high).copied().unwrap_or(0)) << 32 | u64::from(low)
+    }
+
+    fn write_physical(&mut self, address: u64, line: &Line) {
+        self.memory.set(address, line);
+        self.traffic.writes += 1;
+        self.traffic.write_responses += 1;
+        let in_dsm = self.dsm.is_some_and(|first| (first..first + DSM_LINES).contains(&address));
+        if in_dsm || self.watched.iter().any(|lines| lines.contains(&address)) {
+            self.log.push(DeviceWrite { address, data: *line, cycle: self.cycle });
+        }
+    }
+
+    fn write_dsm(&mut self, number: u32, line: &Line) {
+        if let Some(first) = self.dsm {
+            self.write_physical(first + u64::from(number), line);
+        }
+    }
+
+    fn physical(&self, what: &'static str, line: u64) -> Result<u64, TransportError> {
+        let page = self.pages.as_ref().and_then(|pages| pages.translate(line));
+        page.ok_or(TransportError::PageFault { what, line })
+    }
+
+    fn read(&mut self, line: u64) -> Result<Line, TransportError> {
+        let at = self.physical("read", line)?;
+        self.traffic.reads += 1;
+        self.traffic.read_responses += 1;
+        Ok(self.memory.get(at).copied().unwrap_or(UNWRITTEN))
+    }
+
+    fn write(&mut self, line: u64, data: &Line) -> Result<(), TransportError> {
+        let at = self.physical("write", line)?;
+        self.write_physical(at, data);
+        Ok(())
+    }
+
+    fn set_control(&mut self, value: u32) -> Result<(), TransportError> {
+        if value & 1 != 0 {
+            (self.dsm, self.context) = (None, None);
+        }
+        if value & 2 == 0 {
+            (self.pages, self.job) = (None, None);
+        } else if self.pages.is_none() {
+            let low = self.csrs.get(&(CsrOffset::ContextLow as u32)).copied().unwrap_or(0);
+            let context = self.address(CsrOffset::ContextHigh as u32, low);
+            let pages = Pages::read(&self.memory, context);
+            self.pages = Some(pages.map_err(|error| TransportError::Device(error.to_string()))?);
+        }
+        Ok(())
+    }
+
+    /// Looks for a job, and does it.
+    fn poll(&mut self) -> Result<(), TransportError> {
+        let Some(context) = self.context.filter(|_| self.pages.is_some()) else { return Ok(()) };
+        let pointers = self.read(context + u64::from(map::POINTERS_LINE))?;
+        let line_of = |field: map::Field| field.get(&pointers) as u64 / LINE_BYTES;
+        let (source, destination) = (line_of(pointers::SOURCE), line_of(pointers::DESTINATION));
+        let control = self.read(source + u64::from(map::CONTROL_LINE))?;
+        let sequence = control::SEQUENCE.get(&control) as u32;
+        if control::START.get(&control) != map::START_WORD.into() || self.job == Some(sequence) {
+            return Ok(());
+        }
+        self.job = Some(sequence);
+
+        let count = control::COUNT.get(&control) as u64;
+        let room = pointers::LINES.get(&pointers) as u64;
+        let fits = self.layout.source_lines(count) + u64::from(map::DATA_LINE) <= room
+            && self.layout.destination_lines(count) <= room;
+        let (error, counts) = if !fits {
+            (JobError::Room as u128, [0, 0, NONE])
+        } else if control::MODE.get(&control) != 0 {
+            (JobError::Mode as u128, [0, 0, NONE])
+        } else if control::ABORT.get(&control) != 0 {
+            (JobError::Aborted as u128, [0, 0, NONE])
+        } else {
+            (0, self.compute(source + u64::from(map::DATA_LINE), destination, count)?)
+        };
+
+        let mut line = [0; 16];
+        latency::SEQUENCE.set(&mut line, sequence.into());
+        self.write_dsm(map::LATENCY_LINE, &line);
+        let mut line = [0; 16];
+        performance::SEQUENCE.set(&mut line, sequence.into());
+        self.write_dsm(map::PERFORMANCE_LINE, &line);
+        let mut line = [0; 16];
+        status::DONE.set(&mut line, 1);
+        status::ERROR.set(&mut line, error);
+        status::SEQUENCE.set(&mut line, sequence.into());
+        status::CONTACTS.set(&mut line, counts[0]);
+        status::INVALID.set(&mut line, counts[1]);
+        status::FIRST_INVALID.set(&mut line, counts[2]);
+        status::VERSION.set(&mut line, map::VERSION.into());
+        status::CAPABILITY.set(&mut line, self.capability.into());
+        status::AFU_ID.set(&mut line, map::AFU_ID);
+        self.write(context + u64::from(map::STATUS_LINE), &line)
+    }
+
+    /// Reads pairs, writes contacts; contacts, invalid pairs and the first of these.
+    fn compute(&mut self, source: u64, destination: u64, count: u64) -> Result<[u128; 3], TransportError> {
+        let lines: Vec<Line> =
+            (0..self.layout.source_lines(count)).map(|line| self.read(source + line)).collect::<Result<_, _>>()?;
+        let records = self.reference.run_all(&unpack_pairs(&self.layout, &lines, count as usize));
+        for (number, line) in (destination..).zip(pack_contacts(&self.layout, &records)) {
+            self.write(number, &line)?;
+        }
+        let is_invalid = |record: &crate::kernel::ContactRecord| record.flow() == Some(Flow::Invalid);
+        let first = records.iter().position(is_invalid).map_or(NONE, |number| number as u128);
+        let hits = records.iter().filter(|record| record.is_contact()).count();
+        let invalid = records.iter().filter(|record| is_invalid(record)).count();
+        Ok([hits as u128, invalid as u128, first])
+    }
+}
+
+impl Transport for Software {
+    fn write_csr(&mut self, byte_offset: u32, value: u32) -> Result<(), TransportError> {
+        self.cycle += self.link.session.csr_write.max(1);
+        self.csrs.insert(byte_offset, value);
+        if byte_offset == CsrOffset::Control as u32 {
+            self.set_control(value)?;
+        } else if byte_offset == CsrOffset::DsmLow as u32 {
+            let mut line = [0; 16];
+            line[0] = SPL_ID;
+            let at = self.address(CsrOffset::DsmHigh as u32, value) / LINE_BYTES;
+            self.memory.set(at, &line);
+        } else if byte_offset == map::DSM_BASE_LOW.offset {
+            // The DSM is a page.
+            let line = self.address(map::DSM_BASE_HIGH.offset, value) / LINE_BYTES;
+            self.dsm = Some(line - line % DSM_LINES);
+            let mut line = [0; 16];
+            identity::AFU_ID.set(&mut line, map::AFU_ID);
+            identity::VERSION.set(&mut line, map::VERSION.into());
+            identity::CAPABILITY.set(&mut line, self.capability.into());
+            self.write_dsm(map::IDENTITY_LINE, &line);
+        } else if byte_offset == map::CONTEXT_BASE_LOW.offset {
+            self.context = Some(self.address(map::CONTEXT_BASE_HIGH.offset, value) / LINE_BYTES);
+        } else if byte_offset == map::SCRATCH.offset {
+            let mut line = [0; 16];
+            scratch::VALUE.set(&mut line, value.into());
+            self.write_dsm(map::SCRATCH_LINE, &line);
+        }
+        Ok(())
+    }
+
+    fn memory(&self) -> &Memory {
+        &self.memory
+    }
+
+    fn memory_mut(&mut self) -> &mut Memory {
+        &mut self.memory
+    }
+
+    fn advance(&mut self, cycles: u64) -> Result<(), TransportError> {
+        self.cycle += cycles;
+        self.poll()
+    }
+
+    fn cycle(&self) -> u64 {
+        self.cycle
+    }
+
+    fn watch(&mut self, lines: Range<u64>) {
+        if !self.watched.contains(&lines) {
+            self.watched.push(lines);
+        }
+    }
+
+    fn device_writes(&self) -> &[DeviceWrite] {
+        &self.log
+    }
+
+    fn link(&self) -> &LinkModel {
+        &self.link
+    }
+
+    fn traffic(&self) -> Traffic {
+        self.traffic
+    }
+}

@@ -1,0 +1,60 @@
+//! What a host needs of a device and the memory between them.
+
+use std::ops::Range;
+
+use crate::link::spl2::DeviceWrite;
+use crate::link::{LinkModel, Memory, Traffic};
+
+/// A device below SPL2, with the memory that it shares with the host.
+pub trait Transport {
+    /// Writes a 32-bit CSR, SPL's or the AFU's; it has arrived when this returns.
+    ///
+    /// # Errors
+    /// What the device did wrong meanwhile.
+    fn write_csr(&mut self, byte_offset: u32, value: u32) -> Result<(), TransportError>;
+
+    /// Physical memory, in lines.
+    fn memory(&self) -> &Memory;
+
+    /// Physical memory, for the host's hand.
+    fn memory_mut(&mut self) -> &mut Memory;
+
+    /// Lets so many cycles of the device's clock pass.
+    ///
+    /// # Errors
+    /// What the device did wrong meanwhile.
+    fn advance(&mut self, cycles: u64) -> Result<(), TransportError>;
+
+    /// Cycles so far.
+    fn cycle(&self) -> u64;
+
+    /// From now on the device's writes to these physical lines are logged, as those to its DSM always are.
+    fn watch(&mut self, lines: Range<u64>);
+
+    /// The device's writes to its DSM and to watched lines, in the order in which they arrived.
+    fn device_writes(&self) -> &[DeviceWrite];
+
+    /// The link between device and memory.
+    fn link(&self) -> &LinkModel;
+
+    /// What went over it so far.
+    fn traffic(&self) -> Traffic;
+}
+
+/// What a device did wrong, or was told wrongly.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum TransportError {
+    /// An address that the page table has no page for.
+    #[error(
+        "page fault: a {what} of virtual line {line:#x}, which no page of the workspace holds; end the transaction, the next begins with a new page table"
+    )]
+    PageFault {
+        /// Read or write.
+        what: &'static str,
+        /// The virtual line address.
+        line: u64,
+    },
+    /// Anything else.
+    #[error("the device: {0}")]
+    Device(String),
+}

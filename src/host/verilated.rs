@@ -1,0 +1,55 @@
+//! The Verilated AFU as a device.
+
+use std::ops::Range;
+
+use super::transport::{Transport, TransportError};
+use crate::cosim::spl2::{Machine, MachineError};
+use crate::link::spl2::{DeviceWrite, Spl2Error};
+use crate::link::{LinkModel, Memory, Traffic};
+
+impl From<MachineError> for TransportError {
+    fn from(error: MachineError) -> Self {
+        match error {
+            MachineError::Protocol { what: Spl2Error::PageFault { what, line }, .. } => Self::PageFault { what, line },
+            error => Self::Device(error.to_string()),
+        }
+    }
+}
+
+impl Transport for Machine<'_> {
+    fn write_csr(&mut self, byte_offset: u32, value: u32) -> Result<(), TransportError> {
+        Ok(Machine::write_csr(self, byte_offset, value)?)
+    }
+
+    fn memory(&self) -> &Memory {
+        Machine::memory(self)
+    }
+
+    fn memory_mut(&mut self) -> &mut Memory {
+        Machine::memory_mut(self)
+    }
+
+    fn advance(&mut self, cycles: u64) -> Result<(), TransportError> {
+        Ok(Machine::advance(self, cycles)?)
+    }
+
+    fn cycle(&self) -> u64 {
+        Machine::cycle(self)
+    }
+
+    fn watch(&mut self, lines: Range<u64>) {
+        self.spl_mut().watch(lines);
+    }
+
+    fn device_writes(&self) -> &[DeviceWrite] {
+        Machine::device_writes(self)
+    }
+
+    fn link(&self) -> &LinkModel {
+        self.spl().link().model()
+    }
+
+    fn traffic(&self) -> Traffic {
+        self.spl().link().traffic()
+    }
+}

@@ -1,0 +1,219 @@
+//! The workspace: pinned memory in pages of 2 MB, one behind the other for the device, anywhere in physical memory.
+//!
+//! At its beginning the AFU's context (two lines: pointers, status), then two halves: source, whose first line is the
+//! control memory, and destination. DSMs, SPL's context and the page table lie in pages of their own.
+
+use std::collections::BTreeSet;
+use std::ops::Range;
+
+use rand::{Rng, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+use super::error::HostError;
+use crate::afu::Layout;
+use crate::afu::spl2::map::{self, pointers};
+use crate::link::spl2::{MAX_PAGES, PAGE_BYTES};
+use crate::link::{LINE_BYTES, Line, Memory};
+
+const PAGE_LINES: u64 = PAGE_BYTES / LINE_BYTES;
+/// The virtual byte address of a workspace.
+const BASE: u64 = 0x0000_7F12_3460_0000;
+/// Bytes of the AFU's context.
+const CONTEXT_BYTES: u64 = 128;
+/// Physical pages that a workspace's may be among: the second terabyte.
+const PHYSICAL: Range<u64> = (1 << 40) / PAGE_BYTES..(1 << 41) / PAGE_BYTES;
+
+/// Physical byte addresses of what is not in the workspace.
+pub(super) const SPL_DSM: u64 = 0x1000;
+pub(super) const SPL_CONTEXT: u64 = 0x3000;
+pub(super) const AFU_DSM: u64 = 0x0012_0000_2000;
+const PAGE_TABLE: u64 = 0x4000;
+
+/// Memory that host and device share.
+#[derive(Clone, Debug)]
+pub struct Workspace {
+    /// Physical page numbers, in the order of virtual pages.
+    pages: Vec<u64>,
+    layout: Layout,
+}
+
+impl Workspace {
+    /// A workspace of 1 to 1024 pages for records of `layout`; `seed` scatters the pages over physical memory.
+    ///
+    /// # Errors
+    /// [`HostError::Pages`]; [`HostError::OnlyHits`] where only contacts come back.
+    pub fn new(layout: Layout, pages: u64, seed: u64) -> Result<Self, HostError> {
+        if layout.number_words() > 0 {
+            return Err(HostError::OnlyHits);
+        }
+        if !(1..=MAX_PAGES).contains(&pages) {
+            return Err(HostError::Pages(pages));
+        }
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
+        let (mut taken, mut scattered) = (BTreeSet::new(), Vec::new());
+        while (scattered.len() as u64) < pages {
+            let page = PHYSICAL.start + random.next_u64() % (PHYSICAL.end - PHYSICAL.start);
+            if taken.insert(page) {
+                scattered.push(page);
+            }
+        }
+        Ok(Self { pages: scattered, layout })
+    }
+
+    /// The least workspace that holds `pairs` pairs and their contacts.
+    ///
+    /// # Errors
+    /// [`HostError::Pages`] when 2 GB do not.
+    pub fn for_pairs(layout: Layout, pairs: u64, seed: u64) -> Result<Self, HostError> {
+        Self::new(layout, pages_for(&layout, pairs), seed)
+    }
+
+    /// Its pages.
+    pub fn pages(&self) -> u64 {
+        self.pages.len() as u64
+    }
+
+    /// Its bytes.
+    pub fn bytes(&self) -> u64 {
+        self.pages() * PAGE_BYTES
+    }
+
+    /// Where records lie in it.
+    pub fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// Pairs that a transaction may have: as many as source and destination hold, and a count can say.
+    pub fn capacity(&self) -> u64 {
+        capacity(&self.layout, self.pages())
+    }
+
+    /// Virtual byte address of the AFU's context.
+    pub fn context(&self) -> u64 {
+        BASE
+    }
+
+    /// pSource: virtual byte address of the control memory, behind which the pairs lie.
+    pub fn source(&self) -> u64 {
+        BASE + CONTEXT_BYTES
+    }
+
+    /// pDest: virtual byte address of the first contact.
+    pub fn destination(&self) -> u64 {
+        self.source() + half_lines(self.pages()) * LINE_BYTES
+    }
+
+    /// Lines of source, and of destination.
+    pub fn buffer_lines(&self) -> u64 {
+        half_lines(self.pages())
+    }
+
+    /// The physical line of a virtual byte address; nothing outside of the workspace.
+    pub fn physical(&self, address: u64) -> Option<u64> {
+        let line = address.checked_sub(BASE)? / LINE_BYTES;
+        let page = self.pages.get(usize::try_from(line / PAGE_LINES).ok()?)?;
+        Some(page * PAGE_LINES + line % PAGE_LINES)
+    }
+
+    /// The physical line of a line of the context, of the source, of the destination.
+    pub(super) fn line(&self, base: u64, line: u64) -> Result<u64, HostError> {
+        let address = base + line * LINE_BYTES;
+        self.physical(address).ok_or(HostError::Outside(address))
+    }
+
+    /// Writes SPL's context, the page table, and the AFU's context.
+    pub(super) fn describe(&self, memory: &mut Memory) -> Result<(), HostError> {
+        let halves = |value: u64| (value as u32, (value >> 32) as u32);
+        let mut spl = [0; 16];
+        (spl[0], spl[1]) = halves(PAGE_TABLE);
+        (spl[2], spl[3]) = halves(BASE);
+        (spl[4], spl[5]) = (1, self.pages.len() as u32);
+        memory.set(SPL_CONTEXT / LINE_BYTES, &spl);
+        for (number, pages) in (0..).zip(self.pages.chunks(8)) {
+            let mut entries: Line = [0; 16];
+            for (entry, page) in entries.chunks_mut(2).zip(pages) {
+                (entry[0], entry[1]) = halves(page * PAGE_BYTES);
+            }
+            memory.set(PAGE_TABLE / LINE_BYTES + number, &entries);
+        }
+        let mut context = [0; 16];
+        pointers::SOURCE.set(&mut context, self.source().into());
+        pointers::DESTINATION.set(&mut context, self.destination().into());
+        pointers::LINES.set(&mut context, self.buffer_lines().into());
+        memory.set(self.line(self.context(), map::POINTERS_LINE.into())?, &context);
+        memory.set(self.line(self.context(), map::STATUS_LINE.into())?, &[0; 16]);
+        memory.set(self.line(self.source(), map::CONTROL_LINE.into())?, &[0; 16]);
+        Ok(())
+    }
+}
+
+/// Lines of each half behind the context: (length − 128) / 2, a whole number of lines for any number of pages.
+fn half_lines(pages: u64) -> u64 {
+    (pages * PAGE_BYTES - CONTEXT_BYTES) / 2 / LINE_BYTES
+}
+
+fn capacity(layout: &Layout, pages: u64) -> u64 {
+    let half = half_lines(pages);
+    let pairs = (half - u64::from(map::DATA_LINE)) * u64::from(layout.pairs_per_line());
+    pairs.min(half * u64::from(layout.contacts_per_line())).min(u32::MAX.into())
+}
+
+/// Pages that so many pairs need, be they more than there can be.
+pub(super) fn pages_for(layout: &Layout, pairs: u64) -> u64 {
+    let half = (layout.source_lines(pairs) + u64::from(map::DATA_LINE)).max(layout.destination_lines(pairs));
+    (2 * half + CONTEXT_BYTES / LINE_BYTES).div_ceil(PAGE_LINES)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::{Config, Results};
+    use crate::kernel::Fields;
+
+    fn layout() -> Layout {
+        Layout::new(512, Fields::ALL)
+    }
+
+    #[test]
+    fn the_buffers_are_where_the_facts_say() {
+        for pages in [1, 2, 7, 1024] {
+            let workspace = Workspace::new(layout(), pages, 1).unwrap();
+            let bytes = pages * (2 << 20);
+            assert_eq!((workspace.bytes(), workspace.source()), (bytes, workspace.context() + 128));
+            assert_eq!(workspace.destination(), workspace.source() + (bytes - 128) / 2);
+            let end = workspace.destination() + 64 * workspace.buffer_lines();
+            assert_eq!(end, workspace.context() + bytes, "nothing is left over");
+            assert!(workspace.physical(end - 1).is_some() && workspace.physical(end).is_none());
+            assert!(workspace.physical(workspace.context() - 1).is_none());
+            assert_eq!(pages_for(&layout(), workspace.capacity()), pages);
+            assert_eq!(pages_for(&layout(), workspace.capacity() + 1), pages + 1);
+        }
+        for fields in [Fields::HIT, Fields::ALL] {
+            let layout = Layout::new(512, fields);
+            for pairs in [0, 1, 32_764, 32_765, 90_000, 10_000_000] {
+                let workspace = Workspace::for_pairs(layout, pairs, 1).unwrap();
+                assert!(workspace.capacity() >= pairs, "{fields}, {pairs}");
+            }
+        }
+    }
+
+    #[test]
+    fn pages_are_scattered_and_apart() {
+        let workspace = Workspace::new(layout(), 1024, 9).unwrap();
+        let distinct: BTreeSet<_> = workspace.pages.iter().collect();
+        assert_eq!(distinct.len(), 1024);
+        assert!(workspace.pages.windows(2).filter(|two| two[1] == two[0] + 1).count() < 5);
+        let last = workspace.context() + 3 * PAGE_BYTES - 64;
+        assert_eq!(workspace.physical(last), Some(workspace.pages[2] * PAGE_LINES + PAGE_LINES - 1));
+        assert_eq!(workspace.physical(last + 64), Some(workspace.pages[3] * PAGE_LINES));
+    }
+
+    #[test]
+    fn impossible_sizes_say_what_to_do() {
+        let text = |result: Result<Workspace, HostError>| result.unwrap_err().to_string();
+        assert_eq!(text(Workspace::new(layout(), 0, 1)), "a workspace of 0 pages of 2 MB: give it 1 to 1024");
+        let hits = Layout::of(512, &Config { results: Results::Hits, ..Config::default() });
+        assert_eq!(Workspace::new(hits, 1, 1).unwrap_err(), HostError::OnlyHits);
+        assert!(text(Workspace::for_pairs(layout(), 1 << 33, 1)).contains("give it 1 to 1024"));
+    }
+}
