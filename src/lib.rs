@@ -17,6 +17,7 @@ pub mod ode;
 pub mod operator;
 pub mod pairs;
 pub mod pipeline;
+pub mod plot;
 pub mod report;
 #[cfg(feature = "cosim")]
 pub mod sweep;

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 const HOUSE: &[(&str, &[&str])] = &[
     ("number", &[]),
     ("hdl", &[]),
+    ("plot", &[]),
     ("kernel", &["number"]),
     ("config", &["number", "kernel"]),
     ("pairs", &["number", "kernel"]),

@@ -1,0 +1,130 @@
+//! A plot's SVG.
+
+use maud::{Markup, PreEscaped, html};
+
+use super::layout::{Layout, SAMPLE, WIDTH};
+use super::style::{COLOURS, STYLE};
+use super::{Marker, Plot, Series};
+
+pub(super) fn file(plot: &Plot) -> Markup {
+    let layout = Layout::new(plot);
+    html! {
+        svg xmlns="http://www.w3.org/2000/svg" class="plot" viewBox=(view(&layout)) width=(WIDTH)
+            height=(layout.height) role="img" aria-label=(plot.title) {
+            style { (PreEscaped(STYLE)) }
+            (inside(plot, &layout))
+        }
+    }
+}
+
+pub(super) fn figure(plot: &Plot) -> Markup {
+    let layout = Layout::new(plot);
+    html! {
+        svg class="plot" viewBox=(view(&layout)) width="100%" role="img" aria-label=(plot.title) {
+            (inside(plot, &layout))
+        }
+    }
+}
+
+fn view(layout: &Layout) -> String {
+    format!("0 0 {WIDTH} {}", layout.height)
+}
+
+fn inside(plot: &Plot, layout: &Layout) -> Markup {
+    let Layout { left, top, wide, high, height, .. } = *layout;
+    let (right, bottom) = (left + wide, top + high);
+    let class = |series: &Series| format!("c{}", series.colour % COLOURS);
+    html! {
+        rect class="ground" width=(WIDTH) height=(height) {}
+        text class="title" x=(left) y="20" { (plot.title) }
+        g class="ticks" {
+            @for (value, words) in &layout.x.ticks {
+                @let x = round(left + layout.x.place(*value) * wide);
+                path class="grid" d=(format!("M{x} {top}V{bottom}")) {}
+                text class="soft" x=(x) y=(bottom + 18.0) text-anchor="middle" { (words) }
+            }
+            @for (value, words) in &layout.y.ticks {
+                @let y = round(top + (1.0 - layout.y.place(*value)) * high);
+                path class="grid" d=(format!("M{left} {y}H{right}")) {}
+                text class="soft" x=(left - 8.0) y=(y + 4.0) text-anchor="end" { (words) }
+            }
+        }
+        path class="axis" d=(format!("M{left} {top}V{bottom}H{right}")) {}
+        text x=(left + wide / 2.0) y=(bottom + 38.0) text-anchor="middle" { (plot.x.label) }
+        text transform=(format!("translate(14 {}) rotate(-90)", top + high / 2.0)) text-anchor="middle" {
+            (plot.y.label)
+        }
+        @for (mark, (x, y)) in plot.marks.iter().zip(&layout.marks) {
+            @let at = round(left + layout.x.place(mark.at) * wide);
+            @let colour = mark.colour.map_or("ink".to_owned(), |colour| format!("c{}", colour % COLOURS));
+            @if plot.x.holds(mark.at) && (left..=right).contains(&at) {
+                path class={ "mark " (colour) } d=(format!("M{at} {}V{bottom}", y + 4.0)) {}
+                text x=(round(*x)) y=(y) text-anchor="middle" { (mark.label) }
+            }
+        }
+        // An svg within one cuts off what lies beyond it; a margin keeps signs on the border whole.
+        svg x=(left - 5.0) y=(top - 5.0) width=(wide + 10.0) height=(high + 10.0)
+            viewBox=(format!("{} {} {} {}", left - 5.0, top - 5.0, wide + 10.0, high + 10.0)) {
+            @for series in &plot.series {
+                g data-series=(series.name) {
+                    @if let Some(line) = series.line {
+                        path class={ "line " (class(series)) " " (format!("{line:?}")) } d=(path(plot, series, layout)) {}
+                    }
+                    @if let Some(marker) = series.marker {
+                        @for &(x, y) in series.points.iter().filter(|p| shown(plot, p)) {
+                            (sign(marker, layout.at(x, y), &class(series)))
+                        }
+                    }
+                }
+            }
+        }
+        g class="legend" {
+            @for (series, &(x, y)) in plot.series.iter().zip(&layout.legend) {
+                @if let Some(line) = series.line {
+                    path class={ "line " (class(series)) " " (format!("{line:?}")) }
+                        d=(format!("M{x} {}h{SAMPLE}", y - 4.0)) {}
+                }
+                @if let Some(marker) = series.marker {
+                    (sign(marker, (x + SAMPLE / 2.0, y - 4.0), &class(series)))
+                }
+                text x=(x + SAMPLE + 8.0) y=(y) { (series.name) }
+            }
+        }
+    }
+}
+
+/// A tenth of a pixel is enough, and keeps files short.
+fn round(value: f64) -> f64 {
+    (value * 10.0).round() / 10.0
+}
+
+fn shown(plot: &Plot, &(x, y): &(f64, f64)) -> bool {
+    plot.x.holds(x) && plot.y.holds(y)
+}
+
+fn path(plot: &Plot, series: &Series, layout: &Layout) -> String {
+    let mut path = String::new();
+    let mut pen_down = false;
+    for point in &series.points {
+        if !shown(plot, point) {
+            pen_down = false;
+            continue;
+        }
+        let (x, y) = layout.at(point.0, point.1);
+        path.push_str(&format!("{}{} {}", if pen_down { 'L' } else { 'M' }, round(x), round(y)));
+        pen_down = true;
+    }
+    path
+}
+
+fn sign((marker, hollow): (Marker, bool), (x, y): (f64, f64), colour: &str) -> Markup {
+    let (x, y) = (round(x), round(y));
+    let class = format!("sign {} {colour}", if hollow { "hollow" } else { "full" });
+    let corners = match marker {
+        Marker::Circle => return html! { circle class=(class) cx=(x) cy=(y) r="3.5" {} },
+        Marker::Square => "m-3.2 -3.2h6.4v6.4h-6.4z",
+        Marker::Diamond => "m0 -4.4l4.4 4.4l-4.4 4.4l-4.4 -4.4z",
+        Marker::Triangle => "m0 -4.4l4.2 7.4h-8.4z",
+    };
+    html! { path class=(class) d=(format!("M{x} {y}{corners}")) {} }
+}

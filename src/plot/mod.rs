@@ -1,0 +1,107 @@
+//! Plots as SVG: axes, ticks, series of lines and points, marks, and a legend below, where it covers nothing.
+//!
+//! [`Plot::svg`] is a file of its own; [`Plot::figure`] goes into a page that has [`STYLE`] in its head. Colours are CSS
+//! variables, so both follow a reader's light or dark scheme. Imports nothing of ours.
+
+mod axis;
+mod draw;
+mod layout;
+mod series;
+mod style;
+
+pub use axis::{Axis, Scale};
+pub use series::{Line, Mark, Marker, Series};
+pub use style::STYLE;
+
+/// A plot: a title, two axes, and what lies between them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plot {
+    /// Above the plot.
+    pub title: String,
+    /// To the right.
+    pub x: Axis,
+    /// Upwards.
+    pub y: Axis,
+    /// In the order of the legend; later ones lie over earlier ones.
+    pub series: Vec<Series>,
+    /// Upright lines at places on the x axis, each with a few words above the plot.
+    pub marks: Vec<Mark>,
+}
+
+impl Plot {
+    /// A plot without series.
+    pub fn new(title: &str, x: Axis, y: Axis) -> Self {
+        Self { title: title.to_owned(), x, y, series: Vec::new(), marks: Vec::new() }
+    }
+
+    /// Adds a series.
+    #[must_use]
+    pub fn with(mut self, series: Series) -> Self {
+        self.series.push(series);
+        self
+    }
+
+    /// Adds a mark.
+    #[must_use]
+    pub fn marked(mut self, mark: Mark) -> Self {
+        self.marks.push(mark);
+        self
+    }
+
+    /// The plot as an SVG file, which carries its own colours.
+    pub fn svg(&self) -> String {
+        draw::file(self).into_string()
+    }
+
+    /// The plot as part of a page that has [`STYLE`].
+    pub fn figure(&self) -> maud::Markup {
+        draw::figure(self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plot(scale: Scale) -> Plot {
+        let axis = |label: &str| Axis::new(label, scale);
+        let points = || (1..=10).map(|i| (f64::from(i) * 100.0, f64::from(i * i)));
+        Plot::new("A < B & \"C\"", axis("collisions"), axis("time, ns"))
+            .with(Series::new("measured", 0, points()).line(Line::Solid).marker(Marker::Circle))
+            .with(Series::new("simulated", 1, points()).line(Line::Dashed).hollow(Marker::Square))
+            .marked(Mark::new(250.0, "crossover 250"))
+    }
+
+    #[test]
+    fn an_svg_has_every_point_and_every_name() {
+        for scale in [Scale::Linear, Scale::Log] {
+            let svg = plot(scale).svg();
+            assert!(svg.starts_with("<svg ") && svg.contains(r#"xmlns="http://www.w3.org/2000/svg""#), "{svg}");
+            assert_eq!(svg.matches("<circle").count(), 11, "ten points and one in the legend");
+            for text in ["measured", "simulated", "collisions", "time, ns", "crossover 250", "A &lt; B &amp; "] {
+                assert!(svg.contains(text), "{text}");
+            }
+            assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
+            let (open, closed) = (svg.matches("<g").count(), svg.matches("</g>").count());
+            assert_eq!(open, closed);
+        }
+    }
+
+    #[test]
+    fn what_has_no_place_is_left_out_and_parts_the_line() {
+        let points = [(1.0, 1.0), (2.0, 2.0), (3.0, f64::NAN), (4.0, 0.0), (5.0, 5.0), (6.0, 6.0)];
+        let log = Plot::new("", Axis::new("x", Scale::Linear), Axis::new("y", Scale::Log))
+            .with(Series::new("s", 0, points).line(Line::Solid).marker(Marker::Circle));
+        let svg = log.svg();
+        assert_eq!(svg.matches("<circle").count(), 4 + 1);
+        let path =
+            svg.split("class=\"line c0 Solid\" d=\"").nth(1).and_then(|rest| rest.split('"').next()).expect("a path");
+        assert_eq!(path.matches('M').count(), 2, "{path}");
+    }
+
+    #[test]
+    fn an_empty_plot_is_a_plot() {
+        let empty = Plot::new("", Axis::new("x", Scale::Log), Axis::new("y", Scale::Linear)).svg();
+        assert!(empty.contains("</svg>") && !empty.contains("NaN"), "{empty}");
+    }
+}
