@@ -16,6 +16,8 @@ pub mod number;
 pub mod ode;
 pub mod operator;
 pub mod pairs;
+#[cfg(feature = "cosim")]
+pub mod paper;
 pub mod pipeline;
 pub mod plot;
 pub mod report;

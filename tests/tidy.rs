@@ -22,8 +22,15 @@ const HOUSE: &[(&str, &[&str])] = &[
     ("verify", &["host", "cosim", "link", "pairs", "afu", "config", "kernel", "number"]),
     ("tools", &["cosim"]),
     ("synth", &["tools", "config", "afu", "pipeline", "operator", "kernel", "hdl", "number"]),
-    ("report", &["synth", "verify", "host", "tools", "cosim", "config", "afu", "link", "pairs", "kernel", "number"]),
+    (
+        "report",
+        &["plot", "synth", "verify", "host", "tools", "cosim", "config", "afu", "link", "pairs", "kernel", "number"],
+    ),
     ("accuracy", &["report", "config", "ode", "pairs", "kernel", "number"]),
+    (
+        "paper",
+        &["report", "plot", "verify", "host", "cosim", "config", "ode", "afu", "link", "pairs", "kernel", "number"],
+    ),
     ("sweep", &["report", "verify", "host", "cosim", "config", "afu", "link", "pairs", "kernel", "number"]),
 ];
 
@@ -146,7 +153,7 @@ fn no_file_names_a_registry_host_or_a_path_of_one_machine() {
     for folder in ["src", "tests", "examples", "benches", "tb", "rtl", "scripts", "docs"] {
         checked.extend(files(folder, &["rs", "h", "cpp", "v", "sv", "md", "json", "core", "f", "toml", "sdc", "xdc"]));
     }
-    for name in ["demo", "test", "setup"] {
+    for name in ["demo", "paper", "test", "setup"] {
         checked.push(Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts").join(name));
     }
     let mut found = Vec::new();

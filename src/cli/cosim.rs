@@ -174,7 +174,7 @@ impl Cosim {
         pairs: &[PairRecord],
         link: &LinkModel,
     ) -> Result<(Job, Option<Verdict>), Failure> {
-        let bar = progress::bar(name, pairs.len() as u64);
+        let bar = progress::bar(name, "pairs", pairs.len() as u64);
         let done = bench.run_with(pairs, link, self.seed, self.trace.as_deref(), |done| bar.set_position(done));
         bar.finish_and_clear();
         let name = name.to_owned();

@@ -40,7 +40,7 @@ pub fn run(options: &Hard) -> Result<(), Failure> {
     let (mut contenders, absent) =
         accuracy::contenders(&options.profile).map_err(|error| Failure::new(Kind::Other, error))?;
     let mut record = Record::new(task, &absent);
-    let bar = progress::bar("hard", task.pairs * contenders.len() as u64);
+    let bar = progress::bar("hard", "pairs", task.pairs * contenders.len() as u64);
     let folder = options.out.as_deref().map(|folder| (folder, options.force));
     let resumed = accuracy::fill(&mut record, &mut contenders, task, folder, |category, pairs| {
         bar.set_prefix(category.to_owned());

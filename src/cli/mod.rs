@@ -4,6 +4,8 @@ mod completions;
 #[cfg(feature = "cosim")]
 mod cosim;
 mod doctor;
+#[cfg(all(feature = "cosim", feature = "ode"))]
+mod experiment;
 mod failure;
 mod hard;
 #[cfg(feature = "cosim")]
@@ -12,6 +14,8 @@ mod list;
 mod machine;
 mod output;
 mod pairs;
+#[cfg(feature = "cosim")]
+mod paper;
 mod progress;
 #[cfg(feature = "cosim")]
 mod replay;
@@ -47,6 +51,8 @@ enum Command {
     Pairs(pairs::Pairs),
     #[cfg(feature = "cosim")]
     Sweep(sweep::Sweep),
+    #[cfg(feature = "cosim")]
+    Paper(paper::Paper),
     /// Measure an operator, an SCPU or the AFU on an FPGA: cells by Yosys, the clock by nextpnr
     Synth(synth::Synth),
     Hard(hard::Hard),
@@ -72,6 +78,8 @@ fn run(program: &Program) -> Result<(), Failure> {
         Command::Pairs(options) => pairs::run(options),
         #[cfg(feature = "cosim")]
         Command::Sweep(options) => sweep::run(options),
+        #[cfg(feature = "cosim")]
+        Command::Paper(options) => paper::run(options),
         Command::Synth(options) => synth::run(options),
         Command::Hard(options) => hard::run(options),
         Command::Doctor(options) => doctor::run(options),

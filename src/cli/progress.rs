@@ -5,13 +5,12 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-#[cfg(feature = "cosim")]
-/// A bar over `pairs` pairs.
-pub fn bar(title: &str, pairs: u64) -> ProgressBar {
-    let bar = ProgressBar::new(pairs);
+/// A bar over so many of something.
+pub fn bar(title: &str, unit: &str, length: u64) -> ProgressBar {
+    let bar = ProgressBar::new(length);
     // A wrong template would be a bar without one.
-    if let Ok(style) = ProgressStyle::with_template("{prefix} [{bar:30}] {human_pos} of {human_len} pairs, {eta} left")
-    {
+    let template = format!("{{prefix}} [{{bar:30}}] {{human_pos}} of {{human_len}} {unit}, {{eta}} left");
+    if let Ok(style) = ProgressStyle::with_template(&template) {
         bar.set_style(style.progress_chars("=> "));
     }
     bar.set_prefix(title.to_owned());

@@ -42,7 +42,7 @@ impl Layout {
         let x = plot.x.fit(points().map(|p| p.0).chain(plot.marks.iter().map(|mark| mark.at)));
         let y = plot.y.fit(points().map(|p| p.1));
         let widest = y.ticks.iter().map(|(_, text)| width(text)).fold(0.0, f64::max);
-        let (left, right) = (34.0 + widest, 24.0);
+        let (left, right) = (34.0 + widest, 32.0);
         let wide = WIDTH - left - right;
 
         // Words of marks: in the first row where they do not touch their neighbour.

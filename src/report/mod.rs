@@ -10,6 +10,7 @@ pub mod manifest;
 #[cfg(feature = "cosim")]
 pub mod mismatch;
 pub mod operators;
+pub mod page;
 pub mod synth;
 pub mod table;
 #[cfg(feature = "cosim")]

@@ -1,0 +1,57 @@
+//! What the paper says, as numbers.
+
+/// The figures in the paper's text. It has no table, and its plots no values.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Published {
+    /// ns a collision by ODE (section VI, of Figure 7).
+    pub ode_ns: f64,
+    /// ns a collision by the AFU (section VI, of Figure 7).
+    pub afu_ns: f64,
+    /// Collisions above which the AFU is always better (section VI, of Figure 6).
+    pub crossover: f64,
+    /// The speed-up, in percent (abstract, sections VI and VII).
+    pub speed_up_percent: f64,
+    /// The "configuration time before and after each transaction", in the unit that is printed: milliseconds
+    /// (section VI).
+    pub set_up_ms: f64,
+    /// SCPUs (section VI).
+    pub scpus: f64,
+    /// The link's bandwidth in GB/s (abstract, section II).
+    pub link_gb_s: f64,
+    /// The benchmark's hMax (section VI).
+    pub h_max: u32,
+}
+
+impl Published {
+    /// The paper's.
+    pub const PAPER: Self = Self {
+        ode_ns: 102.0,
+        afu_ns: 86.0,
+        crossover: 250.0,
+        speed_up_percent: 14.5,
+        set_up_ms: 2000.0,
+        scpus: 10.0,
+        link_gb_s: 8.0,
+        h_max: 3,
+    };
+
+    /// ns that the AFU gains at each collision.
+    pub fn gain_ns(&self) -> f64 {
+        self.ode_ns - self.afu_ns
+    }
+
+    /// The time around a transaction that makes the two equal at the crossover, in ns.
+    pub fn set_up_ns(&self) -> f64 {
+        self.crossover * self.gain_ns()
+    }
+
+    /// The paper's ODE for so many collisions, in ns.
+    pub fn ode_total_ns(&self, collisions: f64) -> f64 {
+        self.ode_ns * collisions
+    }
+
+    /// The paper's AFU for so many collisions, in ns, with the set-up that follows from its crossover.
+    pub fn afu_total_ns(&self, collisions: f64) -> f64 {
+        self.afu_ns * collisions + self.set_up_ns()
+    }
+}

@@ -1,0 +1,325 @@
+//! What the experiment gave, as data.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Published, Size};
+
+/// The schema of `results.json`.
+pub const SCHEMA: &str = "contact-afu/paper/1";
+
+/// What was asked for, and what it was done with.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Settings {
+    /// The command that does it again.
+    pub command: String,
+    /// The processor that measured times are of.
+    pub processor: String,
+    /// Layers of the diamond: hMax.
+    pub h_max: u32,
+    /// Gap between spheres: dSph.
+    pub d_sph: f64,
+    /// Kind of collision: tCol.
+    pub t_col: String,
+    /// The most collisions: nColMax.
+    pub n_col_max: usize,
+    /// Executions of each collision that ODE's average is of.
+    pub executions: u32,
+    /// Transactions that the AFU's average is of, up to 1000 collisions; above, one.
+    pub transactions: u32,
+    /// Steps that the recorded collisions are from.
+    pub steps: usize,
+    /// Steps after which the diamond is built anew.
+    pub steps_of_a_run: usize,
+    /// What a look at the clock takes: ns, part of each measurement by the paper's rule.
+    pub clock_ns: f64,
+    /// Instruction set of the f32 kernel.
+    pub level: String,
+    /// SCPUs of the AFU.
+    pub scpus: u32,
+    /// Its arithmetic.
+    pub profile: String,
+    /// Its shell.
+    pub shell: String,
+    /// The clock that its cycles are told in, MHz: assumed.
+    pub clock_mhz: f64,
+    /// The link model.
+    pub link: String,
+    /// Around each transaction, before and after together: ns, from the link model.
+    pub set_up_ns: f64,
+    /// Seed of the link.
+    pub seed: u64,
+    /// SHA-256 of the Verilog.
+    pub rtl_sha256: String,
+}
+
+/// Times for a number of collisions, measured on this machine, all in ns for all of them.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct OdePoint {
+    /// How many.
+    pub collisions: usize,
+    /// ODE by the paper's rule: each executed so many times, averages added.
+    pub rule_ns: f64,
+    /// ODE's calls in a loop that is timed as a whole: the shortest pass.
+    pub loop_ns: f64,
+    /// The same, the median.
+    pub loop_median_ns: f64,
+    /// The f32 kernel in batch, in its own layout: the shortest pass.
+    pub batch_ns: f64,
+    /// The f32 kernel from records to records.
+    pub records_ns: f64,
+}
+
+/// A number of collisions through the simulated AFU.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct AfuPoint {
+    /// How many: one transaction.
+    pub collisions: usize,
+    /// Transactions simulated.
+    pub transactions: u32,
+    /// Their cycles, on average.
+    pub cycles: f64,
+    /// The fewest.
+    pub least_cycles: u64,
+    /// The most.
+    pub most_cycles: u64,
+    /// The cycles that the link's bandwidth allows at least.
+    pub limit_cycles: f64,
+    /// Contacts that the AFU counted.
+    pub contacts: u64,
+}
+
+/// Both for one number of collisions.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Joined {
+    /// How many.
+    pub collisions: usize,
+    /// ODE by the paper's rule, measured, ns.
+    pub ode_rule_ns: f64,
+    /// ODE in a loop, measured, ns.
+    pub ode_loop_ns: f64,
+    /// ODE in a loop, the median pass, ns.
+    pub ode_loop_median_ns: f64,
+    /// The f32 kernel in batch, measured, ns.
+    pub batch_ns: f64,
+    /// The f32 kernel from records to records, measured, ns.
+    pub records_ns: f64,
+    /// The AFU, simulated: cycles of the RTL over the link.
+    pub afu_cycles: f64,
+    /// The fewest of a transaction.
+    pub afu_least_cycles: u64,
+    /// The most of a transaction.
+    pub afu_most_cycles: u64,
+    /// Transactions in the average.
+    pub afu_transactions: u32,
+    /// The cycles at the clock, ns.
+    pub afu_ns: f64,
+    /// That with the link's set-up and tear-down, ns.
+    pub afu_total_ns: f64,
+    /// What the link's bandwidth allows, ns.
+    pub link_limit_ns: f64,
+    /// Contacts that the AFU found.
+    pub afu_contacts: u64,
+    /// The paper's ODE: its ns a collision, times so many.
+    pub paper_ode_ns: f64,
+    /// The paper's AFU, with the set-up that its crossover implies.
+    pub paper_afu_ns: f64,
+}
+
+/// All of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Results {
+    /// What was asked for.
+    pub settings: Settings,
+    /// The numbers of collisions.
+    pub size: Size,
+    /// In increasing order of collisions.
+    pub points: Vec<Joined>,
+}
+
+/// What it comes to, at the largest number of collisions.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Summary {
+    /// That number.
+    pub collisions: usize,
+    /// ns a collision: ODE by the paper's rule, measured.
+    pub ode_rule_ns: f64,
+    /// ODE in a loop, measured.
+    pub ode_loop_ns: f64,
+    /// The f32 kernel in batch, measured.
+    pub batch_ns: f64,
+    /// The f32 kernel from records to records, measured.
+    pub records_ns: f64,
+    /// The AFU with set-up, simulated.
+    pub afu_ns: f64,
+    /// Contacts that the AFU found among them: it gets numbers rounded to binary32.
+    pub afu_contacts: u64,
+    /// What the link allows.
+    pub link_limit_ns: f64,
+    /// The share of it that is reached, without set-up.
+    pub link_share: f64,
+    /// ODE in a loop over AFU.
+    pub speed_up_over_loop: f64,
+    /// ODE by the paper's rule over AFU.
+    pub speed_up_over_rule: f64,
+    /// The f32 kernel in batch over AFU.
+    pub speed_up_over_batch: f64,
+    /// The least number of collisions tried from which on the AFU is always faster than ODE in a loop; none if never.
+    pub crossover_over_loop: Option<usize>,
+    /// The same against the paper's rule.
+    pub crossover_over_rule: Option<usize>,
+    /// The same against the f32 kernel in batch.
+    pub crossover_over_batch: Option<usize>,
+}
+
+impl Results {
+    /// Joins what was measured with what was simulated, where both are there.
+    pub fn new(settings: Settings, size: Size, ode: &[OdePoint], afu: &[AfuPoint], paper: &Published) -> Self {
+        let join = |ode: &OdePoint| {
+            let afu = afu.iter().find(|afu| afu.collisions == ode.collisions)?;
+            let cycle_ns = 1000.0 / settings.clock_mhz;
+            let afu_ns = afu.cycles * cycle_ns;
+            let n = ode.collisions as f64;
+            Some(Joined {
+                collisions: ode.collisions,
+                ode_rule_ns: ode.rule_ns,
+                ode_loop_ns: ode.loop_ns,
+                ode_loop_median_ns: ode.loop_median_ns,
+                batch_ns: ode.batch_ns,
+                records_ns: ode.records_ns,
+                afu_cycles: afu.cycles,
+                afu_least_cycles: afu.least_cycles,
+                afu_most_cycles: afu.most_cycles,
+                afu_transactions: afu.transactions,
+                afu_ns,
+                afu_total_ns: afu_ns + settings.set_up_ns,
+                link_limit_ns: afu.limit_cycles * cycle_ns,
+                afu_contacts: afu.contacts,
+                paper_ode_ns: paper.ode_total_ns(n),
+                paper_afu_ns: paper.afu_total_ns(n),
+            })
+        };
+        let points = ode.iter().filter_map(join).collect();
+        Self { settings, size, points }
+    }
+
+    /// The points of Figure 6.
+    pub fn figure6(&self) -> Vec<&Joined> {
+        self.at(&self.size.figure6(usize::MAX))
+    }
+
+    /// The points of Figure 7.
+    pub fn figure7(&self) -> Vec<&Joined> {
+        self.at(&self.size.figure7(usize::MAX))
+    }
+
+    fn at(&self, counts: &[usize]) -> Vec<&Joined> {
+        self.points.iter().filter(|point| counts.contains(&point.collisions)).collect()
+    }
+
+    /// What it comes to; nothing without points.
+    pub fn summary(&self) -> Option<Summary> {
+        let last = self.points.last()?;
+        let each = |total: f64| total / last.collisions as f64;
+        Some(Summary {
+            collisions: last.collisions,
+            ode_rule_ns: each(last.ode_rule_ns),
+            ode_loop_ns: each(last.ode_loop_ns),
+            batch_ns: each(last.batch_ns),
+            records_ns: each(last.records_ns),
+            afu_ns: each(last.afu_total_ns),
+            afu_contacts: last.afu_contacts,
+            link_limit_ns: each(last.link_limit_ns),
+            link_share: last.link_limit_ns / last.afu_ns,
+            speed_up_over_loop: last.ode_loop_ns / last.afu_total_ns,
+            speed_up_over_rule: last.ode_rule_ns / last.afu_total_ns,
+            speed_up_over_batch: last.batch_ns / last.afu_total_ns,
+            crossover_over_loop: self.crossover(|point| point.ode_loop_ns),
+            crossover_over_rule: self.crossover(|point| point.ode_rule_ns),
+            crossover_over_batch: self.crossover(|point| point.batch_ns),
+        })
+    }
+
+    /// From which number of collisions on the AFU always takes less than `other`.
+    fn crossover(&self, other: impl Fn(&Joined) -> f64) -> Option<usize> {
+        let wins = self.points.iter().rev().take_while(|point| point.afu_total_ns < other(point));
+        wins.last().map(|point| point.collisions)
+    }
+
+    /// Points as CSV.
+    ///
+    /// # Errors
+    /// When a writer into memory refuses, which it does not.
+    pub fn csv(points: &[&Joined]) -> Result<Vec<u8>, csv::Error> {
+        let mut out = csv::Writer::from_writer(Vec::new());
+        points.iter().try_for_each(|point| out.serialize(point))?;
+        out.into_inner().map_err(|error| error.into_error().into())
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+
+    /// ODE takes 50 ns a collision, the AFU 10 ns and 4 µs around it: equal at 100.
+    pub(in crate::paper) fn example() -> Results {
+        let settings = Settings {
+            command: "afu paper --out out/paper".into(),
+            processor: "a <processor>".into(),
+            h_max: 3,
+            d_sph: 0.0,
+            t_col: "real".into(),
+            n_col_max: 90_000,
+            executions: 10,
+            transactions: 3,
+            steps: 2500,
+            steps_of_a_run: 1000,
+            clock_ns: 20.0,
+            level: "AVX2".into(),
+            scpus: 10,
+            profile: "wide".into(),
+            shell: "line".into(),
+            clock_mhz: 200.0,
+            link: "harp1".into(),
+            set_up_ns: 4000.0,
+            seed: 1,
+            rtl_sha256: "00".into(),
+        };
+        let counts = Size::Quick.all(90_000);
+        let ode = |&n: &usize| {
+            let all = n as f64;
+            let (rule_ns, loop_ns, batch_ns) = (60.0 * all, 50.0 * all, 2.0 * all);
+            OdePoint { collisions: n, rule_ns, loop_ns, loop_median_ns: loop_ns, batch_ns, records_ns: 3.0 * all }
+        };
+        let afu = |&n: &usize| AfuPoint {
+            collisions: n,
+            transactions: 1,
+            cycles: 2.0 * n as f64,
+            least_cycles: 2 * n as u64,
+            most_cycles: 2 * n as u64,
+            limit_cycles: 1.9 * n as f64,
+            contacts: n as u64,
+        };
+        let (ode, afu): (Vec<_>, Vec<_>) = counts.iter().map(|n| (ode(n), afu(n))).unzip();
+        Results::new(settings, Size::Quick, &ode, &afu, &Published::PAPER)
+    }
+
+    #[test]
+    fn the_summary_is_of_the_last_point_and_the_crossover_of_all() {
+        let summary = example().summary().expect("points");
+        assert_eq!((summary.collisions, summary.ode_loop_ns), (90_000, 50.0));
+        assert!((summary.afu_ns - (10.0 + 4000.0 / 90_000.0)).abs() < 1e-9);
+        assert!((summary.link_share - 0.95).abs() < 1e-9);
+        // At 100 they are equal, which is no win.
+        assert_eq!((summary.crossover_over_loop, summary.crossover_over_rule), (Some(200), Some(100)));
+        assert_eq!(summary.crossover_over_batch, None);
+    }
+
+    #[test]
+    fn a_csv_has_a_line_a_point() {
+        let results = example();
+        let csv = String::from_utf8(Results::csv(&results.figure7()).expect("memory")).expect("text");
+        assert_eq!(csv.lines().count(), 5);
+        assert!(csv.starts_with("collisions,ode_rule_ns,ode_loop_ns,"), "{csv}");
+        assert!(csv.contains("\n90000,5400000.0,4500000.0,"), "{csv}");
+    }
+}

@@ -1,0 +1,80 @@
+//! Pages of HTML that need nothing but themselves: no script, no network, light or dark as the reader has it.
+
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use crate::plot;
+
+/// What a browser may load for a page: its own style, and nothing else from anywhere.
+pub const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:";
+
+const STYLE: &str = "\
+:root{color-scheme:light dark;--ground:#ffffff;--ink:#1c1f24;--soft:#5c6470;--grid:#dde1e6}
+@media (prefers-color-scheme:dark){:root{--ground:#15181d;--ink:#e8eaee;--soft:#a4acb8;--grid:#323842}}
+body{margin:0 auto;padding:1.5rem;max-width:60rem;background:var(--ground);color:var(--ink);\
+font:15px/1.5 system-ui,'DejaVu Sans',sans-serif}
+h1{font-size:1.6rem;line-height:1.2}h2{font-size:1.2rem;margin-top:2.2rem}
+p.soft,caption,figcaption{color:var(--soft)}caption{text-align:left;padding-bottom:.4rem}
+figure{margin:1.5rem 0}figure svg{display:block;max-width:100%;height:auto;border:1px solid var(--grid)}
+div.wide{overflow-x:auto}
+table{border-collapse:collapse;font-variant-numeric:tabular-nums;margin:.8rem 0}
+th,td{padding:.3rem .7rem;border-bottom:1px solid var(--grid);text-align:left;vertical-align:top}
+td.n,th.n{text-align:right;white-space:nowrap}
+code,pre{font-family:ui-monospace,'DejaVu Sans Mono',monospace;font-size:.92em}
+pre{overflow-x:auto;border:1px solid var(--grid);padding:.7rem}
+a{color:inherit}
+";
+
+/// A page: its title, and what is below it.
+pub fn page(title: &str, body: &Markup) -> String {
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta http-equiv="Content-Security-Policy" content=(POLICY);
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { (title) }
+                style { (PreEscaped(STYLE)) (PreEscaped(plot::STYLE)) }
+            }
+            body {
+                h1 { (title) }
+                (body)
+            }
+        }
+    };
+    page.into_string()
+}
+
+/// A table: a caption, headings, and rows. Columns but the first `words` are figures, on the right.
+pub fn table(caption: &str, heading: &[&str], words: usize, rows: &[Vec<String>]) -> Markup {
+    let class = |column: usize| if column < words { "" } else { "n" };
+    html! {
+        div.wide {
+            table {
+                @if !caption.is_empty() { caption { (caption) } }
+                thead { tr { @for (column, name) in heading.iter().enumerate() { th class=(class(column)) { (name) } } } }
+                tbody {
+                    @for row in rows {
+                        tr { @for (column, cell) in row.iter().enumerate() { td class=(class(column)) { (cell) } } }
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_page_loads_nothing_and_escapes_its_text() {
+        let rows = [vec!["a <b>".to_owned(), "1".to_owned()]];
+        let page = page("x & y", &table("", &["name", "n"], 1, &rows));
+        assert!(page.starts_with("<!DOCTYPE html>") && page.contains(POLICY.split(';').next().unwrap_or_default()));
+        assert!(page.contains("<h1>x &amp; y</h1>") && page.contains("<td class=\"\">a &lt;b&gt;</td>"), "{page}");
+        for load in ["http:", "https:", "<script", "<link", "src=", "url(", "@import"] {
+            assert!(!page.contains(load), "{load}");
+        }
+    }
+}
