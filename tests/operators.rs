@@ -4,8 +4,8 @@
 mod support;
 
 use contact_afu::hdl::{DelayModel, Evaluator, Module, Op, Pin};
-use contact_afu::number::{Format, Subnormals};
-use contact_afu::operator::{Operator, build, pipelined};
+use contact_afu::number::{Format, Soft, Subnormals};
+use contact_afu::operator::{INPUTS, Operator, build, pipelined};
 use std::sync::Arc;
 use support::{Words, corner};
 
@@ -151,6 +151,52 @@ fn other_formats() {
             randomly(Operator::Convert { to: format }, to, count);
         }
     }
+}
+
+/// Rounding to odd, in the format of the exact kernel and in one with subnormals.
+#[test]
+fn sums_rounded_to_odd() {
+    for operator in [Operator::AddToOdd, Operator::SubToOdd] {
+        for (format, count) in [(Format::DIFFERENCE, 300_000), (Format::BINARY32, 300_000), (format("e6f9z"), 100_000)]
+        {
+            randomly(operator, format, count);
+        }
+    }
+}
+
+/// The excess of squares: operands far from one another and near, sums that nearly cancel, words with few bits.
+#[test]
+fn the_excess_of_squares() {
+    let (format, operator) = (Format::DIFFERENCE, Operator::SquareExcess { to: Format::TAIL });
+    let mut words = Words::new(10, 47, 77);
+    let mut evaluator = Evaluator::new(&build(operator, format).unwrap(), &[]).unwrap();
+    let (mut settled, mut doubtful) = (0, 0);
+    for count in 0..400_000_u32 {
+        let ((a, b), (c, d)) = (words.two(), words.two());
+        let mut operands = [a, b, c, d];
+        if count % 4 != 0 {
+            // One scale, and zeros at the end of a random length.
+            let zeros = count / 4 % 48;
+            let exponent = 500 + u128::from(count % 7);
+            for (operand, less) in operands.iter_mut().zip([0, 0, count % 3, count % 31]) {
+                *operand = *operand & (1 << 57 | (1 << 47) - 1) | (exponent - u128::from(less)) << 47;
+                *operand = *operand >> zeros << zeros;
+            }
+        }
+        if count % 4 == 1 {
+            // The root of the others' squares, so that all cancels but what rounding leaves.
+            let squares = operands[1..].iter().map(|&word| Soft::from_bits(format, word).to_f64().powi(2));
+            operands[0] = Soft::from_f64(format, squares.sum::<f64>().sqrt()).bits();
+        }
+        for (name, operand) in INPUTS.into_iter().zip(operands) {
+            evaluator.set(name, operand);
+        }
+        let (got, wanted) = (evaluator.get("result"), operator.twin_of(format, operands));
+        assert!(got == wanted, "{operands:x?}: {got:#x}, not {wanted:#x}");
+        let counter = if wanted == Format::TAIL.nan_bits() { &mut doubtful } else { &mut settled };
+        *counter += 1;
+    }
+    assert!(settled > 100_000 && doubtful > 50_000, "{settled} settled, {doubtful} in doubt");
 }
 
 /// Digit recurrences have no table whose entries could be sampled: every significand of binary32 is tried, under an

@@ -2,7 +2,7 @@
 
 use super::{Answer, Formula};
 use crate::config::Profile;
-use crate::kernel::{EngineError, Fields, PairRecord, Reference};
+use crate::kernel::{ContactRecord, EngineError, Fields, PairRecord, Reference, settle};
 
 /// Something that answers pairs: a profile's reference kernel, or another engine.
 pub trait Contender {
@@ -26,7 +26,7 @@ pub struct Profiled {
 impl Profiled {
     /// The kernel of a profile.
     pub fn new(profile: &Profile) -> Self {
-        Self { profile: profile.clone(), reference: Reference::new(profile.format(), Fields::ALL) }
+        Self { profile: profile.clone(), reference: profile.reference(Fields::ALL) }
     }
 }
 
@@ -36,7 +36,14 @@ impl Contender for Profiled {
     }
 
     fn answers(&mut self, pairs: &[PairRecord]) -> Result<Vec<Answer>, EngineError> {
-        Ok(self.reference.run_all(pairs).into_iter().map(Answer::from).collect())
+        let raw = self.reference.run_all(pairs);
+        let mut settled = raw.clone();
+        settle(pairs, &mut settled, Fields::ALL);
+        let answer = |(raw, settled): (ContactRecord, ContactRecord)| Answer {
+            unsettled: raw.is_unsettled(),
+            ..Answer::from(settled)
+        };
+        Ok(raw.into_iter().zip(settled).map(answer).collect())
     }
 }
 

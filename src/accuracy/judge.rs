@@ -117,13 +117,19 @@ fn numbers(answer: &Answer) -> impl Iterator<Item = f64> {
     answer.position.into_iter().chain(answer.normal).chain([answer.depth])
 }
 
-/// How far a number is from the true one; nothing where both are beyond binary32.
+/// How far a number is from the true one; nothing where both are beyond binary32. An infinity where the truth is the
+/// largest number stands for the one that would follow.
 fn difference(given: f64, exact: f64, rounded: f64) -> f64 {
-    if given == rounded {
-        // An infinity that is right has no distance; anything else that is right has a small one.
-        return if given.is_finite() { (given - exact).abs() } else { 0.0 };
+    if given.is_finite() {
+        return (given - exact).abs();
     }
-    if given.is_finite() { (given - exact).abs() } else { f64::INFINITY }
+    match given == rounded {
+        true => 0.0,
+        false if given == f64::INFINITY.copysign(rounded) && rounded.abs() == f32::MAX.into() => {
+            2.0_f64.powi(128) - exact.abs()
+        }
+        false => f64::INFINITY,
+    }
 }
 
 fn length([x, y, z]: [f64; 3]) -> f64 {

@@ -47,7 +47,7 @@ impl Afu {
     pub fn generate(spec: Spec) -> Result<Self, BuildError> {
         spec.check()?;
         let kernel = sphere_kernel(&Settings {
-            arithmetic: spec.config.profile.format(),
+            arithmetic: spec.config.profile.arithmetic(),
             record: Format::BINARY32,
             fields: spec.config.contact,
             clock_mhz: spec.config.clock_mhz,

@@ -28,6 +28,11 @@ impl Layout {
         Self { results: config.results, ..Self::new(line_bits, config.contact) }
     }
 
+    /// The fields of a contact.
+    pub fn fields(&self) -> Fields {
+        self.fields
+    }
+
     /// Bits of a line.
     pub fn line_bits(&self) -> u32 {
         self.line_bits

@@ -42,11 +42,15 @@ pub(super) fn scpu(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>, Err
         Some(hit).filter(|_| layout.result_bits() > 0)
     } else {
         let grazing = kernel.output("grazing").named("grazing");
-        let flow = invalid.select(
+        let exact = spec.config.profile.is_exact();
+        let unsettled = exact.then(|| kernel.output("unsettled").named("unsettled"));
+        let no_flow = unsettled.map_or(invalid, |unsettled| invalid | unsettled);
+        let flow = no_flow.select(
             graph.constant(2, 0),
             hit.select(grazing.select(graph.constant(2, 2), graph.constant(2, 3)), graph.constant(2, 1)),
         );
-        let flags = Signal::join(&[invalid, flow.named("flow"), hit]).extend(32).named("flags");
+        let flags: Vec<_> = unsettled.into_iter().chain([invalid, flow.named("flow"), hit]).collect();
+        let flags = Signal::join(&flags).extend(32).named("flags");
         let mut words: Vec<Signal<'_>> = layout
             .contact_words()
             .into_iter()

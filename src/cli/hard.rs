@@ -22,7 +22,7 @@ pub struct Hard {
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     /// Profiles to judge, beside the other engines
-    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "paper,wide")]
+    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "paper,wide,exact")]
     profile: Vec<Profile>,
     /// Folder to write: manifest.json (JSON of all) and hard.csv
     #[arg(long, value_name = "DIR")]

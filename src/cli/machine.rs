@@ -12,7 +12,7 @@ use super::failure::{Classify, Failure, Kind};
 #[derive(Args, Debug)]
 #[command(next_help_heading = "The AFU")]
 pub struct Machine {
-    /// Arithmetic: paper (IEEE binary32), wide, half, bfloat or eXfY (exponent and fraction bits) [default: wide]
+    /// Arithmetic: paper (IEEE binary32), wide, exact, half, bfloat or eXfY (exponent and fraction bits) [default: wide]
     #[arg(long, value_name = "NAME|eXfY")]
     pub profile: Option<Profile>,
     /// What comes back for a pair: a list of hit, depth, normal, position [default: all four]

@@ -64,6 +64,16 @@ pub enum Error {
     /// Not a frequency one can cut stages for.
     #[error("clock {0} MHz: give a frequency from 1 to 2000 MHz")]
     Clock(f64),
+    /// A record of one bit has no room for "unsettled".
+    #[error(
+        "profile exact with contact hit alone: a contact of one bit cannot say that a pair is unsettled; ask for the depth too"
+    )]
+    ExactHit,
+    /// Records that come back only for contacts leave out those that the host would have to settle.
+    #[error(
+        "profile exact with results hits: pairs that only the host can settle would not come back; ask for all results"
+    )]
+    ExactHits,
     /// Known to the design, not built yet.
     #[error("{option} {value}: not built yet; {instead}")]
     NotYet {
@@ -87,6 +97,12 @@ impl Config {
         }
         if !(1.0..=2000.0).contains(&self.clock_mhz) {
             return Err(Error::Clock(self.clock_mhz));
+        }
+        if self.profile.is_exact() && self.contact == Fields::HIT {
+            return Err(Error::ExactHit);
+        }
+        if self.profile.is_exact() && self.results == Results::Hits {
+            return Err(Error::ExactHits);
         }
         let not_yet = |option, value: String, instead| Err(Error::NotYet { option, value, instead });
         if self.interval != 1 {
@@ -173,6 +189,8 @@ mod tests {
             (Config { scpus: 65, ..Config::default() }, "65 SCPUs"),
             (Config { clock_mhz: f64::NAN, ..Config::default() }, "clock NaN"),
             (Config { interval: 2, ..Config::default() }, "interval 2"),
+            (Config { profile: Profile::EXACT, contact: Fields::HIT, ..Config::default() }, "profile exact with contact"),
+            (Config { profile: Profile::EXACT, results: Results::Hits, ..Config::default() }, "profile exact with results"),
             (Config { input: Input::Indexed, ..Config::default() }, "input indexed"),
             (Config { shell: Shell::Axi, ..Config::default() }, "shell axi"),
         ];

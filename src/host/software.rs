@@ -53,7 +53,7 @@ impl Software {
         Ok(Self {
             capability: afu.capability(),
             layout: afu.layout(),
-            reference: Reference::new(config.profile.format(), config.contact),
+            reference: config.profile.reference(config.contact),
             link,
             memory: Memory::new(),
             cycle: 0,

@@ -8,7 +8,7 @@ use super::session::Session;
 use super::transport::Transport;
 use super::workspace::pages_for;
 use crate::afu::spl2::map::{self, performance, status};
-use crate::kernel::{ContactRecord, PairRecord};
+use crate::kernel::{ContactRecord, PairRecord, settle};
 use crate::link::{LINE_BYTES, Line, Traffic};
 
 /// After step 1: the pointers are known.
@@ -120,6 +120,8 @@ struct Open<'s, T: Transport> {
     is_spl_started: bool,
     /// Pairs, once they are in the source.
     pairs: u32,
+    /// They themselves, for those that the AFU leaves unsettled.
+    sent: Vec<PairRecord>,
     report: Report,
 }
 
@@ -170,7 +172,7 @@ impl<'s, T: Transport> Transaction<'s, T, Pointed> {
         let Session { transport, .. } = &*session;
         let stated = transport.link().session;
         let report = Report { stated_set_up: stated.set_up, stated_tear_down: stated.tear_down, ..Report::default() };
-        Self { open: Open { session, is_spl_started: false, pairs: 0, report }, state: Pointed(()) }
+        Self { open: Open { session, is_spl_started: false, pairs: 0, sent: Vec::new(), report }, state: Pointed(()) }
     }
 
     /// pVAFU2_CNTXT: virtual byte address of the AFU's context.
@@ -193,7 +195,8 @@ impl<'s, T: Transport> Transaction<'s, T, Pointed> {
     /// # Errors
     /// More pairs than the buffers hold; no AFU_ID, or not that of the AFU expected; what the device did wrong.
     pub fn send(mut self, pairs: &[PairRecord]) -> Result<Transaction<'s, T, Loaded>, HostError> {
-        let Open { session, is_spl_started, report, pairs: sent } = &mut self.open;
+        self.open.sent = pairs.to_vec();
+        let Open { session, is_spl_started, report, pairs: sent, .. } = &mut self.open;
         let capacity = session.workspace.capacity();
         let (layout, count) = (*session.workspace.layout(), pairs.len() as u64);
         let too_many = || HostError::TooManyPairs { pairs: count, capacity, pages: pages_for(&layout, count) };
@@ -296,7 +299,10 @@ impl<'s, T: Transport> Transaction<'s, T, Done> {
             lines.push(Some(*line.ok_or(HostError::Unwritten(number))?));
         }
         let memory = Contacts::new(layout, &lines);
-        let contacts: Vec<ContactRecord> = (0..self.open.pairs as usize).filter_map(|pair| memory.get(pair)).collect();
+        let read = (0..self.open.pairs as usize).filter_map(|pair| memory.get(pair));
+        let mut contacts: Vec<ContactRecord> = read.collect();
+        // Before anyone reads them: what the profile exact could not settle.
+        let unsettled = settle(&self.open.sent, &mut contacts, layout.fields());
 
         let figures = session.dsm(map::PERFORMANCE_LINE);
         let traffic = session.transport.traffic();
@@ -313,6 +319,7 @@ impl<'s, T: Transport> Transaction<'s, T, Done> {
             hits: word(status::CONTACTS),
             invalid: word(status::INVALID),
             first_invalid: Some(word(status::FIRST_INVALID)).filter(|&pair| pair != u32::MAX),
+            unsettled,
             report: *report,
         };
         Ok(self.to(|_| Retrieved { results }))

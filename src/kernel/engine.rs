@@ -25,7 +25,7 @@ impl<E: Engine + ?Sized> Engine for &mut E {
 
 impl Engine for Reference {
     fn contacts(&mut self, pairs: &[PairRecord]) -> Result<Vec<ContactRecord>, EngineError> {
-        Ok(self.run_all(pairs))
+        Ok(self.settled(pairs).0)
     }
 }
 

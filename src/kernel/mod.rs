@@ -4,14 +4,18 @@
 pub mod batch;
 mod contact;
 mod engine;
+mod exact;
 mod fields;
 mod record;
 mod reference;
+mod settle;
 mod truth;
 
 pub use contact::{Contact, Pair, contact};
 pub use engine::{Engine, EngineError};
+pub use exact::{Filtered, exact};
 pub use fields::{Fields, FieldsError};
 pub use record::{ContactRecord, Flow, PAIR_FIELDS, PairRecord};
-pub use reference::Reference;
+pub use reference::{Arithmetic, Reference};
+pub use settle::settle;
 pub use truth::{Errors, Truth, ulp};

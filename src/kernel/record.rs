@@ -101,6 +101,15 @@ impl fmt::Display for Flow {
 pub struct ContactRecord(pub [u32; 8]);
 
 impl ContactRecord {
+    /// What the kernel of the profile `exact` writes for a pair that needs more than its window: bit 4 of the flags,
+    /// and nothing else. The host puts the contact in its place before anyone reads it.
+    pub const UNSETTLED: Self = Self([0, 0, 0, 0, 0, 0, 0, 16]);
+
+    /// Whether it is no contact yet, but the admission that the pair needs more.
+    pub const fn is_unsettled(self) -> bool {
+        self.flags() & 16 != 0
+    }
+
     /// The flags word: see [`Flow::flags`].
     pub const fn flags(self) -> u32 {
         self.0[7]

@@ -1,7 +1,7 @@
 //! The reference kernel: [`contact`] over records, in any format.
 
 use super::record::word;
-use super::{Contact, ContactRecord, Fields, Flow, PairRecord, contact};
+use super::{Contact, ContactRecord, Fields, Filtered, Flow, PairRecord, contact, exact, settle};
 use crate::number::{Format, Number, Soft};
 
 /// What every other implementation is compared with, bit for bit.
@@ -9,22 +9,52 @@ use crate::number::{Format, Number, Soft};
 /// In binary32 it computes with the machine's `f32`, in any other format with [`Soft`]; records are binary32.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reference {
-    arithmetic: Format,
+    arithmetic: Arithmetic,
     fields: Fields,
+}
+
+/// Which kernel, in which numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Arithmetic {
+    /// [`contact`], in one format.
+    Rounded(Format),
+    /// [`exact`], in its own formats.
+    Exact,
 }
 
 impl Reference {
     /// The kernel that computes in `arithmetic` and gives `fields`; the others are zero words.
     pub const fn new(arithmetic: Format, fields: Fields) -> Self {
+        Self::of(Arithmetic::Rounded(arithmetic), fields)
+    }
+
+    /// The kernel of the profile `exact`.
+    pub const fn exact(fields: Fields) -> Self {
+        Self::of(Arithmetic::Exact, fields)
+    }
+
+    /// Either of them.
+    pub const fn of(arithmetic: Arithmetic, fields: Fields) -> Self {
         Self { arithmetic, fields }
     }
 
-    /// The contact of one pair.
+    /// What the kernel gives for one pair. That of `exact` leaves some pairs unsettled: see [`settle`].
     pub fn run(&self, pair: &PairRecord) -> ContactRecord {
-        if self.arithmetic == Format::BINARY32 { native(pair, self.fields) } else { self.run_soft(pair) }
+        if self.arithmetic == Arithmetic::Rounded(Format::BINARY32) {
+            native(pair, self.fields)
+        } else {
+            self.run_soft(pair)
+        }
     }
 
-    /// The contacts of many pairs, in their order.
+    /// The contacts of many pairs, in their order, and how many of them the kernel itself did not settle.
+    pub fn settled(&self, pairs: &[PairRecord]) -> (Vec<ContactRecord>, u64) {
+        let mut contacts = self.run_all(pairs);
+        let unsettled = settle(pairs, &mut contacts, self.fields);
+        (contacts, unsettled)
+    }
+
+    /// What the kernel gives for many pairs, in their order: [`Reference::run`] of each.
     pub fn run_all(&self, pairs: &[PairRecord]) -> Vec<ContactRecord> {
         pairs.iter().map(|pair| self.run(pair)).collect()
     }
@@ -34,8 +64,16 @@ impl Reference {
         let record = Format::BINARY32;
         let spheres = pair.read(|word| Soft::from_bits(record, word.into()));
         let valid = pair.is_valid();
-        let contact = contact(spheres, valid, self.arithmetic, record, self.fields);
-        write(contact, valid, |number| number.bits() as u32)
+        match self.arithmetic {
+            Arithmetic::Rounded(format) => {
+                let contact = contact(spheres, valid, format, record, self.fields);
+                write(contact, valid, |number| number.bits() as u32)
+            }
+            Arithmetic::Exact => {
+                let Filtered { contact, unsettled } = exact(spheres, valid, record, self.fields);
+                if unsettled { ContactRecord::UNSETTLED } else { write(contact, valid, |number| number.bits() as u32) }
+            }
+        }
     }
 }
 

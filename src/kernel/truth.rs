@@ -59,7 +59,10 @@ impl Truth {
     /// position of coincident spheres, which is the first centre as it is.
     pub fn record(&self) -> ContactRecord {
         let mut words = [self.flow.flags(); 8];
-        let Some(contact) = &self.contact else { return ContactRecord([0, 0, 0, 0, 0, 0, 0, self.flow.flags()]) };
+        let Some(contact) = &self.contact else {
+            words[..7].fill(0);
+            return ContactRecord(words);
+        };
         let numbers = contact.position.iter().chain(contact.normal.iter()).chain([&contact.depth]);
         for (word, number) in words.iter_mut().zip(numbers) {
             *word = number.to_f32().to_bits();
@@ -88,12 +91,12 @@ impl Truth {
     pub fn errors(&self, answer: ContactRecord) -> Option<Errors> {
         let truth = self.contact.filter(|_| answer.is_contact())?;
         let away = |given: f32, true_value: Precise, unit: f64| {
-            // What rounds to an infinity is right where it is one.
-            let right = given == true_value.to_f32();
-            if !given.is_finite() {
-                return if right { 0.0 } else { f64::INFINITY };
+            if given.is_nan() || given.is_infinite() && true_value.to_f32() == given {
+                return if given.is_nan() { f64::INFINITY } else { 0.0 };
             }
-            (Precise::from_f64(given.into()) - true_value).abs().to_f64() / unit
+            // An infinity stands for the number that would follow the largest one.
+            let given = if given.is_infinite() { 2.0_f64.powi(128).copysign(given.into()) } else { given.into() };
+            (Precise::from_f64(given) - true_value).abs().to_f64() / unit
         };
         let largest = |given: [f32; 3], truth: &Vector3<Precise>, unit: [f64; 3]| {
             (0..3).map(|i| away(given[i], truth[i], unit[i])).fold(0.0, f64::max)
@@ -131,7 +134,7 @@ impl Errors {
 }
 
 /// The unit in the last place of a number: 2^(e − 23), and 2^−149 below the smallest normal number. That of an
-/// infinity is that of the largest number.
+/// infinity is that of the largest number, after which it stands.
 pub fn ulp(value: f32) -> f64 {
     let biased = (value.to_bits() >> 23 & 0xFF).clamp(1, 254);
     2.0_f64.powi(biased as i32 - 150)

@@ -41,7 +41,7 @@ pub enum FormatError {
         fraction: u32,
     },
     /// Not a profile name and not eXfY.
-    #[error("unknown profile `{0}`: use paper, wide, half, bfloat or eXfY such as e8f15")]
+    #[error("unknown profile `{0}`: use paper, wide, exact, half, bfloat or eXfY such as e8f15")]
     Unknown(String),
 }
 
@@ -53,6 +53,10 @@ impl Format {
     /// The default arithmetic: binary32's significand under a 10-bit exponent, in which no finite binary32 pair
     /// reaches either end of the range.
     pub const WIDE: Self = Self::fixed(10, 23, Subnormals::Flushed);
+    /// Differences of coordinates and sums of radii in the profile `exact`.
+    pub const DIFFERENCE: Self = Self::fixed(10, 47, Subnormals::Flushed);
+    /// What follows the differences in the profile `exact`: distance, depth, normal, position.
+    pub const TAIL: Self = Self::fixed(10, 31, Subnormals::Flushed);
     /// IEEE binary16.
     pub const HALF: Self = Self::fixed(5, 10, Subnormals::Kept);
     /// bfloat16.

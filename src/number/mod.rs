@@ -5,10 +5,12 @@ mod format;
 mod native;
 mod precise;
 mod soft;
+mod window;
 
 pub use format::{EXPONENT_BITS, FRACTION_BITS, Format, FormatError, Subnormals};
 pub use precise::Precise;
 pub use soft::Soft;
+pub use window::{WINDOW_BITS, WINDOW_INEXACT_BITS, WINDOW_LEADING_BITS, WINDOW_LOST_BITS, Window};
 
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, DivAssign, Mul, MulAssign, Not, Sub, SubAssign};

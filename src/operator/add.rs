@@ -1,14 +1,14 @@
 //! Sum and difference, on a single path: order by magnitude, align, add or subtract, normalise, round.
 
 use super::parts::{
-    Operand, Rounded, Signed, Special, Unrounded, leading_zeros, nearest_even, pack, round, shift_left,
+    Operand, Rounded, Rounding, Signed, Special, Unrounded, leading_zeros, pack, round_so, shift_left,
     shift_right_sticky,
 };
 use crate::hdl::Signal;
 use crate::number::Format;
 
-/// a + b, or a − b where `subtract`. An exact zero is +0 unless both terms are −0 (IEEE 754-2019, clause 6.3).
-pub fn add<'g>(a: Signal<'g>, b: Signal<'g>, format: Format, subtract: bool) -> Signal<'g> {
+/// a + b, or a − b where `subtract`; to odd, only for results that do not leave the normal range. An exact zero is +0 unless both terms are −0 (IEEE 754-2019, clause 6.3).
+pub fn add<'g>(a: Signal<'g>, b: Signal<'g>, format: Format, subtract: bool, rounding: Rounding) -> Signal<'g> {
     let (a, mut b) = (Operand::unpack(a, format, "a"), Operand::unpack(b, format, "b"));
     if subtract {
         b.sign = (!b.sign).named("b_sign_inverted");
@@ -41,7 +41,7 @@ pub fn add<'g>(a: Signal<'g>, b: Signal<'g>, format: Format, subtract: bool) -> 
     let sum = sum.drop_low(1).named("sum");
 
     let (zeros, sum_is_zero) = leading_zeros(sum, "sum");
-    let normaliser = Normaliser { format, sum, large_exponent, zeros: zeros.named("leading_zeros") };
+    let normaliser = Normaliser { format, rounding, sum, large_exponent, zeros: zeros.named("leading_zeros") };
     let rounded = if format.keeps_subnormals() { normaliser.gradual() } else { normaliser.flushed() };
 
     let is_zero = match format.keeps_subnormals() {
@@ -62,6 +62,7 @@ pub fn add<'g>(a: Signal<'g>, b: Signal<'g>, format: Format, subtract: bool) -> 
 /// What remains after the addition: the leading one to the top, the exponent to match, and rounding.
 struct Normaliser<'g> {
     format: Format,
+    rounding: Rounding,
     /// Carry, significand, and three bits.
     sum: Signal<'g>,
     large_exponent: Signal<'g>,
@@ -82,7 +83,7 @@ impl<'g> Normaliser<'g> {
         let fraction = significand.low(self.format.fraction_bits());
         let never = guard.graph().constant(1, 0);
         Rounded {
-            magnitude: nearest_even(exponent, fraction, guard, sticky),
+            magnitude: self.rounding.apply(exponent, fraction, guard, sticky),
             overflow: exponent.all().named("overflow"),
             underflow: never,
         }
@@ -96,7 +97,7 @@ impl<'g> Normaliser<'g> {
             .minus(Signed::unsigned(self.zeros, 0, i64::from(self.sum.width()) - 1))
             .named("normalised_exponent");
         let (significand, guard, sticky) = self.shift(self.zeros);
-        round(self.format, Unrounded { exponent, significand, guard, sticky })
+        round_so(self.format, Unrounded { exponent, significand, guard, sticky }, self.rounding)
     }
 
     /// Significand, guard and sticky bit of the sum shifted left.

@@ -1,6 +1,6 @@
 //! Half of a number: the exponent less one, and at the lower end of the range the significand moved instead.
 
-use super::parts::{Operand, Rounded, Special, nearest_even, pack};
+use super::parts::{Operand, Rounded, Rounding, Special, pack};
 use crate::hdl::Signal;
 use crate::number::Format;
 
@@ -15,7 +15,7 @@ pub fn halve(a: Signal<'_>, format: Format) -> Signal<'_> {
         // Half of a subnormal or of the smallest binade: the last bit falls off, and it may be a tie.
         let moved = is_normal.select(a.fraction, a.hidden.concat(a.fraction).drop_low(1)).named("half_fraction");
         let guard = (a.fraction.bit(0) & !is_normal).named("guard");
-        let magnitude = nearest_even(less_one.gate(is_normal), moved, guard, never);
+        let magnitude = Rounding::NearestEven.apply(less_one.gate(is_normal), moved, guard, never);
         Rounded { magnitude, overflow: never, underflow: never }
     } else {
         Rounded { magnitude: less_one.concat(a.fraction), overflow: never, underflow: !is_normal }

@@ -13,20 +13,26 @@ mod parts;
 mod recip;
 mod root_exceeds;
 mod sqrt;
+mod square_excess;
 mod twin;
 
 use std::sync::Arc;
 
 use crate::hdl::{DelayModel, Errors, Graph, Module, cut};
 use crate::number::Format;
+use parts::Rounding;
 
-/// What an operator computes, of operands `a` and `b` in one format.
+/// What an operator computes, of operands `a`, `b`, `c` and `d` in one format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Operator {
     /// a + b.
     Add,
     /// a − b.
     Sub,
+    /// a + b, rounded to odd.
+    AddToOdd,
+    /// a − b, rounded to odd.
+    SubToOdd,
     /// a · b.
     Mul,
     /// a / b.
@@ -43,6 +49,11 @@ pub enum Operator {
     AtMost,
     /// Whether √a, rounded, is greater than b; one bit.
     RootExceeds,
+    /// a² − (b² + c² + d²) in another format, from exact squares in a window; NaN where that leaves a doubt.
+    SquareExcess {
+        /// The format of the result.
+        to: Format,
+    },
     /// a in another format.
     Convert {
         /// The format of the result.
@@ -51,9 +62,10 @@ pub enum Operator {
 }
 
 impl Operator {
-    /// How many operands it has: 1 or 2.
+    /// How many operands it has: 1, 2 or 4.
     pub const fn operands(self) -> usize {
         match self {
+            Self::SquareExcess { .. } => 4,
             Self::Recip | Self::Sqrt | Self::Halve | Self::Convert { .. } => 1,
             _ => 2,
         }
@@ -63,7 +75,7 @@ impl Operator {
     pub const fn result_format(self, format: Format) -> Option<Format> {
         match self {
             Self::Greater | Self::AtMost | Self::RootExceeds => None,
-            Self::Convert { to } => Some(to),
+            Self::Convert { to } | Self::SquareExcess { to } => Some(to),
             _ => Some(format),
         }
     }
@@ -73,6 +85,8 @@ impl Operator {
         match self {
             Self::Add => "add",
             Self::Sub => "sub",
+            Self::AddToOdd => "add_to_odd",
+            Self::SubToOdd => "sub_to_odd",
             Self::Mul => "mul",
             Self::Div => "div",
             Self::Recip => "recip",
@@ -81,6 +95,7 @@ impl Operator {
             Self::Greater => "greater",
             Self::AtMost => "at_most",
             Self::RootExceeds => "root_exceeds",
+            Self::SquareExcess { .. } => "square_excess",
             Self::Convert { .. } => "convert",
         }
     }
@@ -88,7 +103,7 @@ impl Operator {
     /// The name of its module, as in `fp_add_e8f23`.
     pub fn module_name(self, format: Format) -> String {
         match self {
-            Self::Convert { to } => format!("fp_convert_{format}_to_{to}"),
+            Self::Convert { to } | Self::SquareExcess { to } => format!("fp_{}_{format}_to_{to}", self.name()),
             _ => format!("fp_{}_{format}", self.name()),
         }
     }
@@ -97,6 +112,8 @@ impl Operator {
         match self {
             Self::Add => "result = a + b, rounded once".to_owned(),
             Self::Sub => "result = a - b, rounded once".to_owned(),
+            Self::AddToOdd => "result = a + b, rounded to odd: what does not fit sets the last bit".to_owned(),
+            Self::SubToOdd => "result = a - b, rounded to odd: what does not fit sets the last bit".to_owned(),
             Self::Mul => "result = a * b, rounded once".to_owned(),
             Self::Div => "result = a / b, rounded once".to_owned(),
             Self::Recip => "result = 1 / a, rounded once".to_owned(),
@@ -105,12 +122,16 @@ impl Operator {
             Self::Greater => "result = a > b; clear when either is a NaN".to_owned(),
             Self::AtMost => "result = a <= b; clear when either is a NaN".to_owned(),
             Self::RootExceeds => "result = (square root of a, rounded) > b, decided without the root".to_owned(),
+            Self::SquareExcess { to } => format!("result = a a - (b b + c c + d d) in {to}; NaN where in doubt"),
             Self::Convert { to } => format!("result = a in {to}, rounded once"),
         }
     }
 }
 
-/// The operator as a combinational module: inputs `a` and, of two operands, `b`; output `result`.
+/// The names of an operator's inputs, of which it has the first ones.
+pub const INPUTS: [&str; 4] = ["a", "b", "c", "d"];
+
+/// The operator as a combinational module: its [`INPUTS`], and the output `result`.
 ///
 /// # Errors
 /// What the graph recorded.
@@ -118,11 +139,13 @@ pub fn build(operator: Operator, format: Format) -> Result<Arc<Module>, Errors> 
     let graph = Graph::new(operator.module_name(format));
     graph.about(operator.about());
     graph.about(about_format(format));
-    let a = graph.input("a", format.width());
-    let b = if operator.operands() == 2 { graph.input("b", format.width()) } else { a };
+    let inputs: Vec<_> = INPUTS[..operator.operands()].iter().map(|name| graph.input(name, format.width())).collect();
+    let [a, b, c, d] = [0, 1, 2, 3].map(|index| inputs[index.min(inputs.len() - 1)]);
     let result = match operator {
-        Operator::Add => add::add(a, b, format, false),
-        Operator::Sub => add::add(a, b, format, true),
+        Operator::Add => add::add(a, b, format, false, Rounding::NearestEven),
+        Operator::Sub => add::add(a, b, format, true, Rounding::NearestEven),
+        Operator::AddToOdd => add::add(a, b, format, false, Rounding::Odd),
+        Operator::SubToOdd => add::add(a, b, format, true, Rounding::Odd),
         Operator::Mul => mul::mul(a, b, format),
         Operator::Div => div::div(a, b, format),
         Operator::Recip => recip::recip(a, format),
@@ -131,6 +154,7 @@ pub fn build(operator: Operator, format: Format) -> Result<Arc<Module>, Errors> 
         Operator::Greater => compare::greater(a, b, format),
         Operator::AtMost => compare::at_most(a, b, format),
         Operator::RootExceeds => root_exceeds::root_exceeds(a, b, format),
+        Operator::SquareExcess { to } => square_excess::square_excess([a, b, c, d], format, to),
         Operator::Convert { to } => convert::convert(a, format, to),
     };
     graph.output("result", result);

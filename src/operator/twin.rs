@@ -1,19 +1,30 @@
 //! What an operator must give, computed with integers alone.
 
 use super::Operator;
-use crate::number::{Format, Number, Soft};
+use crate::number::{Format, Number, Soft, Window};
 
 impl Operator {
-    /// The word its hardware gives for operands in `format`: what [`Soft`] computes. `b` counts only if it has two.
+    /// The word its hardware gives for operands in `format`: what [`Soft`] computes. `b` counts only if it has two, and
+    /// serves for the third and fourth too.
     ///
     /// # Panics
     /// If a word has more bits than the format.
     pub fn twin(self, format: Format, a: u128, b: u128) -> u128 {
-        let x = Soft::from_bits(format, a);
-        let y = if self.operands() == 2 { Soft::from_bits(format, b) } else { x };
+        self.twin_of(format, [a, b, b, b])
+    }
+
+    /// [`Operator::twin`] with an operand for each input; those it has not do not count.
+    ///
+    /// # Panics
+    /// If a word that counts has more bits than the format.
+    pub fn twin_of(self, format: Format, operands: [u128; 4]) -> u128 {
+        let operand = |index: usize| Soft::from_bits(format, operands[index.min(self.operands() - 1)]);
+        let (x, y) = (operand(0), operand(1));
         match self {
             Self::Add => (x + y).bits(),
             Self::Sub => (x - y).bits(),
+            Self::AddToOdd => x.plus_to_odd(y).bits(),
+            Self::SubToOdd => x.minus_to_odd(y).bits(),
             Self::Mul => (x * y).bits(),
             Self::Div => (x / y).bits(),
             Self::Recip => x.recip().bits(),
@@ -22,6 +33,7 @@ impl Operator {
             Self::Greater => x.gt(y).into(),
             Self::AtMost => x.le(y).into(),
             Self::RootExceeds => x.root_exceeds(y).into(),
+            Self::SquareExcess { to } => x.square_excess([y, operand(2), operand(3)], to).bits(),
             Self::Convert { to } => x.to(to).bits(),
         }
     }

@@ -6,7 +6,7 @@ use super::balance::Schedule;
 use super::kernel::{Kernel, Source, ValueId};
 use super::names::Names;
 use crate::hdl::{DelayModel, Errors, Graph, Module, Node, NodeId, Op, Signal};
-use crate::operator::pipelined;
+use crate::operator::{INPUTS, pipelined};
 
 impl Kernel {
     /// The kernel as a pipeline that takes new inputs in every cycle, with operators cut for `clock_mhz`: all outputs
@@ -73,7 +73,7 @@ impl<'g> Emitter<'_, 'g> {
         let signal = match (value.source, operands.as_slice()) {
             (Source::Operator(operator, format), _) => {
                 let module = &self.schedule.modules[&(operator, format)];
-                let ports: Vec<_> = ["a", "b"].into_iter().zip(operands).collect();
+                let ports: Vec<_> = INPUTS.into_iter().zip(operands).collect();
                 let instance = self.names.instance(id, operator);
                 self.graph.instance(&instance, module, &ports).output("result")
             }

@@ -159,7 +159,7 @@ impl Kernel {
         };
         let constants: Option<Vec<u128>> = operands.iter().map(|id| self.as_constant(*id)).collect();
         if let Some(constants) = constants {
-            let bits = operator.twin(format, constants[0], constants[constants.len() - 1]);
+            let bits = operator.twin_of(format, std::array::from_fn(|i| constants[i.min(constants.len() - 1)]));
             return Ok(self.constant(result, bits));
         }
         Ok(self.shared(Source::Operator(operator, format), result, operands.to_vec()))

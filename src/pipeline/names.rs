@@ -97,11 +97,16 @@ fn derive(operator: Operator, a: Option<String>, b: Option<String>) -> Option<St
         (Operator::Mul, Some(b)) => format!("{a}_times_{b}"),
         (Operator::Add, Some(b)) => format!("{a}_plus_{b}"),
         (Operator::Sub, Some(b)) => format!("{a}_minus_{b}"),
+        (Operator::AddToOdd, Some(b)) => format!("{a}_plus_{b}_odd"),
+        (Operator::SubToOdd, Some(b)) => format!("{a}_minus_{b}_odd"),
+        (Operator::SquareExcess { .. }, _) => format!("excess_of_{a}"),
         (Operator::Div, Some(b)) => format!("{a}_over_{b}"),
         (Operator::Greater, Some(b)) => format!("{a}_above_{b}"),
         (Operator::AtMost, Some(b)) => format!("{a}_at_most_{b}"),
         (Operator::RootExceeds, Some(b)) => format!("root_{a}_above_{b}"),
     };
+    // A constant's name is its digits, with which no name of Verilog begins.
+    let name = if name.starts_with(|c: char| c.is_ascii_digit()) { format!("number_{name}") } else { name };
     (name.len() <= LONGEST).then_some(name)
 }
 

@@ -7,14 +7,14 @@ use nalgebra::Vector3;
 use super::trace::{Ports, trace};
 use super::wire::Wire;
 use crate::hdl::{DelayModel, Errors, Module};
-use crate::kernel::{Fields, PAIR_FIELDS, Pair, contact};
+use crate::kernel::{Arithmetic, Fields, Filtered, PAIR_FIELDS, Pair, contact, exact};
 use crate::number::Format;
 
 /// What decides the sphere kernel's bits and stages.
 #[derive(Clone, Debug)]
 pub struct Settings {
-    /// The format computed in.
-    pub arithmetic: Format,
+    /// The kernel, and what it computes in.
+    pub arithmetic: Arithmetic,
     /// The format of the pair's and the contact's words.
     pub record: Format,
     /// The outputs asked for.
@@ -28,7 +28,8 @@ pub struct Settings {
 /// The module `sphere_kernel`: a pair on inputs `x1 y1 z1 r1 x2 y2 z2 r2` with `valid`; `hit`, `grazing` and the
 /// fields asked for (`pos_x pos_y pos_z`, `normal_x normal_y normal_z`, `depth`), [`Module::latency`] cycles later.
 ///
-/// `valid` is a truth value of the kernel like any other, and not reset. Without a hit all outputs are zero.
+/// `valid` is a truth value of the kernel like any other, and not reset. Without a hit all outputs are zero. The kernel
+/// of exact squares has an output `unsettled` too.
 ///
 /// # Errors
 /// What a graph recorded, or a clock no operator can be cut for.
@@ -40,11 +41,22 @@ pub fn sphere_kernel(settings: &Settings) -> Result<Arc<Module>, Errors> {
 fn read(ports: &Ports, settings: &Settings) {
     let Settings { arithmetic, record, fields, .. } = *settings;
     ports.about(format!("contact of two spheres: {fields}"));
-    ports.about(format!("computed in {arithmetic}, words in {record}"));
+    let computed_in = match arithmetic {
+        Arithmetic::Rounded(format) => format!("{format}"),
+        Arithmetic::Exact => format!("{} and exact squares, then {}", Format::DIFFERENCE, Format::TAIL),
+    };
+    ports.about(format!("computed in {computed_in}, words in {record}"));
     let [x1, y1, z1, r1, x2, y2, z2, r2] = PAIR_FIELDS.map(|name| ports.input(name, record));
     let valid = ports.input_bit("valid");
     let pair = Pair { p1: Vector3::new(x1, y1, z1), r1, p2: Vector3::new(x2, y2, z2), r2 };
-    let contact = contact(pair, valid, arithmetic, record, fields);
+    let contact = match arithmetic {
+        Arithmetic::Rounded(format) => contact(pair, valid, format, record, fields),
+        Arithmetic::Exact => {
+            let Filtered { contact, unsettled } = exact(pair, valid, record, fields);
+            ports.output_bit("unsettled", unsettled);
+            contact
+        }
+    };
 
     ports.output_bit("hit", contact.hit);
     ports.output_bit("grazing", contact.grazing);

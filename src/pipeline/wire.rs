@@ -5,7 +5,7 @@ use std::panic::Location;
 
 use super::kernel::{Kind, Source};
 use super::trace::{Handle, make};
-use crate::number::{Format, Number, Soft, Truth};
+use crate::number::{Format, Number, Soft, Truth, Window};
 use crate::operator::Operator;
 
 /// A number in hardware. It belongs to the kernel that is read by [`super::trace`]; a bad operation is recorded
@@ -111,6 +111,23 @@ impl Number for Wire {
             }
             Ok(ids[0])
         }))
+    }
+}
+
+impl Window for Wire {
+    #[track_caller]
+    fn plus_to_odd(self, other: Self) -> Self {
+        Self(operate(Operator::AddToOdd, &[self.0, other.0]))
+    }
+
+    #[track_caller]
+    fn minus_to_odd(self, other: Self) -> Self {
+        Self(operate(Operator::SubToOdd, &[self.0, other.0]))
+    }
+
+    #[track_caller]
+    fn square_excess(self, [x, y, z]: [Self; 3], to: Format) -> Self {
+        Self(operate(Operator::SquareExcess { to }, &[self.0, x.0, y.0, z.0]))
     }
 }
 

@@ -78,6 +78,7 @@ struct Figures<'a> {
     pairs: u64,
     contacts: u64,
     flows: Flows,
+    unsettled: u64,
     mismatches: u64,
     cycles: u64,
     cycles_per_pair: Option<f64>,
@@ -134,6 +135,7 @@ impl Run {
             pairs: tally.pairs,
             contacts: tally.flows.contacts(),
             flows: tally.flows,
+            unsettled: tally.unsettled,
             mismatches: tally.mismatches,
             cycles: tally.cycles,
             cycles_per_pair: tally.cycles_per_pair(),
@@ -155,7 +157,7 @@ impl Run {
         let heading: Vec<&str> = [""].into_iter().chain(self.jobs.iter().map(|job| job.name.as_str())).collect();
         let ns = self.config.cycle_ns();
         type Show<'a> = Box<dyn Fn(&Tally) -> String + 'a>;
-        let rows: Vec<(&str, Show<'_>)> = vec![
+        let mut rows: Vec<(&str, Show<'_>)> = vec![
             ("pairs", Box::new(|t| grouped(t.pairs))),
             ("contacts", Box::new(|t| grouped(t.flows.contacts()))),
             ("  real", Box::new(|t| grouped(t.flows.real))),
@@ -173,6 +175,9 @@ impl Run {
             ("bytes a pair, out", Box::new(|t| figure(t.written_per_pair(), 2))),
             ("simulated in, seconds", Box::new(|t| format!("{:.1}", t.host_seconds))),
         ];
+        if self.config.profile.is_exact() {
+            rows.insert(6, ("unsettled, settled by the host", Box::new(|t| grouped(t.unsettled))));
+        }
         let row = |(title, show): (&str, Show<'_>)| {
             [title.to_owned()].into_iter().chain(self.jobs.iter().map(|job| show(&job.tally))).collect::<Vec<_>>()
         };
@@ -199,6 +204,7 @@ mod tests {
         let tally = Tally {
             pairs: 12_354,
             flows: Flows { fake: 9_420, grazing: 0, real: 2_934, invalid: 0 },
+            unsettled: 0,
             mismatches: 0,
             cycles: 6_300,
             limit_cycles: 6_177.0,
@@ -237,6 +243,7 @@ mod tests {
             "pairs",
             "contacts",
             "flows",
+            "unsettled",
             "mismatches",
             "cycles",
             "cycles_per_pair",

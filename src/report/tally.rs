@@ -33,6 +33,8 @@ pub struct Tally {
     pub pairs: u64,
     /// What came back.
     pub flows: Flows,
+    /// Pairs that the AFU left to the host, which settled them: their flows are the host's.
+    pub unsettled: u64,
     /// Records that differ from the reference kernel's.
     pub mismatches: u64,
     /// Clock cycles from start to done.
@@ -63,6 +65,7 @@ impl Tally {
                 real: of(Flow::Real),
                 invalid: of(Flow::Invalid),
             },
+            unsettled: verdict.unsettled,
             mismatches: verdict.mismatches.len() as u64,
             cycles: outcome.cycles,
             limit_cycles: outcome.limit_cycles,
@@ -84,6 +87,7 @@ impl Tally {
                 real: self.flows.real + other.flows.real,
                 invalid: self.flows.invalid + other.flows.invalid,
             },
+            unsettled: self.unsettled + other.unsettled,
             mismatches: self.mismatches + other.mismatches,
             cycles: self.cycles + other.cycles,
             limit_cycles: self.limit_cycles + other.limit_cycles,

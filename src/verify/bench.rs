@@ -96,7 +96,7 @@ impl Bench {
             source,
             model,
             layout: Layout::of(LINE_BITS, config),
-            reference: Reference::new(config.profile.format(), config.contact),
+            reference: config.profile.reference(config.contact),
         })
     }
 
@@ -169,7 +169,7 @@ impl Bench {
             instance.trace_close().map_err(CosimError::from)?;
         }
         let seconds = begun.elapsed().as_secs_f64();
-        Ok(check(&self.layout, pairs, &self.reference.run_all(pairs), outcome, seconds))
+        Ok(check(&self.layout, self.config.contact, pairs, &self.reference.run_all(pairs), outcome, seconds))
     }
 }
 

@@ -3,9 +3,10 @@
 mod arithmetic;
 mod compare;
 mod parts;
+mod window;
 
-use super::{Format, Number};
-use parts::{Parts, pack, unpack};
+use super::{Format, Number, Window};
+use parts::{Parts, pack, pack_odd, unpack};
 use std::cmp::Ordering;
 use std::fmt;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -177,5 +178,23 @@ impl Number for Soft {
     #[inline]
     fn to(self, format: Format) -> Self {
         if format == self.format { self } else { Self { bits: pack(format, self.parts()), format } }
+    }
+}
+
+impl Window for Soft {
+    fn plus_to_odd(self, other: Self) -> Self {
+        self.must_share_format(other);
+        let sum = arithmetic::add(self.parts(), other.parts());
+        Self { bits: pack_odd(self.format, sum), format: self.format }
+    }
+
+    fn minus_to_odd(self, other: Self) -> Self {
+        self.plus_to_odd(-other)
+    }
+
+    fn square_excess(self, others: [Self; 3], to: Format) -> Self {
+        others.iter().for_each(|other| self.must_share_format(*other));
+        let excess = window::square_excess(self.format, self.parts(), others.map(Self::parts));
+        Self { bits: pack(to, excess), format: to }
     }
 }

@@ -89,6 +89,15 @@ pub fn pack(format: Format, value: Parts) -> u128 {
     }
 }
 
+/// Rounds a value to odd and writes its word: what does not fit sets the last bit of what does. The value must be
+/// zero or within the format's normal range.
+pub fn pack_odd(format: Format, value: Parts) -> u128 {
+    let dropped = 64 - format.significand_bits();
+    let lost = value.significand & ((1 << dropped) - 1) != 0;
+    let kept = value.significand >> dropped << dropped;
+    pack(format, Parts { significand: kept | u64::from(lost) << dropped, ..value })
+}
+
 /// The biased exponent and the fraction of a rounded value. The fraction of a subnormal may be one bit longer.
 #[inline]
 fn round(format: Format, exponent: i32, significand: u64) -> (u32, u64) {

@@ -10,6 +10,6 @@ mod signed;
 pub use leading_zeros::leading_zeros;
 pub use operand::Operand;
 pub use product::{product, square};
-pub use round::{Rounded, Special, Unrounded, nearest_even, pack, round};
+pub use round::{Rounded, Rounding, Special, Unrounded, pack, round, round_so};
 pub use shift::{shift_left, shift_right_sticky};
 pub use signed::Signed;

@@ -35,6 +35,11 @@ impl<'g> Operand<'g> {
         }
     }
 
+    /// What the names of its fields begin with.
+    pub fn prefix(&self) -> &'static str {
+        self.prefix
+    }
+
     fn name(&self, signal: Signal<'g>, what: &str) -> Signal<'g> {
         signal.named(&format!("{}_{what}", self.prefix))
     }

@@ -45,22 +45,52 @@ fn rounds_up<'g>(fraction: Signal<'g>, guard: Signal<'g>, sticky: Signal<'g>) ->
     (guard & (sticky | fraction.bit(0))).named("round_up")
 }
 
+/// How what does not fit is rounded off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rounding {
+    /// To the nearest, ties to even.
+    NearestEven,
+    /// To odd: what does not fit sets the last bit of what does.
+    Odd,
+}
+
+impl Rounding {
+    /// {exponent, fraction}, rounded.
+    #[track_caller]
+    pub fn apply<'g>(
+        self,
+        exponent: Signal<'g>,
+        fraction: Signal<'g>,
+        guard: Signal<'g>,
+        sticky: Signal<'g>,
+    ) -> Signal<'g> {
+        match self {
+            Self::NearestEven => nearest_even(exponent, fraction, guard, sticky),
+            Self::Odd => {
+                let last = (fraction.bit(0) | guard | sticky).named("odd_bit");
+                exponent.concat(fraction.drop_low(1)).concat(last).named("rounded")
+            }
+        }
+    }
+}
+
 /// {exponent, fraction}, one more where that is nearer. A carry out of the fraction makes the exponent one more,
 /// which is right; out of the largest finite number it makes infinity.
 #[track_caller]
-pub fn nearest_even<'g>(
-    exponent: Signal<'g>,
-    fraction: Signal<'g>,
-    guard: Signal<'g>,
-    sticky: Signal<'g>,
-) -> Signal<'g> {
+fn nearest_even<'g>(exponent: Signal<'g>, fraction: Signal<'g>, guard: Signal<'g>, sticky: Signal<'g>) -> Signal<'g> {
     let truncated = exponent.concat(fraction).named("truncated");
     (truncated + rounds_up(fraction, guard, sticky).extend(truncated.width())).named("rounded")
 }
 
-/// Rounds, with gradual underflow or flushing as the format has it. What the exponent's range excludes costs nothing.
+/// Rounds to nearest, with gradual underflow or flushing as the format has it. What the exponent's range excludes costs nothing.
 #[track_caller]
 pub fn round<'g>(format: Format, value: Unrounded<'g>) -> Rounded<'g> {
+    round_so(format, value, Rounding::NearestEven)
+}
+
+/// [`round`] in one of the two ways.
+#[track_caller]
+pub fn round_so<'g>(format: Format, value: Unrounded<'g>, rounding: Rounding) -> Rounded<'g> {
     let overflow = value.exponent.at_least(i64::from(format.special_exponent())).named("overflow");
     let mut underflow = value.guard.graph().constant(1, 0);
     let mut field = value.exponent.bits(format.exponent_bits());
@@ -71,11 +101,17 @@ pub fn round<'g>(format: Format, value: Unrounded<'g>) -> Rounded<'g> {
             (field, fraction, guard, sticky) = denormalise(format, value);
         } else {
             // Just below the smallest normal number a result can still be rounded up to it.
-            let becomes_normal = (fraction.all() & rounds_up(fraction, guard, sticky)).named("becomes_normal");
-            underflow = (value.exponent.is_negative() | (value.exponent.is(0) & !becomes_normal)).named("underflow");
+            let too_small = match rounding {
+                Rounding::NearestEven => {
+                    let becomes_normal = (fraction.all() & rounds_up(fraction, guard, sticky)).named("becomes_normal");
+                    value.exponent.is(0) & !becomes_normal
+                }
+                Rounding::Odd => value.exponent.is(0),
+            };
+            underflow = (value.exponent.is_negative() | too_small).named("underflow");
         }
     }
-    Rounded { magnitude: nearest_even(field, fraction, guard, sticky), overflow, underflow }
+    Rounded { magnitude: rounding.apply(field, fraction, guard, sticky), overflow, underflow }
 }
 
 /// Moves a significand whose exponent is below the smallest normal one to the right. Gives exponent field, fraction,
