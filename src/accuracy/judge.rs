@@ -125,7 +125,7 @@ fn difference(given: f64, exact: f64, rounded: f64) -> f64 {
     }
     match given == rounded {
         true => 0.0,
-        false if given == f64::INFINITY.copysign(rounded) && rounded.abs() == f32::MAX.into() => {
+        false if given == f64::INFINITY.copysign(rounded) && rounded.abs() == f64::from(f32::MAX) => {
             2.0_f64.powi(128) - exact.abs()
         }
         false => f64::INFINITY,
