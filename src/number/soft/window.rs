@@ -53,7 +53,7 @@ pub fn square_excess(format: Format, a: Parts, others: [Parts; 3]) -> Parts {
 
 #[cfg(test)]
 mod tests {
-    use crate::number::{Format, Number, Soft, Window};
+    use crate::number::{Format, Soft, Window};
 
     fn excess(a: f64, others: [f64; 3]) -> Soft {
         let number = |value| Soft::from_f64(Format::DIFFERENCE, value);
