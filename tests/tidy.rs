@@ -153,7 +153,7 @@ fn no_file_names_a_registry_host_or_a_path_of_one_machine() {
     for folder in ["src", "tests", "examples", "benches", "tb", "rtl", "scripts", "docs"] {
         checked.extend(files(folder, &["rs", "h", "cpp", "v", "sv", "md", "json", "core", "f", "toml", "sdc", "xdc"]));
     }
-    for name in ["demo", "paper", "test", "setup"] {
+    for name in ["demo", "paper", "test", "setup", "prove"] {
         checked.push(Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts").join(name));
     }
     let mut found = Vec::new();

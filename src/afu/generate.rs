@@ -7,6 +7,7 @@ use crate::hdl::{DelayModel, Errors, Module};
 use crate::number::Format;
 use crate::pipeline::{Settings, sphere_kernel};
 
+use super::scpu::scpu;
 use super::top::line_top;
 use super::{Layout, Spec, SpecError, spl2};
 use crate::config::Shell;
@@ -63,12 +64,27 @@ impl Afu {
     /// What is out of range in `spec`; ports that do not fit.
     pub fn around(spec: Spec, kernel: Arc<Module>) -> Result<Self, BuildError> {
         spec.check()?;
-        let core = line_top(&spec, &kernel)?;
+        if spec.word_bits != 32 {
+            return Err(SpecError::Word(spec.word_bits).into());
+        }
+        let core = line_top(&spec, &scpu(&spec, &kernel)?)?;
         let top = match spec.config.shell {
             Shell::Spl2 => spl2::afu_top(&spec, &core)?,
             _ => core.clone(),
         };
         Ok(Self { spec, top, core, kernel })
+    }
+
+    /// The accelerator of a specification around an SCPU of the caller's, which is its own kernel then: a module with the
+    /// input `pair` and the outputs `record`, `contact` and `invalid_pair`, which follow it by its `latency`, at least 1.
+    /// This is what the controller is proven with.
+    ///
+    /// # Errors
+    /// What is out of range in `spec`; ports that do not fit.
+    pub fn around_scpu(spec: Spec, scpu: Arc<Module>) -> Result<Self, BuildError> {
+        spec.check()?;
+        let top = line_top(&spec, &scpu)?;
+        Ok(Self { spec, top, kernel: scpu })
     }
 
     /// What it was generated from.

@@ -33,6 +33,11 @@ impl Layout {
         self.fields
     }
 
+    /// The same records in words of `word_bits` bits. Only proofs have other than 32.
+    pub fn with_words_of(self, word_bits: u32) -> Self {
+        Self { word_bits, ..self }
+    }
+
     /// Bits of a line.
     pub fn line_bits(&self) -> u32 {
         self.line_bits

@@ -7,11 +7,6 @@ use crate::hdl::{Errors, Graph, Instantiated, Module, Signal};
 
 use super::{Spec, backlog, packer, sieve};
 
-/// Cycles a result spends between the SCPUs and its write request, and some to ride out a stall of the link.
-const CYCLES_IN_DISPATCH: u32 = 16;
-/// Lines the dispatcher keeps at least.
-const LEAST_LINES: u32 = 16;
-
 /// How much there is room for.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Room {
@@ -25,14 +20,16 @@ impl Room {
     /// Enough for every pair on its way through SCPUs of this latency.
     pub(super) fn of(spec: &Spec, slot_latency: u32) -> Self {
         let layout = spec.layout();
-        let in_flight = (slot_latency + CYCLES_IN_DISPATCH) * spec.lanes();
+        // Results that are in the SCPUs or wait for their write request, and some more to ride out a stall of the link.
+        let in_flight = (slot_latency + spec.dispatch_cycles) * spec.lanes();
+        let least_lines = spec.dispatch_cycles.next_power_of_two();
         match spec.config.results {
             Results::All => {
-                let lines = in_flight.div_ceil(layout.contacts_per_line()) + LEAST_LINES / 2;
-                let lines = lines.next_power_of_two().max(LEAST_LINES);
+                let lines = in_flight.div_ceil(layout.contacts_per_line()) + spec.dispatch_cycles / 2;
+                let lines = lines.next_power_of_two().max(least_lines);
                 Self { results: lines * layout.contacts_per_line(), lines }
             }
-            Results::Hits => Self { results: in_flight.next_power_of_two(), lines: LEAST_LINES },
+            Results::Hits => Self { results: in_flight.next_power_of_two(), lines: least_lines },
         }
     }
 }

@@ -64,5 +64,9 @@ pub(super) fn scpu(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>, Err
     }
     graph.output("contact", hit);
     graph.output("invalid_pair", invalid);
-    graph.finish()
+    let mut unit = graph.finish()?;
+    if let Some(unit) = Arc::get_mut(&mut unit) {
+        unit.latency = latency;
+    }
+    Ok(unit)
 }

@@ -14,8 +14,12 @@ pub struct Spec {
     pub reset: Reset,
     /// Bits of a line: 512; less for proofs.
     pub line_bits: u32,
+    /// Bits of a record's word: 32; less for proofs, whose SCPUs are not the kernel's.
+    pub word_bits: u32,
     /// Reads, and writes, outstanding at most: 64; less for proofs.
     pub max_outstanding: u32,
+    /// Cycles that results may wait for their write requests before pairs wait for room: 16; less for proofs.
+    pub dispatch_cycles: u32,
 }
 
 /// Why a specification was refused.
@@ -27,6 +31,12 @@ pub enum SpecError {
     /// A line that holds no record.
     #[error("a line of {0} bits: use a power of two that holds a pair and a contact")]
     Line(u32),
+    /// Words that the kernel does not have.
+    #[error("words of {0} bits: the kernel's have 32; an SCPU of the caller's may have 1 to 32")]
+    Word(u32),
+    /// No room beyond what a pipeline holds, or more than memory serves.
+    #[error("{0} cycles in dispatch: use 1 to 1024")]
+    Dispatch(u32),
     /// A number of requests that the tags cannot carry.
     #[error("{0} requests outstanding: use a power of two from 2 to 64")]
     Outstanding(u32),
@@ -34,14 +44,21 @@ pub enum SpecError {
 
 impl From<Config> for Spec {
     fn from(config: Config) -> Self {
-        Self { config, reset: Reset::default(), line_bits: 512, max_outstanding: 64 }
+        Self {
+            config,
+            reset: Reset::default(),
+            line_bits: 512,
+            word_bits: 32,
+            max_outstanding: 64,
+            dispatch_cycles: 16,
+        }
     }
 }
 
 impl Spec {
     /// The record layout.
     pub fn layout(&self) -> Layout {
-        Layout::of(self.line_bits, &self.config)
+        Layout::of(self.line_bits, &self.config).with_words_of(self.word_bits)
     }
 
     /// Pairs that can be handed to SCPUs in one cycle: those of one line.
@@ -73,6 +90,12 @@ impl Spec {
     /// The first value out of range.
     pub fn check(&self) -> Result<(), SpecError> {
         self.config.check()?;
+        if !(1..=32).contains(&self.word_bits) {
+            return Err(SpecError::Word(self.word_bits));
+        }
+        if !(1..=1024).contains(&self.dispatch_cycles) {
+            return Err(SpecError::Dispatch(self.dispatch_cycles));
+        }
         let layout = self.layout();
         if !self.line_bits.is_power_of_two() || self.line_bits < layout.pair_bits().max(layout.contact_bits()) {
             return Err(SpecError::Line(self.line_bits));

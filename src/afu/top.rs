@@ -8,15 +8,15 @@ use crate::hdl::{Errors, Graph, Module, Signal};
 use super::control::{MODE_BITS, control, room_bits};
 use super::results::{Parts, Room};
 use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, MAX_SCPUS, SCPU_BITS, Spec};
-use super::{collector, dispatcher, feeder, scpu, slot};
+use super::{collector, dispatcher, feeder, slot};
 
 /// Register ranks round the slots: results are registered after they were or-ed together.
 pub(super) const RANKS_AFTER: u32 = 1;
 
-/// The top over the plain line port.
-pub(super) fn line_top(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>, Errors> {
+/// The top over the plain line port, around an SCPU.
+pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, Errors> {
     let (lanes, group_bits) = (spec.lanes(), spec.group_bits());
-    let slot_latency = slot::latency(kernel.latency);
+    let slot_latency = slot::latency(unit.latency);
     let has_records = spec.layout().result_bits() > 0;
     let only_hits = spec.config.results == Results::Hits;
     let places = Room::of(spec, slot_latency);
@@ -24,13 +24,13 @@ pub(super) fn line_top(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>,
     let control = control(spec, places.results)?;
     let collector = collector::collector(spec)?;
     let feeder = feeder::feeder(spec, room_bits(places.results))?;
-    let slot = slot::slot(spec, &scpu::scpu(spec, kernel)?)?;
+    let slot = slot::slot(spec, unit)?;
     let results = Parts::new(spec, places)?;
     let dispatcher = dispatcher::dispatcher(spec, places.lines)?;
 
     let graph = Graph::new("contact_afu");
     graph.about("collision-detection accelerator: a controller and SCPUS sphere collision processing units");
-    graph.about(format!("an SCPU's latency is {} cycles", kernel.latency));
+    graph.about(format!("an SCPU's latency is {} cycles", unit.latency));
     let scpus = graph.parameter("SCPUS", spec.config.scpus, 1..=MAX_SCPUS, SCPU_BITS);
     let tag_bits = EPOCH_BITS + spec.max_outstanding.ilog2();
     let start = graph.input("start", 1);
@@ -193,7 +193,7 @@ pub(super) fn line_top(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>,
     for name in ["cycles_busy", "cycles_input", "cycles_output"] {
         graph.output(name, control.output(name));
     }
-    graph.output("capability", capability(&graph, spec, scpus, kernel.latency));
+    graph.output("capability", capability(&graph, spec, scpus, unit.latency));
     for name in ["rd_req_valid", "rd_req_address", "rd_req_tag"] {
         graph.output(name, collector.output(name));
     }

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// The collector alone, by induction: every slot of the reorder memory is free, asked for, or filled, never two of these;
+// no tag is used again before its line has left; lines leave in order, each once; requests are stable and in order.
+//
+// Assumed, and proven elsewhere: a line is taken only when it is there (credits.sv: takes_a_line); a job begins only
+// when no request stands on the port (credits.sv: idle_is_quiet).
+`default_nettype none
+
+module collector (
+  input wire        clk,
+  input wire        rst,
+  input wire        start,
+  input wire        run,
+  input wire [57:0] source,
+  input wire [31:0] lines,
+  input wire [3:0]  epoch,
+  input wire        take,
+  input wire        rd_req_ready,
+  input wire        rd_rsp_valid,
+  input wire [5:0]  rd_rsp_tag,
+  input wire [31:0] rd_rsp_data,
+  input wire        rd_rsp_error
+);
+  wire        rd_req_valid;
+  wire [57:0] rd_req_address;
+  wire [5:0]  rd_req_tag;
+  wire        line_valid;
+  wire [31:0] line;
+  wire        idle;
+  contact_afu_collector dut (
+    .clk(clk), .rst(rst), .start(start), .run(run), .source(source), .lines(lines), .epoch(epoch), .take(take),
+    .rd_req_ready(rd_req_ready), .rd_rsp_valid(rd_rsp_valid), .rd_rsp_tag(rd_rsp_tag), .rd_rsp_data(rd_rsp_data),
+    .rd_rsp_error(rd_rsp_error),
+    .rd_req_valid(rd_req_valid), .rd_req_address(rd_req_address), .rd_req_tag(rd_req_tag),
+    .line_valid(line_valid), .line(line), .response(), .failed(), .asking(), .idle(idle)
+  );
+  (* hierconn *) wire [2:0]  \dut.reserved ;
+  (* hierconn *) wire [2:0]  \dut.outstanding ;
+  (* hierconn *) wire [3:0]  \dut.filled ;
+  (* hierconn *) wire [1:0]  \dut.head ;
+  (* hierconn *) wire [1:0]  \dut.next_slot ;
+  (* hierconn *) wire [31:0] \dut.lines_to_request ;
+  (* hierconn *) wire [57:0] \dut.next_address ;
+
+  reg        begun = 1'b0;
+  reg        after_reset = 1'b0;
+  reg [57:0] job_source;
+  reg [31:0] job_lines;
+  reg [3:0]  job_epoch;
+  reg [31:0] accepted;
+  reg [3:0]  waiting;
+  wire mine = rd_rsp_valid & begun & ~start & (rd_rsp_tag[5:2] == job_epoch);
+  wire [3:0] asks = rd_req_valid & rd_req_ready ? 4'd1 << rd_req_tag[1:0] : 4'd0;
+  wire [3:0] answered = mine ? 4'd1 << rd_rsp_tag[1:0] : 4'd0;
+  wire [3:0] on_port = rd_req_valid ? 4'd1 << rd_req_tag[1:0] : 4'd0;
+  always @(posedge clk) begin
+    after_reset <= after_reset | rst;
+    begun <= ~rst & (begun | start);
+    if (start) begin
+      job_source <= source;
+      job_lines <= lines;
+      job_epoch <= epoch;
+    end
+    accepted <= start ? 32'd0 : accepted + {31'd0, |asks};
+    waiting <= start ? 4'd0 : (waiting | asks) & ~answered;
+  end
+
+  always @* begin
+    assume (after_reset | rst);
+    assume (~run | (begun & ~start));
+    assume (~start | ~rd_req_valid);
+    assume (~take | line_valid);
+    if (begun & ~start) assume (epoch == job_epoch);
+    if (mine) assume ((waiting & answered) != 4'd0);
+  end
+
+  // The slots from the head on that are not free.
+  wire [7:0] from_zero = (8'd1 << \dut.reserved ) - 8'd1;
+  wire [7:0] from_head = from_zero << \dut.head ;
+  wire [3:0] taken = from_head[3:0] | from_head[7:4];
+  always @* if (begun & ~start & ~rst & after_reset) begin
+    never_more: assert (\dut.reserved <= 3'd4);
+    slots_in_order: assert (\dut.next_slot - \dut.head == \dut.reserved [1:0]);
+    one_of_three: assert ((on_port & waiting) == 4'd0 & (\dut.filled & (on_port | waiting)) == 4'd0);
+    none_lost: assert ((on_port | waiting | \dut.filled ) == taken);
+    counted: assert (\dut.outstanding == {2'd0, on_port[0] | waiting[0]} + {2'd0, on_port[1] | waiting[1]}
+      + {2'd0, on_port[2] | waiting[2]} + {2'd0, on_port[3] | waiting[3]});
+    idle_is_right: assert (idle == ((on_port | waiting) == 4'd0));
+    only_filled: assert (~line_valid | \dut.filled [\dut.head ]);
+    of_this_job: assert (~rd_req_valid | rd_req_tag[5:2] == job_epoch);
+    in_order: assert (\dut.next_address == job_source + {26'd0, accepted} + {57'd0, rd_req_valid});
+    address: assert (~rd_req_valid | rd_req_address == job_source + {26'd0, accepted});
+    each_once: assert ({1'b0, accepted} + {32'd0, rd_req_valid} + {1'b0, \dut.lines_to_request } == {1'b0, job_lines});
+  end
+
+  reg        held = 1'b0;
+  reg [63:0] was;
+  always @(posedge clk) begin
+    held <= rd_req_valid & ~rd_req_ready & ~rst;
+    was <= {rd_req_address, rd_req_tag};
+  end
+  always @* if (held & ~rst) begin
+    stable: assert (rd_req_valid & {rd_req_address, rd_req_tag} == was);
+  end
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Credits of the whole accelerator, by induction, for a host and a link that do anything at all: a pair enters only when
+// its result has a place, every pair that entered comes out once, and the places are all accounted for. Counts, not data.
+//
+// The induction is longer than the pipeline, so that it needs no word about what is inside it.
+//
+// Defines: LATENCY, of an SCPU; LINES, lines the dispatcher keeps.
+`default_nettype none
+
+module credits (
+  input wire        clk,
+  input wire        rst,
+  input wire        start,
+  input wire [57:0] source,
+  input wire [57:0] destination,
+  input wire [31:0] count,
+  input wire [3:0]  mode,
+  input wire [3:0]  epoch,
+  input wire [31:0] watchdog,
+  input wire        abort_job,
+  input wire        rd_req_ready,
+  input wire        rd_rsp_valid,
+  input wire [5:0]  rd_rsp_tag,
+  input wire [31:0] rd_rsp_data,
+  input wire        rd_rsp_error,
+  input wire        wr_req_ready,
+  input wire        wr_rsp_valid,
+  input wire [5:0]  wr_rsp_tag,
+  input wire        wr_rsp_error
+);
+  localparam CAPACITY = 2 * `LINES;
+  localparam RANKS = `LATENCY + 3;
+
+  wire busy;
+  wire rd_req_valid;
+  wire wr_req_valid;
+  contact_afu #(.SCPUS(32'd2)) dut (
+    .clk(clk), .rst(rst),
+    .start(start), .source(source), .destination(destination), .count(count), .mode(mode), .epoch(epoch),
+    .watchdog(watchdog), .abort_job(abort_job),
+    .rd_req_ready(rd_req_ready), .rd_rsp_valid(rd_rsp_valid), .rd_rsp_tag(rd_rsp_tag), .rd_rsp_data(rd_rsp_data),
+    .rd_rsp_error(rd_rsp_error),
+    .wr_req_ready(wr_req_ready), .wr_rsp_valid(wr_rsp_valid), .wr_rsp_tag(wr_rsp_tag), .wr_rsp_error(wr_rsp_error),
+    .busy(busy), .done(), .error(), .contacts(), .invalid(), .first_invalid(),
+    .cycles_busy(), .cycles_input(), .cycles_output(), .capability(),
+    .rd_req_valid(rd_req_valid), .rd_req_address(), .rd_req_tag(),
+    .wr_req_valid(wr_req_valid), .wr_req_address(), .wr_req_tag(), .wr_req_data()
+  );
+  (* hierconn *) wire                       \dut.control.begin_job ;
+  (* hierconn *) wire                       \dut.control.running ;
+  (* hierconn *) wire                       \dut.control.draining ;
+  (* hierconn *) wire [31:0]                \dut.control.job_count ;
+  (* hierconn *) wire [$clog2(`LINES)+1:0]  \dut.control.room ;
+  (* hierconn *) wire [$clog2(`LINES)+1:0]  \dut.control.pairs_inside ;
+  (* hierconn *) wire [1:0]                 \dut.control.entered ;
+  (* hierconn *) wire [1:0]                 \dut.group_done ;
+  (* hierconn *) wire                       \dut.feeder.take ;
+  (* hierconn *) wire                       \dut.collector.line_valid ;
+  (* hierconn *) wire [31:0]                \dut.feeder.remaining ;
+  (* hierconn *) wire [6:0]                 \dut.feeder.turn ;
+  (* hierconn *) wire                       \dut.packer.place ;
+  (* hierconn *) wire                       \dut.packer.line_valid ;
+  (* hierconn *) wire                       \dut.packer.flush ;
+  (* hierconn *) wire [31:0]                \dut.packer.emerged ;
+  (* hierconn *) wire [$clog2(`LINES):0]    \dut.dispatcher.stored ;
+
+  // Groups of pairs where they must be, each a rank further every cycle, and how many pairs that makes.
+  reg [2*RANKS-1:0] ranks;
+  reg after_reset = 1'b0;
+  reg begun = 1'b0;
+  reg flushed;
+  always @(posedge clk) begin
+    after_reset <= after_reset | rst;
+    begun <= ~rst & (begun | \dut.control.begin_job );
+    ranks <= rst ? {2 * RANKS{1'b0}} : {ranks[2*RANKS-3:0], \dut.control.entered };
+    flushed <= ~\dut.control.begin_job & (flushed | \dut.packer.flush );
+  end
+  integer rank;
+  reg [7:0] inside;
+  always @* begin
+    inside = 8'd0;
+    for (rank = 0; rank < RANKS; rank = rank + 1) inside = inside + {6'd0, ranks[2*rank +: 2]};
+  end
+
+  always @* assume (after_reset | rst);
+  always @* if (after_reset & ~rst) begin
+    comes_out: assert (\dut.group_done == ranks[2*RANKS-1 -: 2]);
+    inside_is_right: assert (\dut.control.pairs_inside == inside);
+    one_or_other: assert (~(\dut.control.running & \dut.control.draining ));
+    only_in_a_job: assert (\dut.control.entered == 2'd0 | (\dut.control.running & begun));
+begins_first: assert (~busy | begun | \dut.control.begin_job );
+    begins_empty: assert (~\dut.control.begin_job | (busy & inside == 8'd0));
+    idle_is_empty: assert (busy | inside == 8'd0);
+    idle_is_quiet: assert (busy & ~\dut.control.begin_job | ~(rd_req_valid | wr_req_valid));
+    takes_a_line: assert (~\dut.feeder.take | \dut.collector.line_valid );
+  end
+  always @* if (begun & ~\dut.control.begin_job & ~rst) begin
+    turn_is_an_scpu: assert (\dut.feeder.turn < 7'd2);
+    each_once: assert ({1'b0, \dut.feeder.remaining } + {25'd0, inside} + {1'b0, \dut.packer.emerged }
+      == {1'b0, \dut.control.job_count });
+    last_line_once: assert (~flushed | (\dut.packer.emerged == \dut.control.job_count & ~\dut.packer.place ));
+    places_add_up: assert ({4'd0, \dut.control.room } + inside + {7'd0, \dut.packer.place }
+      + {6'd0, \dut.packer.line_valid , 1'b0} + {4'd0, \dut.dispatcher.stored , 1'b0} == CAPACITY + {7'd0, flushed});
+    never_negative: assert (\dut.control.entered <= \dut.control.room );
+    fits: assert (\dut.dispatcher.stored + {2'd0, \dut.packer.line_valid } <= `LINES);
+  end
+endmodule
+
+`default_nettype wire

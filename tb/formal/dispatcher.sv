@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// The dispatcher alone, by induction: its memory never holds more than it can, no tag is used again before its
+// acknowledgement, no acknowledgement is lost or counted twice, requests are stable and in order of lines.
+//
+// Assumed, and proven elsewhere: a line comes only when there is room (credits.sv: fits); a job begins only when no
+// request stands on the port (credits.sv: idle_is_quiet).
+`default_nettype none
+
+module dispatcher (
+  input wire        clk,
+  input wire        rst,
+  input wire        start,
+  input wire        run,
+  input wire [57:0] destination,
+  input wire [3:0]  epoch,
+  input wire        line_valid,
+  input wire [31:0] line,
+  input wire        wr_req_ready,
+  input wire        wr_rsp_valid,
+  input wire [5:0]  wr_rsp_tag,
+  input wire        wr_rsp_error
+);
+  localparam [2:0] LINES = `LINES;
+
+  wire        wr_req_valid;
+  wire [57:0] wr_req_address;
+  wire [5:0]  wr_req_tag;
+  wire [31:0] wr_req_data;
+  wire        take;
+  wire        idle;
+  wire        empty;
+  contact_afu_dispatcher dut (
+    .clk(clk), .rst(rst), .start(start), .run(run), .destination(destination), .epoch(epoch),
+    .line_valid(line_valid), .line(line),
+    .wr_req_ready(wr_req_ready), .wr_rsp_valid(wr_rsp_valid), .wr_rsp_tag(wr_rsp_tag), .wr_rsp_error(wr_rsp_error),
+    .wr_req_valid(wr_req_valid), .wr_req_address(wr_req_address), .wr_req_tag(wr_req_tag), .wr_req_data(wr_req_data),
+    .take(take), .response(), .failed(), .asking(), .idle(idle), .empty(empty)
+  );
+  (* hierconn *) wire [2:0]  \dut.stored ;
+  (* hierconn *) wire [1:0]  \dut.head ;
+  (* hierconn *) wire [1:0]  \dut.tail ;
+  (* hierconn *) wire        \dut.ready ;
+  (* hierconn *) wire [3:0]  \dut.busy_slots ;
+  (* hierconn *) wire [2:0]  \dut.outstanding ;
+  (* hierconn *) wire [57:0] \dut.next_address ;
+
+  // A job has begun since the last reset; its destination and epoch.
+  reg        begun = 1'b0;
+  reg        after_reset = 1'b0;
+  reg [57:0] job_destination;
+  reg [3:0]  job_epoch;
+  reg [57:0] accepted;
+  reg [3:0]  waiting;
+  wire mine = wr_rsp_valid & begun & ~start & (wr_rsp_tag[5:2] == job_epoch);
+  wire [3:0] asks = wr_req_valid & wr_req_ready ? 4'd1 << wr_req_tag[1:0] : 4'd0;
+  wire [3:0] answered = mine ? 4'd1 << wr_rsp_tag[1:0] : 4'd0;
+  wire [3:0] on_port = wr_req_valid ? 4'd1 << wr_req_tag[1:0] : 4'd0;
+  always @(posedge clk) begin
+    after_reset <= after_reset | rst;
+    begun <= ~rst & (begun | start);
+    if (start) begin
+      job_destination <= destination;
+      job_epoch <= epoch;
+    end
+    accepted <= start ? 58'd0 : accepted + {57'd0, |asks};
+    waiting <= start ? 4'd0 : (waiting | asks) & ~answered;
+  end
+
+  always @* begin
+    assume (after_reset | rst);
+    assume (~run | (begun & ~start));
+    assume (~start | ~wr_req_valid);
+    if (begun & ~start) assume (epoch == job_epoch);
+    if (mine) assume ((waiting & answered) != 4'd0);
+    assume (~line_valid | (begun & ~start & (\dut.stored != LINES | take)));
+  end
+
+  always @* if (begun & ~start & ~rst & after_reset) begin
+    fifo_fits: assert (\dut.stored <= LINES);
+    fifo_counts: assert (\dut.tail - \dut.head == \dut.stored [1:0]);
+    ready_is_right: assert (~\dut.ready | \dut.stored != 3'd0);
+    tag_free: assert ((on_port & waiting) == 4'd0 & (~wr_req_valid | wr_req_tag[5:2] == job_epoch));
+    slots_are_right: assert (\dut.busy_slots == (on_port | waiting));
+    none_lost: assert (\dut.outstanding == {2'd0, \dut.busy_slots [0]} + {2'd0, \dut.busy_slots [1]}
+      + {2'd0, \dut.busy_slots [2]} + {2'd0, \dut.busy_slots [3]});
+    idle_is_right: assert (idle == (\dut.busy_slots == 4'd0));
+    in_order: assert (\dut.next_address == job_destination + accepted + {57'd0, wr_req_valid});
+    address: assert (~wr_req_valid | wr_req_address == job_destination + accepted);
+  end
+
+  reg        held = 1'b0;
+  reg [95:0] was;
+  always @(posedge clk) begin
+    held <= wr_req_valid & ~wr_req_ready & ~rst;
+    was <= {wr_req_address, wr_req_tag, wr_req_data};
+  end
+  always @* if (held & ~rst) begin
+    stable: assert (wr_req_valid & {wr_req_address, wr_req_tag, wr_req_data} == was);
+  end
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// The accelerator over its line port, for yosys-smtbmc: what the link and the host may do is assumed, what the
+// accelerator then does is asserted. Data is followed by one symbolic pair: its number and its words are any, and stay.
+//
+// The link answers requests in any order and whenever it likes, with or without an error. It may also bring responses
+// to jobs before the last reset or given up by the watchdog: their tags have an epoch of another job.
+// The host resets, starts and aborts whenever it likes; each job's epoch differs from that of the job before.
+//
+// Defines: PAIRS, most pairs of a job (1 to 15); PROMPT, a link that leaves no request and no response waiting for more
+// than so many cycles, over which each job must end within BOUND cycles; ONE_JOB, one job, in
+// the cycle after one reset.
+`default_nettype none
+
+module line_port (
+  input wire        clk,
+  // Free in every cycle: what host and link do.
+  input wire        rst,
+  input wire        start,
+  input wire [3:0]  epoch,
+  input wire [3:0]  count,
+  input wire        mode,
+  input wire [4:0]  watchdog,
+  input wire        abort_job,
+  input wire        rd_req_ready,
+  input wire        rd_rsp_valid,
+  input wire [5:0]  rd_rsp_tag,
+  input wire [31:0] rd_rsp_data,
+  input wire        rd_rsp_error,
+  input wire        wr_req_ready,
+  input wire        wr_rsp_valid,
+  input wire [5:0]  wr_rsp_tag,
+  input wire        wr_rsp_error
+);
+  // ---- the job and the pair that is followed: any, and the same all the time ----
+  (* anyconst *) wire [4:0]  source;
+  (* anyconst *) wire [4:0]  destination;
+  (* anyconst *) wire [3:0]  followed;
+  (* anyconst *) wire [15:0] words;
+  wire [3:0]  followed_line = {1'b0, followed[3:1]};
+
+  // ---- the accelerator ----
+  wire        busy;
+  wire        done;
+  wire [3:0]  error;
+  wire [31:0] contacts;
+  wire [31:0] invalid;
+  wire [31:0] first_invalid;
+  wire        rd_req_valid;
+  wire [57:0] rd_req_address;
+  wire [5:0]  rd_req_tag;
+  wire        wr_req_valid;
+  wire [57:0] wr_req_address;
+  wire [5:0]  wr_req_tag;
+  wire [31:0] wr_req_data;
+
+  contact_afu #(.SCPUS(32'd2)) dut (
+    .clk(clk), .rst(rst),
+    .start(start), .source({53'd0, source}), .destination({53'd0, destination}), .count({28'd0, count}), .mode({3'd0, mode}), .epoch(epoch),
+    .watchdog({27'd0, watchdog}), .abort_job(abort_job),
+    .rd_req_ready(rd_req_ready), .rd_rsp_valid(rd_rsp_valid), .rd_rsp_tag(rd_rsp_tag), .rd_rsp_data(rd_rsp_data),
+    .rd_rsp_error(rd_rsp_error),
+    .wr_req_ready(wr_req_ready), .wr_rsp_valid(wr_rsp_valid), .wr_rsp_tag(wr_rsp_tag), .wr_rsp_error(wr_rsp_error),
+    .busy(busy), .done(done), .error(error), .contacts(contacts), .invalid(invalid), .first_invalid(first_invalid),
+    .cycles_busy(), .cycles_input(), .cycles_output(), .capability(),
+    .rd_req_valid(rd_req_valid), .rd_req_address(rd_req_address), .rd_req_tag(rd_req_tag),
+    .wr_req_valid(wr_req_valid), .wr_req_address(wr_req_address), .wr_req_tag(wr_req_tag), .wr_req_data(wr_req_data)
+  );
+
+  // ---- what is known of the job ----
+  reg [7:0] age = 8'd0;
+  always @(posedge clk) age <= age + {7'd0, age != 8'hff};
+
+  wire accept = start & ~busy & ~rst;
+  reg        known = 1'b0;   // a job was accepted since the last reset
+  reg [3:0]  job_epoch;
+  reg [3:0]  job_count;
+  wire [3:0] epoch_now = accept ? epoch : job_epoch;
+  reg        ever = 1'b0;
+  reg [3:0]  last_epoch;
+  wire [3:0] lines = {1'b0, job_count[3:1]} + {3'd0, job_count[0]};
+  always @(posedge clk) begin
+    if (rst) known <= 1'b0;
+    else if (accept) known <= 1'b1;
+    if (accept) begin
+      job_epoch <= epoch;
+      job_count <= count;
+      last_epoch <= epoch;
+      ever <= 1'b1;
+    end
+  end
+
+  // ---- requests of this job, and which of them wait for a response ----
+  reg [3:0]  rd_lines;
+  reg [3:0]  wr_lines;
+  reg [3:0]  rd_waiting;
+  reg [3:0]  wr_waiting;
+  reg        followed_waiting;
+  reg [1:0]  followed_tag;
+  wire rd_accepted = rd_req_valid & rd_req_ready & ~rst;
+  wire wr_accepted = wr_req_valid & wr_req_ready & ~rst;
+  wire [3:0] rd_asks = rd_accepted ? (4'd1 << rd_req_tag[1:0]) : 4'd0;
+  wire [3:0] wr_asks = wr_accepted ? (4'd1 << wr_req_tag[1:0]) : 4'd0;
+  wire rd_mine = rd_rsp_valid & (known | accept) & (rd_rsp_tag[5:2] == epoch_now);
+  wire wr_mine = wr_rsp_valid & (known | accept) & (wr_rsp_tag[5:2] == epoch_now);
+  wire [3:0] rd_answered = rd_mine ? (4'd1 << rd_rsp_tag[1:0]) : 4'd0;
+  wire [3:0] wr_answered = wr_mine ? (4'd1 << wr_rsp_tag[1:0]) : 4'd0;
+  wire follows = rd_accepted & (rd_lines == followed_line);
+  always @(posedge clk) begin
+    if (rst | accept) begin
+      rd_lines <= 4'd0;
+      wr_lines <= 4'd0;
+      rd_waiting <= 4'd0;
+      wr_waiting <= 4'd0;
+      followed_waiting <= 1'b0;
+    end else begin
+      rd_lines <= rd_lines + {3'd0, rd_accepted};
+      wr_lines <= wr_lines + {3'd0, wr_accepted};
+      rd_waiting <= (rd_waiting | rd_asks) & ~rd_answered;
+      wr_waiting <= (wr_waiting | wr_asks) & ~wr_answered;
+      followed_waiting <= follows | (followed_waiting & ~(rd_mine & (rd_rsp_tag[1:0] == followed_tag)));
+    end
+    if (follows) followed_tag <= rd_req_tag[1:0];
+  end
+
+  // ---- what host and link do ----
+  always @* begin
+    if (age == 8'd0) assume (rst);
+    assume (count <= `PAIRS);
+    assume (followed <= `PAIRS);
+    if (accept & ever) assume (epoch != last_epoch);
+    // A response is to a request of this job, or has the epoch of another.
+    if (rd_mine) assume ((rd_waiting & rd_answered) != 4'd0 & ~accept);
+    if (wr_mine) assume ((wr_waiting & wr_answered) != 4'd0 & ~accept);
+    // The followed pair's line holds its words.
+    if (rd_mine & ~rd_rsp_error & followed_waiting & (rd_rsp_tag[1:0] == followed_tag))
+      assume ((followed[0] ? rd_rsp_data[31:16] : rd_rsp_data[15:0]) == words);
+`ifdef ONE_JOB
+    assume (rst == (age == 8'd0));
+    assume (start == (age == 8'd1));
+`endif
+  end
+
+  // ---- what the accelerator does ----
+  wire [15:0] written = followed[0] ? wr_req_data[31:16] : wr_req_data[15:0];
+  always @* if (age != 8'd0 & ~rst) begin
+    // Requests: of this job, in order of lines, each once; no tag that still waits.
+    if (rd_req_valid) begin
+      rd_in_job: assert (busy & known);
+      rd_in_order: assert (rd_req_address == {53'd0, source} + {54'd0, rd_lines} & rd_lines < lines);
+      rd_tag_free: assert (rd_req_tag[5:2] == job_epoch & ((rd_waiting >> rd_req_tag[1:0]) & 4'd1) == 4'd0);
+    end
+    if (wr_req_valid) begin
+      wr_in_job: assert (busy & known);
+      wr_in_order: assert (wr_req_address == {53'd0, destination} + {54'd0, wr_lines} & wr_lines < lines);
+      wr_tag_free: assert (wr_req_tag[5:2] == job_epoch & ((wr_waiting >> wr_req_tag[1:0]) & 4'd1) == 4'd0);
+      if (wr_lines == followed_line)
+        wr_data: assert (written == (followed < job_count ? words : 16'd0));
+    end
+    // The end.
+    if (done) begin
+      done_known: assert (known & ~busy);
+      done_acknowledged: assert (error == 4'd4 | (rd_waiting == 4'd0 & wr_waiting == 4'd0));
+      if (error == 4'd0) begin
+        done_all: assert (rd_lines == lines & wr_lines == lines);
+        if (followed < job_count) begin
+          done_counts: assert (~words[0] | contacts != 32'd0);
+          done_invalid: assert (~(words[1] & ~words[0]) | (invalid != 32'd0 & first_invalid <= {28'd0, followed}));
+          done_first: assert (first_invalid != {28'd0, followed} | (words[1] & ~words[0]));
+        end
+      end
+    end
+  end
+
+  // A request stays as it is until it is accepted.
+  reg        rd_held = 1'b0;
+  reg        wr_held = 1'b0;
+  reg [63:0] rd_was;
+  reg [95:0] wr_was;
+  always @(posedge clk) begin
+    rd_held <= rd_req_valid & ~rd_req_ready & ~rst;
+    wr_held <= wr_req_valid & ~wr_req_ready & ~rst;
+    rd_was <= {rd_req_address, rd_req_tag};
+    wr_was <= {wr_req_address, wr_req_tag, wr_req_data};
+  end
+  always @* if (age != 8'd0 & ~rst) begin
+    if (rd_held) rd_stable: assert (rd_req_valid & {rd_req_address, rd_req_tag} == rd_was);
+    if (wr_held) wr_stable: assert (wr_req_valid & {wr_req_address, wr_req_tag, wr_req_data} == wr_was);
+  end
+
+`ifdef PROMPT
+  // ---- a prompt link, and the end in bounded time ----
+  reg [3:0] rd_refused;
+  reg [3:0] wr_refused;
+  reg [7:0] taken;
+  always @(posedge clk) begin
+    rd_refused <= rst | rd_req_ready ? 4'd0 : rd_refused + 4'd1;
+    wr_refused <= rst | wr_req_ready ? 4'd0 : wr_refused + 4'd1;
+    taken <= rst | ~busy ? 8'd0 : taken + 8'd1;
+  end
+  always @* if (age != 8'd0) begin
+    assume (rd_refused < `PROMPT | rd_req_ready);
+    assume (wr_refused < `PROMPT | wr_req_ready);
+    if (~rst) ends: assert (taken <= `BOUND);
+  end
+  genvar slot;
+  generate
+    for (slot = 0; slot < 4; slot = slot + 1) begin : prompt
+      reg [3:0] rd_age;
+      reg [3:0] wr_age;
+      always @(posedge clk) begin
+        rd_age <= rd_waiting[slot] ? rd_age + 4'd1 : 4'd0;
+        wr_age <= wr_waiting[slot] ? wr_age + 4'd1 : 4'd0;
+      end
+      always @* if (age != 8'd0 & ~rst & ~accept) begin
+        if (rd_waiting[slot] & rd_age >= `PROMPT) assume (rd_answered[slot]);
+        if (wr_waiting[slot] & wr_age >= `PROMPT) assume (wr_answered[slot]);
+      end
+    end
+  endgenerate
+`endif
+
+  // ---- that all this is about something ----
+  always @* if (age != 8'd0 & ~rst & done & error == 4'd0) begin
+    whole_job: cover (job_count == `PAIRS);
+    odd_job: cover (job_count == `PAIRS - 1 & followed == job_count - 1 & words == 16'h5a5a);
+  end
+endmodule
+
+`default_nettype wire

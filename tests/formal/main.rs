@@ -1,0 +1,69 @@
+//! The controller, proven: properties of `tb/formal`, held by Yosys and Z3 for the accelerator that `design` generates,
+//! and for mutants of it, each of which breaks one.
+//!
+//! The test command runs a share. `scripts/prove` runs all; `docs/verification.md` says what is proven and what is not.
+
+mod design;
+mod mutants;
+mod proofs;
+mod tools;
+
+use mutants::Mutant;
+use proofs::{PROOFS, Proof};
+use tools::Verdict;
+
+fn holds(proof: &Proof) {
+    let began = std::time::Instant::now();
+    let verdict = tools::check(proof, &design::files(proof.latency));
+    println!("{:<40} {verdict:?}, {:.0} s", proof.to_string(), began.elapsed().as_secs_f64());
+    assert_eq!(verdict, Verdict::Proven, "{proof}");
+}
+
+fn falls(mutant: &Mutant) {
+    let proof = mutant.proof();
+    let began = std::time::Instant::now();
+    let verdict = tools::check(&proof, &mutant.files());
+    println!("{:<40} {verdict:?}, {:.0} s", format!("mutant: {}", mutant.what), began.elapsed().as_secs_f64());
+    let broken = matches!(&verdict, Verdict::Falsified(names) if names.iter().any(|name| name == mutant.breaks));
+    assert!(broken, "`{}` must break {} of {proof}: {verdict:?}", mutant.what, mutant.breaks);
+}
+
+#[test]
+fn a_share_of_the_proofs_holds() {
+    PROOFS.iter().filter(|proof| proof.is_short).for_each(holds);
+}
+
+#[test]
+fn a_share_of_the_mutants_falls() {
+    mutants::all().iter().filter(|mutant| mutant.is_short).for_each(falls);
+}
+
+/// Every mutant's text is where its table says, exactly once, whether or not it is proven here.
+#[test]
+fn every_mutant_is_one_change() {
+    for mutant in mutants::all() {
+        mutant.files();
+    }
+}
+
+/// Every property can be broken: some mutant breaks it.
+#[test]
+fn every_property_has_a_mutant() {
+    let mutants = mutants::all();
+    for (harness, property) in proofs::properties() {
+        let breaks = |mutant: &&Mutant| mutant.proof().harness == harness && mutant.breaks == property;
+        assert!(mutants.iter().any(|mutant| breaks(&mutant)), "no mutant breaks {property} of {harness}");
+    }
+}
+
+#[test]
+#[ignore = "minutes: scripts/prove"]
+fn every_proof_holds() {
+    PROOFS.iter().for_each(holds);
+}
+
+#[test]
+#[ignore = "minutes: scripts/prove"]
+fn every_mutant_falls() {
+    mutants::all().iter().for_each(falls);
+}
