@@ -56,6 +56,34 @@ fn reset_at_any_time_and_the_next_job_is_right() {
     }
 }
 
+/// A short job stopped in each of its cycles, one after the other, over links that are never twice the same: what was
+/// written is right, and nothing of it is lost, doubled or torn in the job that follows.
+#[test]
+fn reset_and_abort_at_every_cycle_of_a_short_job() {
+    let (spoilt, next) = (Case::random(&of(SCPUS), 15, 31), Case::random(&of(SCPUS), 9, 32));
+    for ((link, seed), aborts) in LinkModel::PRESETS.into_iter().zip(1..).flat_map(|l| [(l, false), (l, true)]) {
+        let afu = afu(seed);
+        let mut driver = driver(&afu, link, seed);
+        for moment in 0.. {
+            let what = format!("{link}, {} after {moment} cycles", if aborts { "abort" } else { "reset" });
+            driver.start(&spoilt.job()).unwrap();
+            let done = (0..moment).any(|_| driver.step().unwrap());
+            if done || aborts {
+                driver.abort();
+                spoilt.check_written(&ends(&mut driver), &what);
+            } else {
+                driver.reset().unwrap();
+            }
+            let outcome = driver.run(&elsewhere(&next)).unwrap_or_else(|e| panic!("{what}: {e}"));
+            next.check(&outcome, &what);
+            if done {
+                assert!(moment > 90, "{link}: a job of {moment} cycles");
+                break;
+            }
+        }
+    }
+}
+
 /// The other kind of reset: low, and without a clock edge. What differs from the default is in every module.
 #[test]
 fn an_asynchronous_reset_that_is_low() {

@@ -11,6 +11,8 @@ pub enum Method {
     Bounded(u32),
     /// Every assertion holds for ever: in the first so many cycles, and in a cycle after any so many in which it held.
     Inductive(u32),
+    /// Some assertion fails in that cycle after power-up, if any does: for mutants.
+    At(u32),
     /// Every cover is reached in so many cycles: the proofs are about something.
     Reached(u32),
 }
@@ -56,6 +58,7 @@ impl fmt::Display for Proof {
         let (how, cycles) = match self.method {
             Method::Bounded(cycles) => ("bounded", cycles),
             Method::Inductive(cycles) => ("inductive", cycles),
+            Method::At(cycle) => ("in cycle", cycle),
             Method::Reached(cycles) => ("reached", cycles),
         };
         write!(f, "{} (SCPU {}, {how} {cycles})", self.name, self.latency)
@@ -70,7 +73,7 @@ pub const PROOFS: &[Proof] = &[
     Proof::new("dispatcher", "dispatcher", 1, Inductive(2)).short(),
     Proof::new("credits", "credits", 1, Inductive(6)).short(),
     Proof::new("any link, any host", "line_port", 1, Bounded(9)).with(&["PAIRS=3"]).short(),
-    Proof::new("one job", "line_port", 1, Bounded(20)).with(&["PAIRS=3", "ONE_JOB"]),
+    Proof::new("one job", "line_port", 1, Bounded(21)).with(&["PAIRS=3", "ONE_JOB"]),
     Proof::new("a job ends", "line_port", 1, Bounded(27)).with(&["PAIRS=2", "ONE_JOB", "PROMPT=1", "BOUND=22"]),
     Proof::new("jobs are whole", "line_port", 1, Reached(22)).with(&["PAIRS=3", "ONE_JOB"]),
 ];

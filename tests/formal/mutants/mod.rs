@@ -17,8 +17,8 @@ pub struct Mutant {
     pub new: &'static str,
     /// The setting it is tried in.
     pub tried_in: &'static str,
-    /// The cycles in which it must show.
-    pub cycles: u32,
+    /// The first cycle after power-up in which it shows.
+    pub cycle: u32,
     /// The property that fails.
     pub breaks: &'static str,
     /// Whether the test command has it.
@@ -26,9 +26,9 @@ pub struct Mutant {
 }
 
 impl Mutant {
-    /// The proof that it breaks, bounded.
+    /// The proof that it breaks, in the cycle in which it does.
     pub fn proof(&self) -> Proof {
-        Proof { method: Method::Bounded(self.cycles), ..*proof(self.tried_in) }
+        Proof { method: Method::At(self.cycle), ..*proof(self.tried_in) }
     }
 
     /// The accelerator with the change in it.
@@ -42,26 +42,26 @@ impl Mutant {
     }
 }
 
-/// Mutants of a file that are tried in one setting: fault, old text, new text, cycles, property.
+/// Mutants of a file that are tried in one setting: fault, old text, new text, cycle, property.
 type Rows = &'static [(&'static str, &'static str, &'static str, u32, &'static str)];
 
 /// One of the kind in the test command.
 const SHORT: [&str; 6] = [
     "lines go out before they came",
     "responses to earlier jobs count",
-    "tags are used again",
+    "slots are freed by earlier jobs",
     "a pair enters without room",
     "the first line is asked for again",
-    "ends while a read is out",
+    "done at once",
 ];
 
 /// All of them.
 pub fn all() -> Vec<Mutant> {
     let tables = parts::TABLES.iter().chain(whole::TABLES);
     let mutants = tables.flat_map(|(tried_in, file, rows)| {
-        rows.iter().map(|&(what, old, new, cycles, breaks)| {
+        rows.iter().map(|&(what, old, new, cycle, breaks)| {
             let is_short = SHORT.contains(&what);
-            Mutant { what, file, old, new, tried_in, cycles, breaks, is_short }
+            Mutant { what, file, old, new, tried_in, cycle, breaks, is_short }
         })
     });
     mutants.collect()
