@@ -77,14 +77,14 @@ impl Afu {
 
     /// The accelerator of a specification around an SCPU of the caller's, which is its own kernel then: a module with the
     /// input `pair` and the outputs `record`, `contact` and `invalid_pair`, which follow it by its `latency`, at least 1.
-    /// This is what the controller is proven with.
+    /// This is what the controller is proven with; there is no shell around it.
     ///
     /// # Errors
     /// What is out of range in `spec`; ports that do not fit.
     pub fn around_scpu(spec: Spec, scpu: Arc<Module>) -> Result<Self, BuildError> {
         spec.check()?;
-        let top = line_top(&spec, &scpu)?;
-        Ok(Self { spec, top, kernel: scpu })
+        let core = line_top(&spec, &scpu)?;
+        Ok(Self { spec, top: core.clone(), core, kernel: scpu })
     }
 
     /// What it was generated from.
