@@ -189,8 +189,14 @@ mod tests {
             (Config { scpus: 65, ..Config::default() }, "65 SCPUs"),
             (Config { clock_mhz: f64::NAN, ..Config::default() }, "clock NaN"),
             (Config { interval: 2, ..Config::default() }, "interval 2"),
-            (Config { profile: Profile::EXACT, contact: Fields::HIT, ..Config::default() }, "profile exact with contact"),
-            (Config { profile: Profile::EXACT, results: Results::Hits, ..Config::default() }, "profile exact with results"),
+            (
+                Config { profile: Profile::EXACT, contact: Fields::HIT, ..Config::default() },
+                "profile exact with contact",
+            ),
+            (
+                Config { profile: Profile::EXACT, results: Results::Hits, ..Config::default() },
+                "profile exact with results",
+            ),
             (Config { input: Input::Indexed, ..Config::default() }, "input indexed"),
             (Config { shell: Shell::Axi, ..Config::default() }, "shell axi"),
         ];

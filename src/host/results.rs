@@ -28,7 +28,8 @@ impl Results {
     /// [`HostError::InvalidPairs`], naming the first of `pairs` that is none, and its field.
     pub fn strict(&self, pairs: &[PairRecord]) -> Result<(), HostError> {
         let Some(first) = self.first_invalid else { return Ok(()) };
-        let field = pairs.get(first as usize).and_then(|pair| pair.invalid_field()).map_or("word", |word| PAIR_FIELDS[word]);
+        let field =
+            pairs.get(first as usize).and_then(|pair| pair.invalid_field()).map_or("word", |word| PAIR_FIELDS[word]);
         Err(HostError::InvalidPairs { count: self.invalid, first, field })
     }
 }

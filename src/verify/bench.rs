@@ -197,10 +197,16 @@ fn spl2(
     let place = Place::for_lines(job.source.len() as u64, job.destination_lines);
     let mut session = Session::open(&mut machine, place, job.scpus)?;
     session.start(job);
-    let mut left = session.patience(job);
+    let patience = session.patience(job);
+    let mut waited = 0;
     let status = loop {
-        match session.wait(left.min(PROGRESS_CYCLES)) {
-            Err(MachineError::NoStatus { .. }) if left > PROGRESS_CYCLES => left -= PROGRESS_CYCLES,
+        match session.wait(PROGRESS_CYCLES.min(patience - waited)) {
+            Err(MachineError::NoStatus { cycles, in_flight }) => {
+                waited += cycles;
+                if waited >= patience {
+                    return Err(MachineError::NoStatus { cycles: waited, in_flight }.into());
+                }
+            }
             ended => break ended?,
         }
         progress(session.machine().spl().link().traffic());

@@ -243,7 +243,9 @@ mod tests {
         let pairs = [9.0, 1.0, 8.0, 0.0, 1.5].map(pair);
         let reference = Reference::new(Format::WIDE, config.contact).run_all(&pairs);
         let hit = |number: usize| (number as u32, reference[number]);
-        let judge = |records: &[(u32, ContactRecord)]| check(&layout, config.contact, &pairs, &reference, outcome(records, 5), 0.0);
+        let judge = |records: &[(u32, ContactRecord)]| {
+            check(&layout, config.contact, &pairs, &reference, outcome(records, 5), 0.0)
+        };
 
         let right = judge(&[hit(1), hit(3), hit(4)]);
         assert!(right.is_good(), "{right:?}");

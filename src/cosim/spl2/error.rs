@@ -42,8 +42,8 @@ pub enum MachineError {
     Workspace(&'static str),
     /// The status never came.
     #[error(
-        "the job did not finish after {cycles} cycles: no status ({} reads and {} writes without a response)",
-        in_flight.0, in_flight.1
+        "the job did not finish after {cycles} cycles: no status, waiting for {} ({} reads and {} writes without a response)",
+        if *in_flight == (0, 0) { "the AFU" } else { "the link" }, in_flight.0, in_flight.1
     )]
     NoStatus {
         /// Cycles since the start word.
