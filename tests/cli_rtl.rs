@@ -80,7 +80,6 @@ fn what_is_not_built_yet_or_out_of_range_is_one_line_and_exit_2() {
         (["--interval", "fast"], "--interval fast"),
         (["--input", "indexed"], "input indexed"),
         (["--input", "all"], "input all"),
-        (["--results", "hits"], "results hits"),
         (["--shell", "axi"], "shell axi"),
         (["--target", "ecp5"], "--target ecp5"),
         (["--scpus", "0"], "0 SCPUs"),
@@ -93,7 +92,7 @@ fn what_is_not_built_yet_or_out_of_range_is_one_line_and_exit_2() {
         let said = said(&refused);
         assert!(said.starts_with("afu: ") && said.lines().count() == 1 && said.contains(word), "{said}");
     }
-    for arguments in [["--profile", "exact"], ["--contact", "mass"], ["--shell", "pcie"], ["--scpus", "ten"]] {
+    for arguments in [["--profile", "exactly"], ["--contact", "mass"], ["--shell", "pcie"], ["--scpus", "ten"]] {
         afu(room.path(), &[&["rtl", "--out", "out"][..], &arguments].concat()).code(2);
     }
     assert_eq!(fs::read_dir(room.path()).expect("there").count(), 0, "nothing is written");

@@ -34,7 +34,8 @@ fn a_sweep_has_a_row_for_each_size_and_is_resumed() {
     let said = String::from_utf8(second.get_output().stderr.clone()).expect("UTF-8");
     assert!(said.contains("1 of 2 rows are of an earlier run"), "{said}");
     let cycles = second_rows[1]["cycles_per_pair"].as_f64().expect("a number");
-    assert!((0.5..0.6).contains(&cycles), "two take two: {cycles}");
+    // Half a cycle, and for a job this small a tenth more for its handshake through memory.
+    assert!((0.5..0.65).contains(&cycles), "two take two: {cycles}");
 
     let csv = fs::read_to_string(room.path().join("out/sweep.csv")).expect("written");
     assert!(csv.starts_with("scpus,interval,pairs,") && csv.lines().count() == 3, "{csv}");
