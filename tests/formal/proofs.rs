@@ -73,7 +73,7 @@ pub const PROOFS: &[Proof] = &[
     Proof::new("dispatcher", "dispatcher", 1, Inductive(2)).short(),
     Proof::new("credits", "credits", 1, Inductive(6)).short(),
     Proof::new("any link, any host", "line_port", 1, Bounded(9)).with(&["PAIRS=3"]).short(),
-    Proof::new("one job", "line_port", 1, Bounded(21)).with(&["PAIRS=3", "ONE_JOB"]),
+    Proof::new("one job", "line_port", 1, Bounded(22)).with(&["PAIRS=3", "ONE_JOB"]),
     Proof::new("a job ends", "line_port", 1, Bounded(27)).with(&["PAIRS=2", "ONE_JOB", "PROMPT=1", "BOUND=22"]),
     Proof::new("jobs are whole", "line_port", 1, Reached(22)).with(&["PAIRS=3", "ONE_JOB"]),
 ];
