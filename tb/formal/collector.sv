@@ -2,8 +2,8 @@
 // The collector alone, by induction: every slot of the reorder memory is free, asked for, or filled, never two of these;
 // no tag is used again before its line has left; lines leave in order, each once; requests are stable and in order.
 //
-// Assumed, and proven elsewhere: a line is taken only when it is there (credits.sv: takes_a_line); a job begins only
-// when no request stands on the port (credits.sv: idle_is_quiet).
+// Assumed, and proven elsewhere: a line is taken only when it is there (credits.sv: takes_a_line). Assumed, and shown
+// elsewhere for so many cycles only: a job begins only when no request stands on the port (line_port.sv: rd_in_job).
 `default_nettype none
 
 module collector (

@@ -88,10 +88,9 @@ module credits (
     inside_is_right: assert (\dut.control.pairs_inside == inside);
     one_or_other: assert (~(\dut.control.running & \dut.control.draining ));
     only_in_a_job: assert (\dut.control.entered == 2'd0 | (\dut.control.running & begun));
-begins_first: assert (~busy | begun | \dut.control.begin_job );
+    begins_first: assert (~busy | begun | \dut.control.begin_job );
     begins_empty: assert (~\dut.control.begin_job | (busy & inside == 8'd0));
     idle_is_empty: assert (busy | inside == 8'd0);
-    idle_is_quiet: assert (busy & ~\dut.control.begin_job | ~(rd_req_valid | wr_req_valid));
     takes_a_line: assert (~\dut.feeder.take | \dut.collector.line_valid );
   end
   always @* if (begun & ~\dut.control.begin_job & ~rst) begin

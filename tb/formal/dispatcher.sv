@@ -2,8 +2,8 @@
 // The dispatcher alone, by induction: its memory never holds more than it can, no tag is used again before its
 // acknowledgement, no acknowledgement is lost or counted twice, requests are stable and in order of lines.
 //
-// Assumed, and proven elsewhere: a line comes only when there is room (credits.sv: fits); a job begins only when no
-// request stands on the port (credits.sv: idle_is_quiet).
+// Assumed, and proven elsewhere: a line comes only when there is room (credits.sv: fits). Assumed, and shown elsewhere
+// for so many cycles only: a job begins only when no request stands on the port (line_port.sv: wr_in_job).
 `default_nettype none
 
 module dispatcher (

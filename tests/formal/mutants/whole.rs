@@ -14,13 +14,6 @@ const CONTROL: Rows = &[
     ("a refused job does not begin", "begin_job <= accept;", "begin_job <= accept & ~failing;", 2, "begins_first"),
     ("a job begins again", "begin_job <= accept;", "begin_job <= accept | (start & running);", 6, "begins_empty"),
     ("ends with pairs inside", "draining & ~|pairs_inside & ", "draining & ", 8, "idle_is_empty"),
-    (
-        "ends with a request on the port",
-        "~|pairs_inside & (link_idle | (given_up & ~asking));",
-        "~|pairs_inside;",
-        5,
-        "idle_is_quiet",
-    ),
     ("room is never used up", "((room - entered_wide) + ", "(room + ", 7, "places_add_up"),
 ];
 
