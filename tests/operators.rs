@@ -179,7 +179,7 @@ fn the_excess_of_squares() {
             let zeros = count / 4 % 48;
             let exponent = 500 + u128::from(count % 7);
             for (operand, less) in operands.iter_mut().zip([0, 0, count % 3, count % 31]) {
-                *operand = *operand & (1 << 57 | (1 << 47) - 1) | (exponent - u128::from(less)) << 47;
+                *operand = *operand & ((1 << 57) | ((1 << 47) - 1)) | (exponent - u128::from(less)) << 47;
                 *operand = *operand >> zeros << zeros;
             }
         }

@@ -61,15 +61,14 @@ pub fn contenders(profiles: &[Profile]) -> Result<(Contenders, Vec<&'static str>
         all.push(Box::new(Profiled::new(profile)));
     }
     all.push(Box::new(Formula));
-    #[allow(unused_mut)]
-    let mut absent = Vec::new();
     #[cfg(feature = "ode")]
     all.push(Box::new(super::OdeDouble::new()?));
-    #[cfg(not(feature = "ode"))]
-    absent.push("ODE f64 is not in this program: build it with --features ode");
     #[cfg(feature = "parry")]
     all.push(Box::new(super::Parry));
-    #[cfg(not(feature = "parry"))]
-    absent.push("parry3d is not in this program: build it with --features parry");
+    let missing = [
+        (cfg!(feature = "ode"), "ODE f64 is not in this program: build it with --features ode"),
+        (cfg!(feature = "parry"), "parry3d is not in this program: build it with --features parry"),
+    ];
+    let absent = missing.into_iter().filter(|(there, _)| !there).map(|(_, said)| said).collect();
     Ok((all, absent))
 }

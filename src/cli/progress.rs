@@ -1,6 +1,5 @@
 //! What long work shows on standard error: a bar, on a terminal only.
 
-#[cfg(feature = "cosim")]
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -17,7 +16,6 @@ pub fn bar(title: &str, unit: &str, length: u64) -> ProgressBar {
     bar
 }
 
-#[cfg(feature = "cosim")]
 /// A turning sign for work whose length nobody knows.
 pub fn spinner(title: &str) -> ProgressBar {
     let spinner = ProgressBar::new_spinner();

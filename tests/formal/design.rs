@@ -7,9 +7,6 @@ use contact_afu::afu::{Afu, Spec};
 use contact_afu::config::Config;
 use contact_afu::hdl::{Graph, Module};
 
-/// The delays of an SCPU that are proven, in cycles.
-pub const LATENCIES: std::ops::RangeInclusive<u32> = 1..=5;
-
 /// Bits of a line, two pairs of eight words in it.
 const LINE_BITS: u32 = 32;
 const WORD_BITS: u32 = 2;

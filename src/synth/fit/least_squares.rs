@@ -57,9 +57,8 @@ mod tests {
         // The longer of two straight lines: as kinked as the delay of a path.
         let model = |p: &[f64], x: f64| (p[0] + p[1] * x).max(p[2] * x);
         let wanted = [1.0, 0.05, 0.11];
-        let residuals = |p: &[f64]| {
-            (1..40).map(|x| f64::from(x)).map(|x| model(p, x) / model(&wanted, x) - 1.0).collect::<Vec<_>>()
-        };
+        let residuals =
+            |p: &[f64]| (1..40).map(f64::from).map(|x| model(p, x) / model(&wanted, x) - 1.0).collect::<Vec<_>>();
         for (found, wanted) in fit(&[0.5, 0.1, 0.1], residuals).iter().zip(wanted) {
             assert!((found / wanted - 1.0).abs() < 1e-3, "{found} for {wanted}");
         }
