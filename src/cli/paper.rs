@@ -16,12 +16,12 @@ use super::machine::One;
 /// Measuring ODE needs the feature `ode`: ./scripts/setup --ode && cargo run --release --features ode -- paper --out DIR
 /// (./scripts/paper does both). Without it this command ends with status 3.
 #[derive(Args, Debug)]
-#[cfg_attr(not(feature = "ode"), expect(dead_code))]
+#[cfg_attr(not(feature = "ode"), allow(dead_code, reason = "only the program with ODE reads them"))]
 pub struct Paper {
     /// Folder to write
     #[arg(long, value_name = "DIR")]
     pub(super) out: PathBuf,
-    /// Fewer points, under a minute
+    /// Fewer points: some seconds
     #[arg(long)]
     pub(super) quick: bool,
     /// The paper's hMax: layers of the diamond from its centre to a tip, 1 to 40
