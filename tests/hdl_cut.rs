@@ -60,6 +60,36 @@ fn an_operation_that_takes_too_long_stands_alone_and_is_reported() {
 }
 
 #[test]
+fn a_product_of_one_block_has_its_registers_inside() {
+    let g = Graph::new("blocks");
+    let (a, b) = (g.input("a", 12), g.input("b", 18));
+    // A block's operands may come late in a stage, and what follows it begins a stage; a wider product is no block.
+    let product = (a.plus(1) * b).named("product");
+    g.output("y", product.high(18).plus(1) ^ b);
+    g.output("z", a.concat(b) * a.concat(b));
+    g.output("square", a * a);
+    let model = simple().with_registered_multipliers(None);
+    let pipeline = cut(&g.finish().unwrap(), &model, period(50.0)).unwrap();
+    assert_eq!(stage_of(&pipeline, "product"), Some(2));
+    let blocks: Vec<_> = pipeline.instances.iter().map(|instance| instance.module.name.as_str()).collect();
+    assert_eq!(blocks, ["multiplier_18x12", "multiplier_12x12"]);
+    assert!(pipeline.instances.iter().all(|instance| instance.module.latency == 2));
+    let mut run = Evaluator::new(&pipeline, &[]).unwrap();
+    let operands: Vec<(u128, u128)> = (0..100).map(|t| (t * 37 % 4096, t * 4099 % (1 << 18))).collect();
+    for cycle in 0..operands.len() + pipeline.latency as usize {
+        if let Some(&(a, b)) = cycle.checked_sub(pipeline.latency as usize).map(|then| &operands[then]) {
+            let y = ((((a + 1) % 4096 * b) >> 12) + 1) % (1 << 18) ^ b;
+            let whole = a << 18 | b;
+            assert_eq!((run.get("y"), run.get("z"), run.get("square")), (y, whole * whole, a * a), "{a} {b}");
+        }
+        let (a, b) = operands.get(cycle).copied().unwrap_or_default();
+        run.set("a", a);
+        run.set("b", b);
+        run.step();
+    }
+}
+
+#[test]
 fn outputs_are_registered_and_aligned_and_constants_never_wait() {
     let g = Graph::new("aligned");
     let (a, b) = (g.input("a", 8), g.input("b", 8));

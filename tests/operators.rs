@@ -5,12 +5,14 @@ mod support;
 
 use contact_afu::hdl::{DelayModel, Evaluator, Module, Op, Pin};
 use contact_afu::number::{Format, Soft, Subnormals};
-use contact_afu::operator::{INPUTS, Operator, build, pipelined};
+use contact_afu::operator::{Domain, INPUTS, Operator, Values, build, pipelined};
 use std::sync::Arc;
 use support::{Words, corner};
 
-const ARITHMETIC: [Operator; 10] = [
+const ARITHMETIC: [Operator; 12] = [
     Operator::Add,
+    Operator::AddMagnitudes,
+    Operator::Square,
     Operator::Sub,
     Operator::Mul,
     Operator::Div,
@@ -22,6 +24,8 @@ const ARITHMETIC: [Operator; 10] = [
     Operator::RootExceeds,
 ];
 
+const VALUES: [Values; 3] = [Values::Any, Values::Finite, Values::Normal];
+
 fn format(text: &str) -> Format {
     text.parse().unwrap()
 }
@@ -29,21 +33,22 @@ fn format(text: &str) -> Format {
 /// A combinational operator, run on words.
 struct Bench {
     operator: Operator,
-    format: Format,
+    domain: Domain,
     evaluator: Evaluator,
     a: Pin,
     result: Pin,
 }
 
 impl Bench {
-    fn new(operator: Operator, format: Format) -> Self {
-        Self::of(operator, format, &build(operator, format).unwrap())
+    fn new(operator: Operator, domain: impl Into<Domain>) -> Self {
+        let domain = domain.into();
+        Self::of(operator, domain, &build(operator, domain).unwrap())
     }
 
-    fn of(operator: Operator, format: Format, module: &Arc<Module>) -> Self {
+    fn of(operator: Operator, domain: Domain, module: &Arc<Module>) -> Self {
         let evaluator = Evaluator::new(module, &[]).unwrap();
         let [a, result] = ["a", "result"].map(|port| evaluator.pin(port).unwrap());
-        Self { operator, format, evaluator, a, result }
+        Self { operator, domain, evaluator, a, result }
     }
 
     /// The word for one operand of at most 64 bits, without a look-up.
@@ -58,34 +63,46 @@ impl Bench {
         if self.operator.operands() == 2 {
             self.evaluator.set("b", b);
         }
-        (self.evaluator.get("result"), self.operator.twin(self.format, a, b))
+        (self.evaluator.get("result"), self.operator.twin(self.domain.format(), a, b))
     }
 
+    /// Tells whether the hardware is made for these operands; the comparison is made if so.
     #[track_caller]
-    fn check(&mut self, a: u128, b: u128) {
+    fn check(&mut self, a: u128, b: u128) -> bool {
+        if !self.operator.is_made_for(self.domain, a, b) {
+            return false;
+        }
         let (got, wanted) = self.both(a, b);
         assert!(
             got == wanted,
             "{} of {a:#x}, {b:#x}: {got:#x}, not {wanted:#x}",
-            self.operator.module_name(self.format)
+            self.operator.module_name(self.domain)
         );
+        true
     }
 }
 
-/// Every word, and for two operands every pair of words.
-fn exhaust(operator: Operator, format: Format) {
-    let mut bench = Bench::new(operator, format);
-    let words = 1 << format.width();
+/// Every word, and for two operands every pair of words; and of these all that the hardware is made for.
+fn exhaust(operator: Operator, domain: impl Into<Domain>) {
+    let domain = domain.into();
+    let mut bench = Bench::new(operator, domain);
+    let words = 1_u128 << domain.width();
+    let (mut checked, mut all) = (0_u64, 0_u64);
     for a in 0..words {
         for b in 0..if operator.operands() == 2 { words } else { 1 } {
-            bench.check(a, b);
+            checked += u64::from(bench.check(a, b));
+            all += 1;
         }
     }
+    let least = if domain.values() == Values::Any && operator != Operator::AddMagnitudes { all } else { all / 8 };
+    assert!(checked >= least, "{operator:?} of {domain}: {checked} of {all} checked");
 }
 
-fn randomly(operator: Operator, format: Format, count: u64) {
+fn randomly(operator: Operator, domain: impl Into<Domain>, count: u64) {
+    let domain = domain.into();
+    let format = domain.format();
     support::halves(count, |part| {
-        let mut bench = Bench::new(operator, format);
+        let mut bench = Bench::new(operator, domain);
         let mut words = Words::new(format.exponent_bits(), format.fraction_bits(), part.start + 1);
         for number in part {
             let (a, b) = corner(operator, format, &mut words, number);
@@ -98,7 +115,8 @@ fn randomly(operator: Operator, format: Format, count: u64) {
 fn every_pair_of_an_8_bit_format() {
     for subnormals in [Subnormals::Kept, Subnormals::Flushed] {
         for operator in ARITHMETIC {
-            exhaust(operator, Format::new(5, 2, subnormals).unwrap());
+            let format = Format::new(5, 2, subnormals).unwrap();
+            VALUES.into_iter().for_each(|values| exhaust(operator, Domain::new(format, values)));
         }
     }
 }
@@ -108,7 +126,8 @@ fn every_word_of_small_formats_converted() {
     let formats = ["e5f2", "e5f2z", "e5f6", "e5f6z", "e6f3", "e6f3z", "e7f2", "e7f9z", "half", "paper", "wide"];
     for from in formats.map(format).into_iter().filter(|from| from.width() <= 16) {
         for to in formats.map(format).into_iter().filter(|to| *to != from) {
-            exhaust(Operator::Convert { to }, from);
+            let convert = Operator::Convert { to };
+            VALUES.into_iter().for_each(|values| exhaust(convert, Domain::new(from, values)));
         }
     }
 }
@@ -128,15 +147,20 @@ fn a_million_of_binary32() {
     for operator in ARITHMETIC {
         randomly(operator, Format::BINARY32, 1_000_000);
     }
-    randomly(Operator::Convert { to: Format::WIDE }, Format::BINARY32, 1_000_000);
+    for values in [Values::Any, Values::Finite] {
+        randomly(Operator::Convert { to: Format::WIDE }, Domain::new(Format::BINARY32, values), 500_000);
+    }
 }
 
 #[test]
 fn a_million_of_wide() {
     for operator in ARITHMETIC {
-        randomly(operator, Format::WIDE, 1_000_000);
+        randomly(operator, Format::WIDE, 300_000);
+        randomly(operator, Domain::new(Format::WIDE, Values::Normal), 700_000);
     }
-    randomly(Operator::Convert { to: Format::BINARY32 }, Format::WIDE, 1_000_000);
+    for values in [Values::Any, Values::Normal] {
+        randomly(Operator::Convert { to: Format::BINARY32 }, Domain::new(Format::WIDE, values), 500_000);
+    }
 }
 
 #[test]
@@ -204,8 +228,10 @@ fn the_excess_of_squares() {
 #[test]
 fn every_significand_of_root_and_reciprocal() {
     support::halves(1 << 24, |part| {
-        let mut root = Bench::new(Operator::Sqrt, Format::WIDE);
-        let mut inverse = Bench::new(Operator::Recip, Format::WIDE);
+        // As the default AFU has them.
+        let domain = Domain::new(Format::WIDE, Values::Normal);
+        let mut root = Bench::new(Operator::Sqrt, domain);
+        let mut inverse = Bench::new(Operator::Recip, domain);
         // Binary32 and wide have the same fraction; the biases differ by 384.
         let wide = |word: u32| u64::from(word) + (384 << 23);
         let check = |bench: &mut Bench, value: f32, wanted: f32| {
@@ -228,7 +254,12 @@ fn pipelines_compute_the_same() {
     for format in ["e5f2", "half", "paper", "wide", "e11f52"].map(format) {
         let convert = Operator::Convert { to: if format == Format::WIDE { Format::BINARY32 } else { Format::WIDE } };
         for (operator, clock_mhz) in ARITHMETIC.into_iter().chain([convert]).zip([100.0, 200.0, 300.0].iter().cycle()) {
-            let module = pipelined(operator, format, &DelayModel::default(), *clock_mhz).unwrap();
+            // With multiplier blocks of both kinds.
+            let model = match format.fraction_bits() {
+                23 => DelayModel::default().with_registered_multipliers(None),
+                _ => DelayModel::default(),
+            };
+            let module = pipelined(operator, format, &model, *clock_mhz).unwrap();
             let mut evaluator = Evaluator::new(&module, &[]).unwrap();
             let mut words = Words::new(format.exponent_bits(), format.fraction_bits(), 1);
             let operands: Vec<_> = (0..2_000).map(|count| corner(operator, format, &mut words, count)).collect();
@@ -237,12 +268,8 @@ fn pipelines_compute_the_same() {
             for cycle in 0..operands.len() + latency {
                 if cycle >= latency {
                     let (a, b) = operands[cycle - latency];
-                    assert_eq!(
-                        evaluator.get("result"),
-                        operator.twin(format, a, b),
-                        "{} of {a:#x}, {b:#x}",
-                        module.name
-                    );
+                    let wanted = operator.twin(format, a, b);
+                    assert_eq!(evaluator.get("result"), wanted, "{} of {a:#x}, {b:#x}", module.name);
                 }
                 let (a, b) = operands.get(cycle).copied().unwrap_or_default();
                 evaluator.set("a", a);
@@ -282,7 +309,7 @@ fn planted_faults_are_found() {
         let module = build(operator, format).unwrap();
         let faults: Vec<_> = (0..module.nodes.len()).filter_map(|node| with_fault(&module, node)).collect();
         let is_found = |fault: &&Module| {
-            let mut bench = Bench::of(operator, format, &Arc::new((*fault).clone()));
+            let mut bench = Bench::of(operator, format.into(), &Arc::new((*fault).clone()));
             (0..1_u128 << 16).any(|pair| {
                 let (got, wanted) = bench.both(pair >> 8, pair & 0xFF);
                 got != wanted

@@ -126,7 +126,7 @@ fn names_are_kept_and_made_of_operands() {
     });
     let mut names: Vec<_> = module.instances.iter().map(|instance| instance.name.as_str()).collect();
     names.sort_unstable();
-    assert_eq!(names, ["add_sum", "mul_sum_squared", "sqrt_root_a", "sub_sum_squared_minus_root_a"]);
+    assert_eq!(names, ["add_sum", "sqrt_root_a", "square_sum_squared", "sub_sum_squared_minus_root_a"]);
 }
 
 #[test]
@@ -176,6 +176,56 @@ fn kernels_nest_and_survive_a_panic() {
         ports.output("y", a + a);
     });
     assert_eq!(operators(&pipeline(&kernel.unwrap())), [("fp_add_e8f23".to_owned(), 1)]);
+}
+
+/// A sum of squares of what was promised to be finite, shown while `show` says so.
+fn squares(format: Format, show: impl Fn(Bit) -> Bit) -> Kernel {
+    let body = |ports: &Ports| {
+        let (a, b) = (ports.input("a", FORMAT), ports.input("b", FORMAT));
+        let valid = ports.input_bit("valid");
+        ports.promise_finite(valid, &[a, b], false);
+        let (x, y) = (a.to(format), b.to(format));
+        let sum = x * x + y * y;
+        ports.output("y", Wire::select(show(valid), sum, sum.constant(0.0)).to(FORMAT));
+    };
+    trace("squares", body).unwrap()
+}
+
+#[test]
+fn what_cannot_happen_costs_nothing() {
+    let kernel = squares(Format::WIDE, |valid| valid);
+    assert_eq!(kernel.not_normal(), None);
+    let names = ["fp_add_magnitudes_e10f23z_normal", "fp_convert_e10f23z_normal_to_e8f23"];
+    let names = names.into_iter().chain(["fp_convert_e8f23_finite_to_e10f23z", "fp_square_e10f23z_normal"]);
+    assert_eq!(operators(&pipeline(&kernel)), names.map(str::to_owned).zip([1, 1, 2, 2]).collect::<Vec<_>>());
+}
+
+#[test]
+fn a_range_too_narrow_is_found_and_named() {
+    let narrow = squares("e9f23".parse().unwrap(), |valid| valid).not_normal().unwrap();
+    assert!(narrow.contains("`square` in e9f23: results from 2^-298 to 2^256 leave the normal range"), "{narrow}");
+    // Shown when the promise does not hold, an input may be anything.
+    let shown = squares(Format::WIDE, |valid| !valid).not_normal().unwrap();
+    assert!(shown.contains("an operand may be infinite or NaN"), "{shown}");
+}
+
+#[test]
+fn a_division_by_zero_must_be_hidden() {
+    let inverse = |guarded: bool| {
+        let body = |ports: &Ports| {
+            let a = ports.input("a", FORMAT);
+            let valid = ports.input_bit("valid");
+            ports.promise_finite(valid, &[a], true);
+            let x = a.to(Format::WIDE);
+            let zero = x.constant(0.0);
+            let inverse = Wire::select(x.le(zero), if guarded { zero } else { x.recip() }, x.recip());
+            ports.output("y", Wire::select(valid, inverse, zero).to(FORMAT));
+        };
+        trace("inverse", body).unwrap().not_normal()
+    };
+    assert_eq!(inverse(true), None);
+    let seen = inverse(false).unwrap();
+    assert!(seen.contains("a division by zero that may be seen"), "{seen}");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::module::{Module, Node, NodeId, Op};
+use super::module::{Module, Node, NodeId, Op, Primitive};
 
 /// What a clocked design of a target can do between two registers.
 ///
@@ -35,6 +35,16 @@ pub struct DelayModel {
     pub multiplier: f64,
     /// The widest operand of a multiplier block.
     pub multiplier_bits: u32,
+    /// Register ranks inside a multiplier block: 2, of its factors and its product, or 0 for a block that is used
+    /// without.
+    #[serde(default)]
+    pub multiplier_registers: u32,
+    /// Out of a multiplier block's last register, beyond what a register between stages takes.
+    #[serde(default)]
+    pub multiplier_output: f64,
+    /// The primitive a multiplier block with registers is written as; without one synthesis has to find it.
+    #[serde(default)]
+    pub multiplier_primitive: Option<Primitive>,
 }
 
 impl Default for DelayModel {
@@ -58,6 +68,9 @@ impl DelayModel {
             carry_out: 0.52,
             multiplier: 4.5,
             multiplier_bits: 18,
+            multiplier_registers: 0,
+            multiplier_output: 0.0,
+            multiplier_primitive: None,
         }
     }
 
@@ -97,6 +110,20 @@ impl DelayModel {
         1000.0 / (self.register + logic)
     }
 
+    /// The same target with multiplier blocks whose registers are used, written as `primitive` where there is one.
+    ///
+    /// A block with registers is timed by them, not by the path inside, which nextpnr-ecp5 does not know.
+    #[must_use]
+    pub fn with_registered_multipliers(self, primitive: Option<Primitive>) -> Self {
+        Self { multiplier_registers: 2, multiplier_primitive: primitive, ..self }
+    }
+
+    /// Register ranks inside an operation: only a product that one multiplier block takes has any.
+    pub(super) fn ranks(&self, module: &Module, node: &Node) -> u32 {
+        let fits = |id: &NodeId| module.node(*id).width <= self.multiplier_bits;
+        if node.op == Op::Mul && node.operands.iter().all(fits) { self.multiplier_registers } else { 0 }
+    }
+
     /// From the operands' arrival to the result of a combinational node; wiring takes no time.
     pub fn delay(&self, module: &Module, node: &Node) -> f64 {
         let width = |position: usize| module.node(node.operands[position]).width;
@@ -112,6 +139,7 @@ impl DelayModel {
             Op::Equal if constant(0) || constant(1) => self.tree(width(0)),
             Op::Equal => self.tree(2 * width(0)).min(self.adder(width(0)) + self.carry_out),
             Op::Any | Op::All => self.tree(width(0)),
+            Op::Mul if self.ranks(module, node) > 0 => self.multiplier_output,
             Op::Mul => self.product(width(0), width(1)),
             // Each output is a function of all address bits.
             Op::OneHot => self.tree(width(0)),

@@ -245,6 +245,7 @@ fn renumber(inner: Inner, order: &[NodeId]) -> Module {
         reset: inner.reset.map(|id| new[&id]),
         paths: Vec::new(),
         latency: 0,
+        primitive: None,
         timing: None,
     };
     module.paths = paths(&module);

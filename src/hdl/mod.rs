@@ -23,6 +23,6 @@ pub use delay_model::DelayModel;
 pub use error::{Error, Errors};
 pub use evaluate::{EvaluateError, Evaluator, Pin};
 pub use graph::Graph;
-pub use module::{Instance, InstanceCount, Memory, Module, Node, NodeId, Op, Parameter, Port, Reset};
+pub use module::{Instance, InstanceCount, Memory, Module, Node, NodeId, Op, Parameter, Port, Primitive, Reset};
 pub use signal::Signal;
 pub use state::{Instantiated, MemoryHandle, Register};

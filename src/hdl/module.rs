@@ -159,6 +159,23 @@ pub struct Instance {
     pub inputs: Vec<Option<NodeId>>,
 }
 
+/// A vendor's building block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum Primitive {
+    /// Lattice ECP5: 18 × 18 bits, with registers of factors and product.
+    #[serde(rename = "MULT18X18D")]
+    Mult18x18d,
+}
+
+impl Primitive {
+    /// What a module's name ends in that stands for it.
+    pub(super) const fn suffix(self) -> &'static str {
+        match self {
+            Self::Mult18x18d => "_ecp5",
+        }
+    }
+}
+
 /// How generated registers are reset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Reset {
@@ -191,12 +208,25 @@ pub struct Module {
     pub paths: Vec<BTreeSet<usize>>,
     /// Register ranks between inputs and outputs, for a pipeline.
     pub latency: u32,
+    /// The vendor's primitive that synthesis takes in the place of its nodes.
+    pub primitive: Option<Primitive>,
     /// What its stages come to, for a pipeline made by [`cut`](super::cut).
     pub timing: Option<super::Timing>,
 }
 
-/// A longer delay than this many cycles is a memory with a pointer, not a row of registers.
+/// A longer delay than this many cycles is not a row of registers with names of their own.
 pub const LONGEST_REGISTER_DELAY: u32 = 3;
+/// A longer delay of fewer bits than this is a shift register: a memory is never narrower than a few bits, and its
+/// pointer costs more than it saves.
+const NARROWEST_MEMORY_DELAY: u32 = 12;
+/// But a shift register never has more bits than this.
+const MOST_SHIFT_REGISTER_BITS: u32 = 128;
+
+/// Whether a delay of a value of `width` bits is a memory with a pointer.
+pub(super) fn is_memory_delay(cycles: u32, width: u32) -> bool {
+    let is_narrow = width < NARROWEST_MEMORY_DELAY && width.saturating_mul(cycles) <= MOST_SHIFT_REGISTER_BITS;
+    cycles > LONGEST_REGISTER_DELAY && !is_narrow
+}
 
 impl Module {
     /// The node behind an id.
@@ -229,7 +259,7 @@ impl Module {
     /// Whether anything inside is reset.
     pub fn is_reset(&self) -> bool {
         self.nodes.iter().any(|n| match n.op {
-            Op::Delay { cycles } => cycles > LONGEST_REGISTER_DELAY,
+            Op::Delay { cycles } => is_memory_delay(cycles, n.width),
             Op::Register { reset } => reset.is_some(),
             _ => false,
         }) || self.instances.iter().any(|i| i.module.is_reset())

@@ -1,24 +1,24 @@
 //! Comparisons of two numbers. −0 equals +0; with a NaN nothing holds (IEEE 754-2019, clause 5.11).
 
+use super::Domain;
 use super::parts::Operand;
 use crate::hdl::Signal;
-use crate::number::Format;
 
 /// a > b.
-pub fn greater<'g>(a: Signal<'g>, b: Signal<'g>, format: Format) -> Signal<'g> {
-    let (greater, unordered) = order(a, b, format);
+pub fn greater<'g>(a: Signal<'g>, b: Signal<'g>, domain: Domain) -> Signal<'g> {
+    let (greater, unordered) = order(a, b, domain);
     greater & !unordered
 }
 
 /// a ≤ b.
-pub fn at_most<'g>(a: Signal<'g>, b: Signal<'g>, format: Format) -> Signal<'g> {
-    let (greater, unordered) = order(a, b, format);
+pub fn at_most<'g>(a: Signal<'g>, b: Signal<'g>, domain: Domain) -> Signal<'g> {
+    let (greater, unordered) = order(a, b, domain);
     !(greater | unordered)
 }
 
 /// Whether a > b, if neither is a NaN; and whether one is.
-fn order<'g>(a: Signal<'g>, b: Signal<'g>, format: Format) -> (Signal<'g>, Signal<'g>) {
-    let (a, b) = (Operand::unpack(a, format, "a"), Operand::unpack(b, format, "b"));
+fn order<'g>(a: Signal<'g>, b: Signal<'g>, domain: Domain) -> (Signal<'g>, Signal<'g>) {
+    let (a, b) = (Operand::unpack(a, domain, "a"), Operand::unpack(b, domain, "b"));
     let b_is_smaller = b.magnitude().less_than(a.magnitude()).named("b_magnitude_is_smaller");
     let same = a.magnitude().equals(b.magnitude()).named("same_magnitude");
     // Two flushed subnormals are equal; of one, and a normal number, the magnitudes tell the truth.

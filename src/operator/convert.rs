@@ -1,11 +1,12 @@
 //! A number in another format.
 
+use super::Domain;
 use super::parts::{Operand, Special, Unrounded, pack, round};
 use crate::hdl::Signal;
 use crate::number::Format;
 
 /// `a`, which is in `from`, in `to`: rounded once, or exact where `to` has the room.
-pub fn convert(a: Signal<'_>, from: Format, to: Format) -> Signal<'_> {
+pub fn convert(a: Signal<'_>, from: Domain, to: Format) -> Signal<'_> {
     let a = Operand::unpack(a, from, "a");
     let (a_exponent, significand) = a.normalised();
     let exponent = a_exponent.offset(i64::from(to.bias() - from.bias())).named("rebiased_exponent");
@@ -20,7 +21,9 @@ pub fn convert(a: Signal<'_>, from: Format, to: Format) -> Signal<'_> {
         significand: padded.high(to.significand_bits()).named("significand"),
         guard: padded.bit(below).named("guard"),
         sticky: sticky.named("sticky"),
+        doubled: None,
     };
     let special = Special { nan: a.is_nan(), infinity: a.is_infinity(), zero: a.is_zero() };
+    let to = Domain::from(to);
     pack(to, a.sign, round(to, unrounded), special)
 }

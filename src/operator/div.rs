@@ -1,20 +1,20 @@
 //! Quotient, by restoring digit recurrence: each step subtracts the divisor once and keeps the difference if it is
 //! not negative. The remainder stays exact, so the result is rounded correctly.
 
+use super::Domain;
 use super::parts::{Operand, Special, Unrounded, pack, round};
 use crate::hdl::Signal;
-use crate::number::Format;
 
 /// a / b.
-pub fn div<'g>(a: Signal<'g>, b: Signal<'g>, format: Format) -> Signal<'g> {
-    let (a, b) = (Operand::unpack(a, format, "a"), Operand::unpack(b, format, "b"));
+pub fn div<'g>(a: Signal<'g>, b: Signal<'g>, domain: Domain) -> Signal<'g> {
+    let (a, b) = (Operand::unpack(a, domain, "a"), Operand::unpack(b, domain, "b"));
     let sign = (a.sign ^ b.sign).named("quotient_sign");
     let (a_exponent, dividend) = a.normalised();
     let (b_exponent, divisor) = b.normalised();
 
     // Two significands in [1, 2) have a quotient in (1/2, 2): one digit before the point, and as many behind it as
     // make significand and guard bit when the first is 0.
-    let precision = format.significand_bits();
+    let precision = domain.significand_bits();
     let mut remainder = dividend.extend(precision + 1);
     let mut digits = Vec::new();
     for index in 0..precision + 2 {
@@ -29,22 +29,23 @@ pub fn div<'g>(a: Signal<'g>, b: Signal<'g>, format: Format) -> Signal<'g> {
     let exponent = a_exponent
         .minus(b_exponent)
         .named("exponent_difference")
-        .offset(i64::from(format.bias()) - 1)
+        .offset(i64::from(domain.bias()) - 1)
         .plus_bit(at_least_one)
         .named("quotient_exponent");
 
     // A quotient of p-bit significands never has exactly p + 1 bits: its product with the divisor would have more
     // than p. So a normal result is never a tie, and only a subnormal one asks whether anything is left.
-    let sticky = if format.keeps_subnormals() { remainder.any() | last_digit } else { sign.graph().constant(1, 1) };
+    let sticky = if domain.keeps_subnormals() { remainder.any() | last_digit } else { sign.graph().constant(1, 1) };
     let unrounded = Unrounded {
         exponent,
         significand: normalised.drop_low(1).named("significand"),
         guard: normalised.bit(0).named("guard"),
         sticky: sticky.named("sticky"),
+        doubled: None,
     };
     let nan = a.is_nan() | b.is_nan() | (a.is_infinity() & b.is_infinity()) | (a.is_zero() & b.is_zero());
     let special = Special { nan, infinity: a.is_infinity() | b.is_zero(), zero: a.is_zero() | b.is_infinity() };
-    pack(format, sign, round(format, unrounded), special)
+    pack(domain, sign, round(domain, unrounded), special)
 }
 
 /// One digit of a quotient.

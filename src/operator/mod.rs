@@ -7,6 +7,7 @@ mod add;
 mod compare;
 mod convert;
 mod div;
+mod domain;
 mod halve;
 mod mul;
 mod parts;
@@ -15,6 +16,8 @@ mod root_exceeds;
 mod sqrt;
 mod square_excess;
 mod twin;
+
+pub use domain::{Domain, Values};
 
 use std::sync::Arc;
 
@@ -35,6 +38,11 @@ pub enum Operator {
     SubToOdd,
     /// a · b.
     Mul,
+    /// a · a.
+    Square,
+    /// a + b of operands that are not negative: less logic than [`Operator::Add`] for [`Values::Normal`], the same for
+    /// others.
+    AddMagnitudes,
     /// a / b.
     Div,
     /// 1 / a.
@@ -66,7 +74,7 @@ impl Operator {
     pub const fn operands(self) -> usize {
         match self {
             Self::SquareExcess { .. } => 4,
-            Self::Recip | Self::Sqrt | Self::Halve | Self::Convert { .. } => 1,
+            Self::Square | Self::Recip | Self::Sqrt | Self::Halve | Self::Convert { .. } => 1,
             _ => 2,
         }
     }
@@ -88,6 +96,8 @@ impl Operator {
             Self::AddToOdd => "add_to_odd",
             Self::SubToOdd => "sub_to_odd",
             Self::Mul => "mul",
+            Self::Square => "square",
+            Self::AddMagnitudes => "add_magnitudes",
             Self::Div => "div",
             Self::Recip => "recip",
             Self::Sqrt => "sqrt",
@@ -101,10 +111,11 @@ impl Operator {
     }
 
     /// The name of its module, as in `fp_add_e8f23`.
-    pub fn module_name(self, format: Format) -> String {
+    pub fn module_name(self, domain: impl Into<Domain>) -> String {
+        let domain = domain.into();
         match self {
-            Self::Convert { to } | Self::SquareExcess { to } => format!("fp_{}_{format}_to_{to}", self.name()),
-            _ => format!("fp_{}_{format}", self.name()),
+            Self::Convert { to } | Self::SquareExcess { to } => format!("fp_{}_{domain}_to_{to}", self.name()),
+            _ => format!("fp_{}_{domain}", self.name()),
         }
     }
 
@@ -115,6 +126,8 @@ impl Operator {
             Self::AddToOdd => "result = a + b, rounded to odd: what does not fit sets the last bit".to_owned(),
             Self::SubToOdd => "result = a - b, rounded to odd: what does not fit sets the last bit".to_owned(),
             Self::Mul => "result = a * b, rounded once".to_owned(),
+            Self::Square => "result = a * a, rounded once".to_owned(),
+            Self::AddMagnitudes => "result = a + b, neither of them negative, rounded once".to_owned(),
             Self::Div => "result = a / b, rounded once".to_owned(),
             Self::Recip => "result = 1 / a, rounded once".to_owned(),
             Self::Sqrt => "result = square root of a, rounded once".to_owned(),
@@ -131,31 +144,38 @@ impl Operator {
 /// The names of an operator's inputs, of which it has the first ones.
 pub const INPUTS: [&str; 4] = ["a", "b", "c", "d"];
 
-/// The operator as a combinational module: its [`INPUTS`], and the output `result`.
+/// The operator as a combinational module: its [`INPUTS`], and the output `result`. It is made for the values in
+/// `domain`: for every word of a format, or fewer.
 ///
 /// # Errors
 /// What the graph recorded.
-pub fn build(operator: Operator, format: Format) -> Result<Arc<Module>, Errors> {
-    let graph = Graph::new(operator.module_name(format));
+pub fn build(operator: Operator, domain: impl Into<Domain>) -> Result<Arc<Module>, Errors> {
+    let domain = domain.into();
+    let format = domain.format();
+    let graph = Graph::new(operator.module_name(domain));
     graph.about(operator.about());
     graph.about(about_format(format));
+    about_values(domain.values()).into_iter().for_each(|line| graph.about(line));
     let inputs: Vec<_> = INPUTS[..operator.operands()].iter().map(|name| graph.input(name, format.width())).collect();
     let [a, b, c, d] = [0, 1, 2, 3].map(|index| inputs[index.min(inputs.len() - 1)]);
     let result = match operator {
-        Operator::Add => add::add(a, b, format, false, Rounding::NearestEven),
-        Operator::Sub => add::add(a, b, format, true, Rounding::NearestEven),
-        Operator::AddToOdd => add::add(a, b, format, false, Rounding::Odd),
-        Operator::SubToOdd => add::add(a, b, format, true, Rounding::Odd),
-        Operator::Mul => mul::mul(a, b, format),
-        Operator::Div => div::div(a, b, format),
-        Operator::Recip => recip::recip(a, format),
-        Operator::Sqrt => sqrt::sqrt(a, format),
-        Operator::Halve => halve::halve(a, format),
-        Operator::Greater => compare::greater(a, b, format),
-        Operator::AtMost => compare::at_most(a, b, format),
-        Operator::RootExceeds => root_exceeds::root_exceeds(a, b, format),
-        Operator::SquareExcess { to } => square_excess::square_excess([a, b, c, d], format, to),
-        Operator::Convert { to } => convert::convert(a, format, to),
+        Operator::Add => add::add(a, b, domain, false, Rounding::NearestEven),
+        Operator::Sub => add::add(a, b, domain, true, Rounding::NearestEven),
+        Operator::AddToOdd => add::add(a, b, domain, false, Rounding::Odd),
+        Operator::SubToOdd => add::add(a, b, domain, true, Rounding::Odd),
+        Operator::Mul => mul::mul(a, b, domain),
+        Operator::Square => mul::squared(a, domain),
+        Operator::AddMagnitudes if domain.is_normal() => add::add_magnitudes(a, b, domain),
+        Operator::AddMagnitudes => add::add(a, b, domain, false, Rounding::NearestEven),
+        Operator::Div => div::div(a, b, domain),
+        Operator::Recip => recip::recip(a, domain),
+        Operator::Sqrt => sqrt::sqrt(a, domain),
+        Operator::Halve => halve::halve(a, domain),
+        Operator::Greater => compare::greater(a, b, domain),
+        Operator::AtMost => compare::at_most(a, b, domain),
+        Operator::RootExceeds => root_exceeds::root_exceeds(a, b, domain),
+        Operator::SquareExcess { to } => square_excess::square_excess([a, b, c, d], domain, to),
+        Operator::Convert { to } => convert::convert(a, domain, to),
     };
     graph.output("result", result);
     graph.finish()
@@ -167,12 +187,20 @@ pub fn build(operator: Operator, format: Format) -> Result<Arc<Module>, Errors> 
 /// What the graph recorded, or what the cut could not meet.
 pub fn pipelined(
     operator: Operator,
-    format: Format,
+    domain: impl Into<Domain>,
     model: &DelayModel,
     clock_mhz: f64,
 ) -> Result<Arc<Module>, Errors> {
-    let combinational = build(operator, format)?;
+    let combinational = build(operator, domain)?;
     cut(&combinational, model, clock_mhz)
+}
+
+fn about_values(values: Values) -> Option<&'static str> {
+    match values {
+        Values::Any => None,
+        Values::Finite => Some("operands are neither infinite nor NaN"),
+        Values::Normal => Some("operands and result are zero or normal, and nothing overflows"),
+    }
 }
 
 fn about_format(format: Format) -> String {

@@ -3,14 +3,14 @@
 //! RN(√a) > b exactly when a > (b + ½ulp(b))², or equal and b odd: the middle between b and the next number has one
 //! bit more than b, and its square is taken whole.
 
+use super::Domain;
 use super::parts::{Operand, Signed, leading_zeros, shift_left, square};
 use crate::hdl::Signal;
-use crate::number::Format;
 
 /// RN(√a) > b; false with a NaN or where a has no root, true where b is negative and a has one.
-pub fn root_exceeds<'g>(a: Signal<'g>, b: Signal<'g>, format: Format) -> Signal<'g> {
-    let (a, b) = (Operand::unpack(a, format, "a"), Operand::unpack(b, format, "b"));
-    let a_exceeds = finite_exceeds(&a, &b, format).named("finite_exceeds");
+pub fn root_exceeds<'g>(a: Signal<'g>, b: Signal<'g>, domain: Domain) -> Signal<'g> {
+    let (a, b) = (Operand::unpack(a, domain, "a"), Operand::unpack(b, domain, "b"));
+    let a_exceeds = finite_exceeds(&a, &b, domain).named("finite_exceeds");
 
     let no_root = (a.is_nan() | (a.sign & !a.is_zero())).named("no_root");
     let b_is_negative = (b.sign & !b.is_zero()).named("b_is_negative");
@@ -19,21 +19,21 @@ pub fn root_exceeds<'g>(a: Signal<'g>, b: Signal<'g>, format: Format) -> Signal<
 }
 
 /// The decision for finite positive a and finite b ≥ 0.
-fn finite_exceeds<'g>(a: &Operand<'g>, b: &Operand<'g>, format: Format) -> Signal<'g> {
+fn finite_exceeds<'g>(a: &Operand<'g>, b: &Operand<'g>, domain: Domain) -> Signal<'g> {
     let (a_exponent, a_significand) = a.normalised();
-    let Middle { exponent, significand: middle, certain } = Middle::above(b, format);
+    let Middle { exponent, significand: middle, certain } = Middle::above(b, domain);
     let square = square(middle).named("square");
     let at_least_two = square.msb().named("square_at_least_two");
     let normalised = at_least_two.select(square, square.low(square.width() - 1).append_zeros(1));
-    let precision = format.significand_bits();
+    let precision = domain.significand_bits();
     let high = normalised.high(precision).named("square_high");
 
     // How far a's exponent is above that of a square below 2.
-    let lead = a_exponent.minus(exponent.twice()).offset(i64::from(format.bias())).named("exponent_lead");
+    let lead = a_exponent.minus(exponent.twice()).offset(i64::from(domain.bias())).named("exponent_lead");
     let above = at_least_two.select(lead.at_least(2), lead.at_least(1)).named("exponent_is_above");
     let level = at_least_two.select(lead.is(1), lead.is(0)).named("exponent_is_level");
     let mut significand_above = a_significand.greater_than(high).named("significand_is_above");
-    if !subnormal_squares_vanish(format) {
+    if !subnormal_squares_vanish(domain) {
         // The square of an odd number is odd, so a tie needs a middle that ends in zeros: that of a subnormal.
         let rest = normalised.low(normalised.width() - precision);
         let tie = a_significand.equals(high) & rest.is_zero();
@@ -43,8 +43,8 @@ fn finite_exceeds<'g>(a: &Operand<'g>, b: &Operand<'g>, format: Format) -> Signa
 }
 
 /// Whether the square of every middle below the smallest normal number is less than the smallest positive number.
-fn subnormal_squares_vanish(format: Format) -> bool {
-    !format.keeps_subnormals() || format.min_exponent() <= -(format.fraction_bits() as i32)
+fn subnormal_squares_vanish(domain: Domain) -> bool {
+    !domain.keeps_subnormals() || domain.min_exponent() <= -(domain.fraction_bits() as i32)
 }
 
 /// The middle between a number and the next one up: biased exponent, and significand with its leading bit set.
@@ -56,10 +56,10 @@ struct Middle<'g> {
 }
 
 impl<'g> Middle<'g> {
-    fn above(b: &Operand<'g>, format: Format) -> Self {
+    fn above(b: &Operand<'g>, domain: Domain) -> Self {
         let one = b.fraction.graph().constant(1, 1);
-        let largest = i64::from(format.special_exponent()) - 1;
-        if subnormal_squares_vanish(format) {
+        let largest = i64::from(domain.special_exponent()) - 1;
+        if subnormal_squares_vanish(domain) {
             let significand = Signal::join(&[one, b.fraction, one]).named("middle");
             let exponent = Signed::unsigned(b.exponent, 1, largest);
             return Self { exponent, significand, certain: (!b.hidden).named("b_is_tiny") };
@@ -68,7 +68,7 @@ impl<'g> Middle<'g> {
         let (zeros, _) = leading_zeros(unshifted, "middle");
         let zeros = zeros.named("middle_leading_zeros");
         let exponent = Signed::unsigned(b.effective_exponent(), 1, largest)
-            .minus(Signed::unsigned(zeros, 0, i64::from(format.significand_bits())))
+            .minus(Signed::unsigned(zeros, 0, i64::from(domain.significand_bits())))
             .named("middle_exponent");
         Self {
             exponent,

@@ -1,21 +1,21 @@
 //! Square root, by restoring digit recurrence: each step tries a 1 as the root's next digit.
 
+use super::Domain;
 use super::parts::{Operand, Special, Unrounded, pack, round};
 use crate::hdl::Signal;
-use crate::number::Format;
 
 /// √a. √−0 is −0; of any other negative number it is NaN.
-pub fn sqrt(a: Signal<'_>, format: Format) -> Signal<'_> {
+pub fn sqrt(a: Signal<'_>, domain: Domain) -> Signal<'_> {
     let graph = a.graph();
-    let a = Operand::unpack(a, format, "a");
+    let a = Operand::unpack(a, domain, "a");
     let (a_exponent, significand) = a.normalised();
 
     // The bias is odd, so an even biased exponent stands for an odd one, of which one goes into the radicand.
-    let precision = format.significand_bits();
+    let precision = domain.significand_bits();
     let exponent_is_odd = (!a_exponent.bits(1)).named("exponent_is_odd");
     let radicand = exponent_is_odd.select(significand.append_zeros(1), significand.extend(precision + 1));
     let radicand = radicand.named("radicand");
-    let exponent = a_exponent.offset(i64::from(format.bias())).half().named("root_exponent");
+    let exponent = a_exponent.offset(i64::from(domain.bias())).half().named("root_exponent");
 
     let (root, remainder) = root(radicand, precision + 1);
     // A root of p + 1 bits exactly would need a radicand of more than 2p bits, so a normal result is never a tie,
@@ -26,10 +26,11 @@ pub fn sqrt(a: Signal<'_>, format: Format) -> Signal<'_> {
         significand: root.drop_low(1).named("significand"),
         guard: root.bit(0).named("guard"),
         sticky,
+        doubled: None,
     };
     let negative = a.sign & !a.is_zero();
     let special = Special { nan: a.is_nan() | negative, infinity: a.is_infinity(), zero: a.is_zero() };
-    pack(format, a.sign, round(format, unrounded), special)
+    pack(domain, a.sign, round(domain, unrounded), special)
 }
 
 /// The first `count` digits of the root of `radicand`, which has two bits before the point and is at least 1; and

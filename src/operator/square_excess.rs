@@ -1,18 +1,19 @@
 //! a² − (b² + c² + d²) in a window of exact squares, or NaN where that leaves a doubt.
 
+use super::Domain;
 use super::parts::{
     Operand, Signed, Special, Unrounded, leading_zeros, pack, round, shift_left, shift_right_sticky, square,
 };
 use crate::hdl::Signal;
 use crate::number::{Format, WINDOW_BITS, WINDOW_INEXACT_BITS, WINDOW_LEADING_BITS, WINDOW_LOST_BITS};
 
-/// The excess of `a` over the others, which are in `format`, in `to`. `format` flushes subnormals.
-pub fn square_excess<'g>(operands: [Signal<'g>; 4], format: Format, to: Format) -> Signal<'g> {
+/// The excess of `a` over the others, which are in `domain`, in `to`. Their format flushes subnormals.
+pub fn square_excess<'g>(operands: [Signal<'g>; 4], domain: Domain, to: Format) -> Signal<'g> {
     let mut names = ["a", "b", "c", "d"].into_iter();
-    let operands = operands.map(|word| Operand::unpack(word, format, names.next().unwrap_or("a")));
+    let operands = operands.map(|word| Operand::unpack(word, domain, names.next().unwrap_or("a")));
     let [a, b, c, d] = operands.map(|operand| operand.exponent);
     let top = larger(larger(a, b).named("top_ab"), larger(c, d).named("top_cd")).named("top_exponent");
-    let [a, b, c, d] = operands.map(|operand| Windowed::new(&operand, top, format));
+    let [a, b, c, d] = operands.map(|operand| Windowed::new(&operand, top, domain));
 
     let width = WINDOW_BITS + 3;
     let others = (b.kept.extend(width) + c.kept.extend(width)).named("sum_bc") + d.kept.extend(width);
@@ -40,9 +41,9 @@ pub fn square_excess<'g>(operands: [Signal<'g>; 4], format: Format, to: Format) 
     let rest = magnitude.width() - to.significand_bits() - 1;
     // The window's last place stands for 2^(2 top + 2 - WINDOW_BITS), top without its bias.
     let leading = i64::from(magnitude.width()) - 1 + 2 - i64::from(WINDOW_BITS);
-    let exponent = Signed::unsigned(top, 1, i64::from(format.special_exponent()) - 1)
+    let exponent = Signed::unsigned(top, 1, i64::from(domain.special_exponent()) - 1)
         .twice()
-        .offset(leading - 2 * i64::from(format.bias()) + i64::from(to.bias()))
+        .offset(leading - 2 * i64::from(domain.bias()) + i64::from(to.bias()))
         .minus(Signed::unsigned(zeros, 0, i64::from(magnitude.width()) - 1))
         .named("excess_exponent");
     let unrounded = Unrounded {
@@ -50,8 +51,10 @@ pub fn square_excess<'g>(operands: [Signal<'g>; 4], format: Format, to: Format) 
         significand: normalised.high(to.significand_bits()).named("significand"),
         guard: normalised.bit(rest).named("guard"),
         sticky: normalised.low(rest).any().named("sticky"),
+        doubled: None,
     };
     let never = top.graph().constant(1, 0);
+    let to = Domain::from(to);
     pack(to, negative, round(to, unrounded), Special { nan, infinity: never, zero: is_zero })
 }
 
@@ -70,11 +73,11 @@ struct Windowed<'g> {
 }
 
 impl<'g> Windowed<'g> {
-    fn new(operand: &Operand<'g>, top: Signal<'g>, format: Format) -> Self {
+    fn new(operand: &Operand<'g>, top: Signal<'g>, domain: Domain) -> Self {
         let present = !operand.is_zero();
         let name = |signal: Signal<'g>, what: &str| signal.named(&format!("{}_{what}", operand.prefix()));
         let square = name(square(operand.significand()).gate(present), "square");
-        let cut = 2 * format.significand_bits() - WINDOW_BITS;
+        let cut = 2 * domain.significand_bits() - WINDOW_BITS;
         // A square's exponent is twice its root's.
         let distance = name((top - operand.exponent).append_zeros(1), "distance");
         let (kept, shifted_out) =

@@ -4,9 +4,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::kernel::{Kernel, Source};
+use super::range::{Ranges, Unit};
 use crate::hdl::{Errors, Module};
-use crate::number::Format;
-use crate::operator::Operator;
 
 /// How many levels of glue may stand one behind the other before a register comes between: a level is a two-way
 /// choice or a gate, and operators' outputs and inputs are registers.
@@ -15,7 +14,9 @@ const LONGEST_GLUE: u32 = 3;
 /// A time table of a kernel. Cycle 0 is that of the inputs.
 pub(super) struct Schedule {
     /// The module of each operator in use.
-    pub modules: BTreeMap<(Operator, Format), Arc<Module>>,
+    pub modules: BTreeMap<Unit, Arc<Module>>,
+    /// The unit of each value that is an operator's.
+    pub units: Vec<Option<Unit>>,
     /// When each value's operands meet. Nothing for what is dead, and for constants, which are there always.
     pub start: Vec<Option<u32>>,
     /// When each value is there; nothing as above.
@@ -28,11 +29,16 @@ impl Schedule {
     /// Times for `kernel` with operators made by `pipelined`.
     pub fn new(
         kernel: &Kernel,
-        mut pipelined: impl FnMut(Operator, Format) -> Result<Arc<Module>, Errors>,
+        mut pipelined: impl FnMut(Unit) -> Result<Arc<Module>, Errors>,
     ) -> Result<Self, Errors> {
         let count = kernel.values.len();
-        let mut this =
-            Self { modules: BTreeMap::new(), start: vec![None; count], ready: vec![None; count], latency: 0 };
+        let mut this = Self {
+            modules: BTreeMap::new(),
+            units: Ranges::of(kernel).units,
+            start: vec![None; count],
+            ready: vec![None; count],
+            latency: 0,
+        };
         // Levels of glue between the last register and the value.
         let mut glue = vec![0_u32; count];
         let live = kernel.live();
@@ -45,11 +51,12 @@ impl Schedule {
                 Source::Constant(_) => continue,
                 Source::Input(_) => (0, 0),
                 Source::Operator(operator, format) => {
-                    let module = match this.modules.get(&(operator, format)) {
+                    let unit = this.units[index].unwrap_or((operator, format.into()));
+                    let module = match this.modules.get(&unit) {
                         Some(module) => module,
                         None => {
-                            let module = pipelined(operator, format)?;
-                            this.modules.entry((operator, format)).or_insert(module)
+                            let module = pipelined(unit)?;
+                            this.modules.entry(unit).or_insert(module)
                         }
                     };
                     // An operator's inputs come straight from registers.

@@ -15,7 +15,7 @@ impl Kernel {
     /// # Errors
     /// What a graph recorded, or a clock no operator can be cut for.
     pub fn pipeline(&self, model: &DelayModel, clock_mhz: f64) -> Result<Arc<Module>, Errors> {
-        let schedule = Schedule::new(self, |operator, format| pipelined(operator, format, model, clock_mhz))?;
+        let schedule = Schedule::new(self, |(operator, domain)| pipelined(operator, domain, model, clock_mhz))?;
         let graph = Graph::new(self.name.as_str());
         self.about.iter().for_each(|line| graph.about(line.as_str()));
         graph.about(format!("{} cycles from inputs to outputs, new inputs in every cycle", schedule.latency));
@@ -72,7 +72,8 @@ impl<'g> Emitter<'_, 'g> {
         let name = self.names.signal(id).map(str::to_owned);
         let signal = match (value.source, operands.as_slice()) {
             (Source::Operator(operator, format), _) => {
-                let module = &self.schedule.modules[&(operator, format)];
+                let unit = self.schedule.units[id.index()].unwrap_or((operator, format.into()));
+                let module = &self.schedule.modules[&unit];
                 let ports: Vec<_> = INPUTS.into_iter().zip(operands).collect();
                 let instance = self.names.instance(id, operator);
                 self.graph.instance(&instance, module, &ports).output("result")

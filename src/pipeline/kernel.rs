@@ -63,6 +63,15 @@ pub(super) struct Value {
     pub name: Option<String>,
 }
 
+/// That an input is neither infinite nor NaN while a condition holds.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Promise {
+    pub value: ValueId,
+    pub condition: ValueId,
+    /// And not below zero.
+    pub not_negative: bool,
+}
+
 /// What a kernel computes: operators and the values between them. Made by [`super::trace`].
 #[derive(Clone, Debug)]
 pub struct Kernel {
@@ -71,6 +80,7 @@ pub struct Kernel {
     pub(super) values: Vec<Value>,
     pub(super) inputs: Vec<(String, ValueId)>,
     pub(super) outputs: Vec<(String, ValueId)>,
+    pub(super) promises: Vec<Promise>,
     pub(super) errors: Vec<Error>,
     known: HashMap<(Source, Vec<ValueId>, Kind), ValueId>,
 }
@@ -83,6 +93,7 @@ impl Kernel {
             values: Vec::new(),
             inputs: Vec::new(),
             outputs: Vec::new(),
+            promises: Vec::new(),
             errors: Vec::new(),
             known: HashMap::new(),
         }
@@ -150,6 +161,7 @@ impl Kernel {
             (Operator::Mul, &[a, half] | &[half, a]) if self.is_number(half, 0.5) => {
                 return self.operator(Operator::Halve, &[a]);
             }
+            (Operator::Mul, &[a, b]) if a == b => return self.operator(Operator::Square, &[a]),
             (Operator::Div, &[one, a]) if self.is_number(one, 1.0) => return self.operator(Operator::Recip, &[a]),
             _ => {}
         }
@@ -209,6 +221,13 @@ impl Kernel {
             }
             _ => self.shared(source, Kind::Truth, vec![a, b]),
         }
+    }
+
+    /// Why an operator of this kernel needs logic for infinities, NaN, subnormals, overflow or underflow: the first one
+    /// that does, and what it may meet. Nothing where none does: the format is then wide enough for every input that
+    /// was promised to be finite.
+    pub fn not_normal(&self) -> Option<String> {
+        super::range::Ranges::of(self).short
     }
 
     /// Which values some output needs.

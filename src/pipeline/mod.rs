@@ -3,8 +3,10 @@
 
 mod balance;
 mod emit;
+mod guard;
 mod kernel;
 mod names;
+mod range;
 mod report;
 mod sphere;
 mod trace;

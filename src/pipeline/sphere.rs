@@ -28,8 +28,9 @@ pub struct Settings {
 /// The module `sphere_kernel`: a pair on inputs `x1 y1 z1 r1 x2 y2 z2 r2` with `valid`; `hit`, `grazing` and the
 /// fields asked for (`pos_x pos_y pos_z`, `normal_x normal_y normal_z`, `depth`), [`Module::latency`] cycles later.
 ///
-/// `valid` is a truth value of the kernel like any other, and not reset. Without a hit all outputs are zero. The kernel
-/// of exact squares has an output `unsettled` too.
+/// `valid` is a truth value of the kernel like any other, and not reset. It may be set only if the pair's words are
+/// finite and its radii not below zero. Without it, or without a hit, all outputs are zero. The kernel of exact squares
+/// has an output `unsettled` too, which may be set without a hit.
 ///
 /// # Errors
 /// What a graph recorded, or a clock no operator can be cut for.
@@ -48,6 +49,8 @@ fn read(ports: &Ports, settings: &Settings) {
     ports.about(format!("computed in {computed_in}, words in {record}"));
     let [x1, y1, z1, r1, x2, y2, z2, r2] = PAIR_FIELDS.map(|name| ports.input(name, record));
     let valid = ports.input_bit("valid");
+    ports.promise_finite(valid, &[x1, y1, z1, x2, y2, z2], false);
+    ports.promise_finite(valid, &[r1, r2], true);
     let pair = Pair { p1: Vector3::new(x1, y1, z1), r1, p2: Vector3::new(x2, y2, z2), r2 };
     let contact = match arithmetic {
         Arithmetic::Rounded(format) => contact(pair, valid, format, record, fields),

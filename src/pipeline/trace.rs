@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::panic::Location;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::kernel::{Kernel, Kind, ValueId};
+use super::kernel::{Kernel, Kind, Promise, ValueId};
 use super::wire::{Bit, Wire};
 use crate::hdl::Errors;
 use crate::number::Format;
@@ -111,6 +111,18 @@ impl Ports {
     #[track_caller]
     pub fn input_bit(&self, name: &str) -> Bit {
         Bit(input(name, Kind::Truth, Location::caller()))
+    }
+
+    /// Promises that `inputs` are neither infinite nor NaN while `condition` holds, and not below zero either where
+    /// `not_negative`. The promise is used only if no output depends on such an input while `condition` does not hold.
+    #[track_caller]
+    pub fn promise_finite(&self, condition: Bit, inputs: &[Wire], not_negative: bool) {
+        for input in inputs {
+            make("promise", &[condition.0, input.0], Location::caller(), |kernel, ids| {
+                kernel.promises.push(Promise { value: ids[1], condition: ids[0], not_negative });
+                Ok(ids[1])
+            });
+        }
     }
 
     /// An output that carries a number.

@@ -1,6 +1,7 @@
 //! Cuts a combinational module into pipeline stages for a clock: every operation gets a stage ([`place`]), and every
 //! value waits in registers until the last stage that needs it.
 
+mod block;
 mod place;
 
 use std::collections::HashMap;
@@ -32,7 +33,8 @@ pub struct Timing {
 /// Inputs are expected straight from registers; every output ends in one, and all of them appear
 /// [`Module::latency`] cycles after their inputs. Operations are not divided: one that takes longer than the period
 /// gets a stage of its own, and [`Module::timing`] says what clock remains. Constants, and what is computed from
-/// constants and parameters alone, are never delayed.
+/// constants and parameters alone, are never delayed. A product that fits a multiplier block with registers inside
+/// becomes an instance of one.
 ///
 /// # Errors
 /// A clock that is not a positive number; anything in `module` that is clocked, and instances.
@@ -46,7 +48,7 @@ pub fn cut(module: &Module, model: &DelayModel, clock_mhz: f64) -> Result<Arc<Mo
     }
     let mut plan = Plan::as_soon_as_possible(module, model, model.budget(clock_mhz));
     plan.save_registers();
-    let mut pipeline = super::finish::finish(registered(module, &plan, place))?;
+    let mut pipeline = super::finish::finish(registered(module, &plan, model, place)?)?;
     pipeline.latency = plan.stages;
     let slowest = plan.slowest();
     pipeline.timing = Some(Timing {
@@ -79,7 +81,12 @@ fn describe(node: &Node) -> String {
 }
 
 /// The module with stages noted and registers between them.
-fn registered(module: &Module, plan: &Plan<'_>, place: &'static Location<'static>) -> Inner {
+fn registered(
+    module: &Module,
+    plan: &Plan<'_>,
+    model: &DelayModel,
+    place: &'static Location<'static>,
+) -> Result<Inner, Errors> {
     let mut inner = Graph::new(module.name.clone()).inner.into_inner();
     inner.about.clone_from(&module.about);
     inner.parameters.clone_from(&module.parameters);
@@ -100,22 +107,26 @@ fn registered(module: &Module, plan: &Plan<'_>, place: &'static Location<'static
         })
     };
     for id in module.ids() {
-        let stage = plan.stage[id.index()];
+        let (stage, begin) = (plan.stage[id.index()], plan.begin(id));
         let mut operands = std::mem::take(&mut inner.nodes[id.index()].operands);
         for operand in &mut operands {
-            *operand = delayed(&mut inner.nodes, *operand, stage);
+            *operand = delayed(&mut inner.nodes, *operand, begin);
+        }
+        inner.nodes[id.index()].operands = operands;
+        if stage != begin {
+            block::instantiate(&mut inner, id, model)?;
         }
         let node = &mut inner.nodes[id.index()];
-        node.operands = operands;
         node.stage = (!matches!(node.op, Op::Constant(_))).then_some(stage);
     }
     for port in inner.ports.iter_mut().filter(|port| port.output) {
         port.node = port.node.map(|id| delayed(&mut inner.nodes, id, plan.stages));
     }
     inner.places = vec![place; inner.nodes.len()];
-    inner
+    Ok(inner)
 }
 
+/// Those between stages; those inside multiplier blocks are the blocks' own.
 fn register_bits(module: &Module) -> u64 {
     let bits = |node: &Node| match node.op {
         Op::Delay { cycles } => u64::from(cycles) * u64::from(node.width),

@@ -22,6 +22,8 @@ pub(super) struct Plan<'a> {
     module: &'a Module,
     budget: f64,
     delay: Vec<f64>,
+    /// Register ranks inside an operation: it takes its operands that many stages before the one it stands in.
+    pub ranks: Vec<u32>,
     /// Who uses a value, each once.
     users: Vec<Vec<NodeId>>,
     /// Whether a value drives an output.
@@ -60,6 +62,7 @@ impl<'a> Plan<'a> {
             module,
             budget: budget + ROUNDING,
             delay: module.nodes.iter().map(|node| model.delay(module, node)).collect(),
+            ranks: module.nodes.iter().map(|node| model.ranks(module, node)).collect(),
             users: vec![Vec::new(); count],
             is_output: vec![false; count],
             bits: Vec::with_capacity(count),
@@ -114,26 +117,37 @@ impl<'a> Plan<'a> {
         self.module.node(id).operands.iter().copied().filter(|operand| !self.invariant[operand.index()])
     }
 
-    /// The first stage in which all operands are there.
+    /// The stage in which an operation takes its operands.
+    pub fn begin(&self, id: NodeId) -> u32 {
+        self.stage[id.index()].saturating_sub(self.ranks[id.index()])
+    }
+
+    /// The first stage in which it can stand, of all operands.
     fn earliest(&self, id: NodeId) -> u32 {
-        self.operands(id).map(|operand| self.stage[operand.index()]).max().unwrap_or(0)
+        let there = self.operands(id).map(|operand| self.stage[operand.index()]).max();
+        there.unwrap_or(0) + self.ranks[id.index()]
     }
 
     /// The last stage that still serves every user.
     fn latest(&self, id: NodeId) -> u32 {
-        let users = self.users[id.index()].iter().map(|user| self.stage[user.index()]);
+        let users = self.users[id.index()].iter().map(|user| self.begin(*user));
         users.min().unwrap_or(self.stages - 1)
     }
 
-    /// When the operands have come, if the operation stands in `stage`: at its beginning from registers.
+    /// When the operands have come, if the operation stands in `stage`: at its beginning from registers, those inside
+    /// an operation among them.
     fn arrival_at(&self, id: NodeId, stage: u32) -> f64 {
+        if self.ranks[id.index()] > 0 {
+            return 0.0;
+        }
         let here = self.operands(id).filter(|operand| self.stage[operand.index()] == stage);
         here.map(|operand| self.arrival[operand.index()]).fold(0.0, f64::max)
     }
 
     /// What follows in the same stage, if the operation stands in `stage`.
     fn tail_at(&self, id: NodeId, stage: u32) -> f64 {
-        let here = self.users[id.index()].iter().filter(|user| self.stage[user.index()] == stage);
+        let ends_here = |user: &&NodeId| self.stage[user.index()] == stage && self.ranks[user.index()] == 0;
+        let here = self.users[id.index()].iter().filter(ends_here);
         here.map(|user| self.delay[user.index()] + self.tail[user.index()]).fold(0.0, f64::max)
     }
 
@@ -143,7 +157,7 @@ impl<'a> Plan<'a> {
             return self.stages;
         }
         let users = self.users[id.index()].iter().filter(|user| Some(**user) != but_for);
-        users.map(|user| self.stage[user.index()]).max().unwrap_or(0)
+        users.map(|user| self.begin(*user)).max().unwrap_or(0)
     }
 
     /// Bits of registers between stages.
@@ -236,7 +250,8 @@ impl<'a> Plan<'a> {
             .collect();
         let bits = |stage: u32| -> u64 {
             let held = self.bits[index] * u64::from(until.saturating_sub(stage));
-            held + others.iter().map(|&(bits, other)| bits * u64::from(other.max(stage))).sum::<u64>()
+            let begin = stage - self.ranks[index];
+            held + others.iter().map(|&(bits, other)| bits * u64::from(other.max(begin))).sum::<u64>()
         };
         let possible = |stage: &u32| {
             let (before, behind) = (self.arrival_at(id, *stage), self.tail_at(id, *stage));
@@ -259,8 +274,7 @@ impl<'a> Plan<'a> {
             return;
         }
         let own = self.stage[id.index()];
-        let whole =
-            users.iter().filter(|user| !is_field(user)).map(|user| self.stage[user.index()]).max().unwrap_or(own);
+        let whole = users.iter().filter(|user| !is_field(user)).map(|user| self.begin(*user)).max().unwrap_or(own);
         let whole = if self.is_output[id.index()] { self.stages } else { whole };
         // Where a field goes if the value is held until stage `until`.
         let target = |field: NodeId, until: u32| {
@@ -302,7 +316,9 @@ impl<'a> Plan<'a> {
             if self.delay[id.index()] > 0.0 || node.name.is_some() && node.op != Op::Input {
                 slowest.path.push(id);
             }
-            let latest = self.operands(id).filter(|operand| self.stage[operand.index()] == slowest.stage);
+            let latest = self
+                .operands(id)
+                .filter(|operand| self.ranks[id.index()] == 0 && self.stage[operand.index()] == slowest.stage);
             end = latest.max_by(|a, b| self.arrival[a.index()].total_cmp(&self.arrival[b.index()]));
         }
         slowest.path.reverse();

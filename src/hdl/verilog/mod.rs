@@ -1,8 +1,10 @@
 //! Verilog-2005 that a hardware engineer enjoys reading: the generator's names, stage banners, one module a file,
 //! every operand sized. Clean under `-Wall` without pragmas, since widths always match.
 
+mod delay;
 mod expression;
 mod names;
+mod primitive;
 mod print;
 mod sections;
 mod unused;

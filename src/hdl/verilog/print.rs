@@ -4,6 +4,7 @@ use super::super::module::{Module, NodeId, Op};
 use super::Style;
 use super::expression::{Expressions, range};
 use super::names::Names;
+use super::primitive;
 use super::sections::Sections;
 use super::unused::unused;
 
@@ -17,9 +18,11 @@ pub(super) fn print(module: &Module, style: &Style) -> String {
         out += &format!("\n  // Resets all that is below.\n  wire {};\n", style.reset_port());
     }
     let mut sections = Sections::new(module, style, &expressions);
-    out += &sections.body();
-    out += &assignments(module, style, &names, &expressions);
-    out += &unused(module, &names);
+    let body = sections.body() + &assignments(module, style, &names, &expressions) + &unused(module, &names);
+    out += &match module.primitive {
+        Some(primitive) => primitive::either(primitive, module, &body),
+        None => body,
+    };
     out += "\nendmodule\n\n`default_nettype wire\n";
     out
 }

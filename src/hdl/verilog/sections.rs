@@ -2,9 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use super::super::module::{Instance, InstanceCount, LONGEST_REGISTER_DELAY, Memory, Module, NodeId, Op};
+use super::super::module::{Instance, InstanceCount, Memory, Module, NodeId, Op};
 use super::super::state::address_width;
 use super::Style;
+use super::delay::DelayKind;
 use super::expression::{Expressions, constant, range};
 use super::names::stage;
 use super::print::is_register;
@@ -125,8 +126,10 @@ impl<'a> Sections<'a> {
         let node = self.module.node(id);
         let Some(name) = &self.text.names.declared[id.index()] else { return String::new() };
         let mut out = String::new();
-        if let Some(depth) = delay_line(&node.op) {
-            out += &ram(&format!("{name}_line"), depth, node.width);
+        match DelayKind::of(node) {
+            Some(DelayKind::Memory(depth)) => out += &ram(&format!("{name}_line"), depth, node.width),
+            Some(DelayKind::Shift(waiting)) => out += &format!("  reg {}{name}_line;\n", range(waiting * node.width)),
+            Some(DelayKind::Register) | None => {}
         }
         if !self.text.names.is_port[id.index()] {
             out += &format!("  reg {}{name};\n", range(node.width));
@@ -160,13 +163,7 @@ impl<'a> Sections<'a> {
             let Some(name) = &self.text.names.declared[id.index()] else { continue };
             let operand = |position: usize| self.text.value(node.operands[position]);
             match &node.op {
-                Op::Delay { .. } => match delay_line(&node.op) {
-                    Some(depth) => {
-                        data += &format!("    {name}_line[delay_{depth}] <= {};\n", operand(0));
-                        data += &format!("    {name} <= {name}_line[delay_{depth}_next];\n");
-                    }
-                    None => data += &format!("    {name} <= {};\n", operand(0)),
-                },
+                Op::Delay { .. } => data += &DelayKind::clocked(node, name, &operand(0)),
                 Op::MemoryRead { memory } => {
                     data += &format!("    {name} <= {}[{}];\n", self.module.memories[*memory].name, operand(0));
                 }
@@ -221,7 +218,7 @@ impl<'a> Sections<'a> {
 
     /// One pointer for all delay lines of a depth: the oldest word is read one place ahead of where the newest goes.
     fn delay_pointers(&self) -> String {
-        let depths: BTreeSet<u32> = self.module.nodes.iter().filter_map(|node| delay_line(&node.op)).collect();
+        let depths: BTreeSet<u32> = self.module.nodes.iter().filter_map(DelayKind::memory_depth).collect();
         let mut out = String::new();
         for depth in depths {
             let width = address_width(depth);
@@ -389,14 +386,6 @@ fn replace_copies(list: &str, copy: &str) -> String {
         }
     }
     out
-}
-
-/// The depth of the memory behind a delay, where it is one.
-fn delay_line(op: &Op) -> Option<u32> {
-    match op {
-        Op::Delay { cycles } if *cycles > LONGEST_REGISTER_DELAY => Some(*cycles),
-        _ => None,
-    }
 }
 
 fn memory_declaration(memory: &Memory) -> String {

@@ -1,6 +1,7 @@
 //! What operators are put together from: operands taken apart, shifters, counters, products, rounding.
 
 mod leading_zeros;
+mod normalise;
 mod operand;
 mod product;
 mod round;
@@ -8,6 +9,7 @@ mod shift;
 mod signed;
 
 pub use leading_zeros::leading_zeros;
+pub use normalise::normalise;
 pub use operand::Operand;
 pub use product::{product, square};
 pub use round::{Rounded, Rounding, Special, Unrounded, pack, round, round_so};

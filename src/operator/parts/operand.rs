@@ -2,13 +2,13 @@
 
 use super::{Signed, leading_zeros, shift_left};
 use crate::hdl::Signal;
-use crate::number::Format;
+use crate::operator::Domain;
 
 /// The fields of a floating-point word, with names that begin with the operand's.
 #[derive(Clone, Copy)]
 pub struct Operand<'g> {
     prefix: &'static str,
-    format: Format,
+    domain: Domain,
     /// The sign bit.
     pub sign: Signal<'g>,
     /// The biased exponent as it stands in the word.
@@ -20,14 +20,14 @@ pub struct Operand<'g> {
 }
 
 impl<'g> Operand<'g> {
-    /// Takes `word`, which is in `format`, apart.
+    /// Takes `word` apart.
     #[track_caller]
-    pub fn unpack(word: Signal<'g>, format: Format, prefix: &'static str) -> Self {
-        let fraction_bits = format.fraction_bits();
-        let exponent = word.slice(fraction_bits, format.exponent_bits()).named(&format!("{prefix}_exponent"));
+    pub fn unpack(word: Signal<'g>, domain: Domain, prefix: &'static str) -> Self {
+        let fraction_bits = domain.fraction_bits();
+        let exponent = word.slice(fraction_bits, domain.exponent_bits()).named(&format!("{prefix}_exponent"));
         Self {
             prefix,
-            format,
+            domain,
             sign: word.msb().named(&format!("{prefix}_sign")),
             exponent,
             fraction: word.low(fraction_bits).named(&format!("{prefix}_fraction")),
@@ -53,7 +53,7 @@ impl<'g> Operand<'g> {
     /// One bit: reads as zero. Where subnormals are flushed they do.
     #[track_caller]
     pub fn is_zero(&self) -> Signal<'g> {
-        let zero = if self.format.keeps_subnormals() { !self.hidden & self.fraction.is_zero() } else { !self.hidden };
+        let zero = if self.domain.keeps_subnormals() { !self.hidden & self.fraction.is_zero() } else { !self.hidden };
         self.name(zero, "is_zero")
     }
 
@@ -72,6 +72,9 @@ impl<'g> Operand<'g> {
     /// One bit: an infinity or a NaN.
     #[track_caller]
     pub fn is_special(&self) -> Signal<'g> {
+        if self.domain.is_finite() {
+            return self.sign.same(0);
+        }
         self.name(self.exponent.all(), "is_special")
     }
 
@@ -79,15 +82,24 @@ impl<'g> Operand<'g> {
     /// of what reads as zero is of no use.
     #[track_caller]
     pub fn significand(&self) -> Signal<'g> {
-        let kept = self.format.keeps_subnormals();
+        let kept = self.domain.keeps_subnormals();
         let leading = if kept { self.hidden } else { self.hidden.same(1) };
         self.name(leading.concat(self.fraction), "significand")
+    }
+
+    /// As [`Operand::significand`], but where operands are zero or normal that of zero is zero.
+    #[track_caller]
+    pub fn true_significand(&self) -> Signal<'g> {
+        if self.domain.is_normal() {
+            return self.name(self.hidden.concat(self.fraction), "significand");
+        }
+        self.significand()
     }
 
     /// The biased exponent that goes with [`Operand::significand`]: that of subnormals is 1.
     #[track_caller]
     pub fn effective_exponent(&self) -> Signal<'g> {
-        if !self.format.keeps_subnormals() {
+        if !self.domain.keeps_subnormals() {
             return self.exponent;
         }
         let low = self.exponent.bit(0) | !self.hidden;
@@ -98,15 +110,15 @@ impl<'g> Operand<'g> {
     /// is neither zero nor special.
     #[track_caller]
     pub fn normalised(&self) -> (Signed<'g>, Signal<'g>) {
-        let largest = i64::from(self.format.special_exponent()) - 1;
+        let largest = i64::from(self.domain.special_exponent()) - 1;
         let unshifted = self.significand();
-        if !self.format.keeps_subnormals() {
+        if !self.domain.keeps_subnormals() {
             return (Signed::unsigned(self.exponent, 1, largest), unshifted);
         }
         let (zeros, _) = leading_zeros(unshifted, &format!("{}_significand", self.prefix));
         let zeros = self.name(zeros, "leading_zeros");
         let significand = self.name(shift_left(unshifted, zeros, &format!("{}_normalise", self.prefix)), "normalised");
-        let most = i64::from(self.format.fraction_bits());
+        let most = i64::from(self.domain.fraction_bits());
         let exponent = Signed::unsigned(self.effective_exponent(), 1, largest)
             .minus(Signed::unsigned(zeros, 0, most))
             .with_range(1 - most, largest)

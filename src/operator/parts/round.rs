@@ -2,7 +2,7 @@
 
 use super::{Signed, shift_right_sticky};
 use crate::hdl::Signal;
-use crate::number::Format;
+use crate::operator::Domain;
 
 /// A result before rounding: significand.guard sticky · 2^exponent, with the leading bit of the significand set.
 #[derive(Clone, Copy)]
@@ -15,6 +15,8 @@ pub struct Unrounded<'g> {
     pub guard: Signal<'g>,
     /// Whether anything is set below that one.
     pub sticky: Signal<'g>,
+    /// One bit: the exponent is one more than said, which the adder that rounds can see to.
+    pub doubled: Option<Signal<'g>>,
 }
 
 /// A magnitude after rounding.
@@ -82,23 +84,53 @@ fn nearest_even<'g>(exponent: Signal<'g>, fraction: Signal<'g>, guard: Signal<'g
     (truncated + rounds_up(fraction, guard, sticky).extend(truncated.width())).named("rounded")
 }
 
-/// Rounds to nearest, with gradual underflow or flushing as the format has it. What the exponent's range excludes costs nothing.
+/// [`nearest_even`] for a result that stays inside the range: the adder that rounds also adds `doubled` to the exponent.
 #[track_caller]
-pub fn round<'g>(format: Format, value: Unrounded<'g>) -> Rounded<'g> {
-    round_so(format, value, Rounding::NearestEven)
+fn inside_range<'g>(domain: Domain, value: Unrounded<'g>) -> Signal<'g> {
+    let fraction = value.significand.low(domain.fraction_bits());
+    let field = value.exponent.bits(domain.exponent_bits());
+    let Some(doubled) = value.doubled else { return nearest_even(field, fraction, value.guard, value.sticky) };
+    let truncated = field.concat(fraction).named("truncated");
+    let up = rounds_up(fraction, value.guard, value.sticky).extend(domain.fraction_bits());
+    let increments = doubled.extend(domain.exponent_bits()).concat(up).named("increments");
+    (truncated + increments).named("rounded")
+}
+
+/// Rounds to nearest, with gradual underflow or flushing as the format has it. What the exponent's range excludes costs
+/// nothing.
+#[track_caller]
+pub fn round<'g>(domain: Domain, value: Unrounded<'g>) -> Rounded<'g> {
+    round_so(domain, value, Rounding::NearestEven)
 }
 
 /// [`round`] in one of the two ways.
 #[track_caller]
-pub fn round_so<'g>(format: Format, value: Unrounded<'g>, rounding: Rounding) -> Rounded<'g> {
-    let overflow = value.exponent.at_least(i64::from(format.special_exponent())).named("overflow");
-    let mut underflow = value.guard.graph().constant(1, 0);
-    let mut field = value.exponent.bits(format.exponent_bits());
-    let mut fraction = value.significand.low(format.fraction_bits());
+pub fn round_so<'g>(domain: Domain, value: Unrounded<'g>, rounding: Rounding) -> Rounded<'g> {
+    let never = value.guard.same(0);
+    if domain.is_normal() && rounding == Rounding::NearestEven {
+        return Rounded { magnitude: inside_range(domain, value), overflow: never, underflow: never };
+    }
+    let value = match value.doubled {
+        Some(doubled) => {
+            let exponent = value.exponent.plus_bit(doubled).named("exponent");
+            Unrounded { exponent, doubled: None, ..value }
+        }
+        None => value,
+    };
+    if domain.is_normal() {
+        let field = value.exponent.bits(domain.exponent_bits());
+        let fraction = value.significand.low(domain.fraction_bits());
+        let magnitude = rounding.apply(field, fraction, value.guard, value.sticky);
+        return Rounded { magnitude, overflow: never, underflow: never };
+    }
+    let overflow = value.exponent.at_least(i64::from(domain.special_exponent())).named("overflow");
+    let mut underflow = never;
+    let mut field = value.exponent.bits(domain.exponent_bits());
+    let mut fraction = value.significand.low(domain.fraction_bits());
     let Unrounded { mut guard, mut sticky, .. } = value;
     if value.exponent.min() <= 0 {
-        if format.keeps_subnormals() {
-            (field, fraction, guard, sticky) = denormalise(format, value);
+        if domain.keeps_subnormals() {
+            (field, fraction, guard, sticky) = denormalise(domain, value);
         } else {
             // Just below the smallest normal number a result can still be rounded up to it.
             let too_small = match rounding {
@@ -116,27 +148,31 @@ pub fn round_so<'g>(format: Format, value: Unrounded<'g>, rounding: Rounding) ->
 
 /// Moves a significand whose exponent is below the smallest normal one to the right. Gives exponent field, fraction,
 /// guard and sticky.
-fn denormalise<'g>(format: Format, value: Unrounded<'g>) -> (Signal<'g>, Signal<'g>, Signal<'g>, Signal<'g>) {
+fn denormalise<'g>(domain: Domain, value: Unrounded<'g>) -> (Signal<'g>, Signal<'g>, Signal<'g>, Signal<'g>) {
     let is_subnormal = (!value.exponent.at_least(1)).named("is_subnormal");
     let missing = value.exponent.subtracted_from(1).named("missing_exponent");
     let distance_bits = 64 - (1 - value.exponent.min()).leading_zeros();
     let distance = missing.bits(distance_bits).gate(is_subnormal).named("denormalise_distance");
     let (shifted, lost) = shift_right_sticky(value.significand.concat(value.guard), distance, "denormalise");
     let shifted = shifted.named("denormalised");
-    let field = value.exponent.bits(format.exponent_bits()).gate(!is_subnormal);
-    let fraction = shifted.slice(1, format.fraction_bits());
+    let field = value.exponent.bits(domain.exponent_bits()).gate(!is_subnormal);
+    let fraction = shifted.slice(1, domain.fraction_bits());
     (field, fraction, shifted.bit(0).named("guard"), (lost | value.sticky).named("sticky"))
 }
 
-/// The result's word: special values over what was rounded.
+/// The result's word: special values over what was rounded. Where results are normal only `zero` counts.
 #[track_caller]
-pub fn pack<'g>(format: Format, sign: Signal<'g>, rounded: Rounded<'g>, special: Special<'g>) -> Signal<'g> {
+pub fn pack<'g>(domain: Domain, sign: Signal<'g>, rounded: Rounded<'g>, special: Special<'g>) -> Signal<'g> {
+    if domain.is_normal() {
+        let is_zero = special.zero.named("is_zero");
+        return sign.named("sign").concat(rounded.magnitude.gate(!is_zero).named("magnitude"));
+    }
     let nan = special.nan.named("is_nan");
     // A zero operand leaves nonsense in the exponent, which may look like an overflow.
     let infinity = (special.infinity | (rounded.overflow & !special.zero)).named("is_infinity");
     let zero = (special.zero | rounded.underflow).named("is_zero");
-    let special_exponent = (nan | infinity).repeat(format.exponent_bits());
-    let special_fraction = nan.append_zeros(format.fraction_bits() - 1);
+    let special_exponent = (nan | infinity).repeat(domain.exponent_bits());
+    let special_fraction = nan.append_zeros(domain.fraction_bits() - 1);
     let special_magnitude = special_exponent.concat(special_fraction).named("special_magnitude");
     let is_special = (nan | infinity | zero).named("is_special");
     let magnitude = is_special.select(special_magnitude, rounded.magnitude).named("magnitude");

@@ -68,6 +68,28 @@ impl<'g> Signed<'g> {
         Self { bits: self.bits(width) + other.bits(width), min, max }
     }
 
+    /// Sum and one more, by the carry into the adder.
+    #[track_caller]
+    #[must_use]
+    pub fn plus_and_one(self, other: Self) -> Self {
+        let (min, max) = (self.min + other.min + 1, self.max + other.max + 1);
+        let width = width_for(min, max);
+        let one = self.bits.graph().constant(1, 1);
+        Self { bits: (self.bits(width).concat(one) + other.bits(width).concat(one)).drop_low(1), min, max }
+    }
+
+    /// Less `bias` + 1, which is a power of two: the bits below it stay.
+    #[track_caller]
+    #[must_use]
+    pub fn minus_bias_and_one(self, bias: i32) -> Self {
+        let by = i64::from(bias) + 1;
+        let low = by.trailing_zeros();
+        let whole = self.offset(-by);
+        let high = self.bits(whole.bits.width()).drop_low(low);
+        let bits = high.minus(1).concat(self.bits.low(low));
+        Self { bits, ..whole }
+    }
+
     /// Difference.
     #[track_caller]
     #[must_use]
