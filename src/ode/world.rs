@@ -20,8 +20,8 @@ impl Sphere {
 }
 
 #[derive(Debug)]
-struct Parts {
-    body: sys::dBodyID,
+pub(super) struct Parts {
+    pub(super) body: sys::dBodyID,
     geom: sys::dGeomID,
     radius: f64,
 }
@@ -38,7 +38,7 @@ pub struct World {
     id: sys::dWorldID,
     space: sys::dSpaceID,
     joints: sys::dJointGroupID,
-    spheres: Vec<Parts>,
+    pub(super) spheres: Vec<Parts>,
     /// Where ODE's random numbers go on.
     seed: c_ulong,
     /// The last of all to go.

@@ -32,7 +32,7 @@ impl Guards {
                 && kernel.as_constant(value.operands[1]) == Some(0);
             matches!(value.source, Source::Operator(Operator::AtMost, _)) && with_zero
         };
-        let asked = kernel.values.iter().position(|value| is_zero(value));
+        let asked = kernel.values.iter().position(is_zero);
         let Some(asked) = asked.map(|index| ValueId(index as u32)) else { return false };
         !shows(kernel, &[quotient], &Supposed::from([(asked, true)]))
     }

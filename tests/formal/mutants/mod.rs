@@ -28,7 +28,7 @@ pub struct Mutant {
 impl Mutant {
     /// The proof that it breaks, in the cycle in which it does.
     pub fn proof(&self) -> Proof {
-        Proof { method: Method::At(self.cycle), ..*proof(self.tried_in) }
+        Proof { method: Method::At(self.cycle), ..proof(self.tried_in) }
     }
 
     /// The accelerator with the change in it.
