@@ -26,7 +26,9 @@ fn change(text: &str, left: &str, right: impl Fn(&str) -> String) -> String {
 /// The way of `afu cosim --rtl`: a folder that `afu rtl` wrote, one line of which was changed.
 fn verdict(config: &Config, file: &str, left: &str, right: impl Fn(&str) -> String) -> Verdict {
     let folder = tempfile::tempdir().unwrap();
-    for (name, text) in Afu::generate(Spec::from(config.clone())).unwrap().files() {
+    let files = Afu::generate(Spec::from(config.clone())).unwrap().files();
+    assert!(files.iter().any(|(name, _)| name == file), "there is no {file}");
+    for (name, text) in files {
         let text = if name == file { change(&text, left, &right) } else { text };
         fs::write(folder.path().join(name), text).unwrap();
     }
@@ -37,10 +39,10 @@ fn verdict(config: &Config, file: &str, left: &str, right: impl Fn(&str) -> Stri
 #[test]
 fn a_wrong_gate_a_wrong_rounding_and_a_flipped_bit_are_mismatches() {
     let config = config(2, "bfloat", "depth");
-    let right = verdict(&config, "fp_mul_e8f7.v", "wire round_up = ", str::to_owned);
+    let right = verdict(&config, "fp_square_e8f7.v", "wire round_up = ", str::to_owned);
     assert!(right.is_good(), "without a fault: {:?} {:?}", right.mismatches.first(), right.unmet);
-    // Truncated products; a gate of another kind; the lowest bit of what a subtraction adds.
-    let truncated = verdict(&config, "fp_mul_e8f7.v", "wire round_up = ", |_| "1'b0".to_owned());
+    // Truncated squares; a gate of another kind; the lowest bit of what a subtraction adds.
+    let truncated = verdict(&config, "fp_square_e8f7.v", "wire round_up = ", |_| "1'b0".to_owned());
     let gate = verdict(&config, "fp_sub_e8f7.v", "wire effective_subtraction = ", |value| value.replace('^', "|"));
     let flipped = verdict(&config, "fp_sub_e8f7.v", " complemented = ", |value| format!("({value}) ^ 1"));
     for (what, verdict) in [("truncated", truncated), ("gate", gate), ("flipped", flipped)] {
