@@ -4,7 +4,7 @@
 mod support;
 
 use contact_afu::hdl::{DelayModel, Evaluator, Module, Op, Pin};
-use contact_afu::number::{Format, Soft, Subnormals};
+use contact_afu::number::{Format, Soft};
 use contact_afu::operator::{Domain, INPUTS, Operator, Values, build, pipelined};
 use std::sync::Arc;
 use support::{Words, corner};
@@ -113,10 +113,42 @@ fn randomly(operator: Operator, domain: impl Into<Domain>, count: u64) {
 
 #[test]
 fn every_pair_of_an_8_bit_format() {
-    for subnormals in [Subnormals::Kept, Subnormals::Flushed] {
+    for text in ["e5f2", "e5f2z", "e5f2t", "e5f2zt"] {
         for operator in ARITHMETIC {
-            let format = Format::new(5, 2, subnormals).unwrap();
-            VALUES.into_iter().for_each(|values| exhaust(operator, Domain::new(format, values)));
+            VALUES.into_iter().for_each(|values| exhaust(operator, Domain::new(format(text), values)));
+        }
+    }
+}
+
+/// Faithful roots: an 8-bit format whose table holds every result, and longer fractions whose tables are parabolas.
+#[test]
+fn every_word_of_faithful_formats() {
+    for operator in [Operator::Sqrt, Operator::Recip] {
+        for text in ["e5f2r", "e5f2zr", "e5f2tr", "e5f2ztr", "e5f6r", "e5f7r", "e5f8ztr", "e5f10tr", "e6f9zr"] {
+            VALUES.into_iter().for_each(|values| exhaust(operator, Domain::new(format(text), values)));
+        }
+    }
+}
+
+/// Rounding toward zero, subnormals the other way round, and faithful roots at 24 bits and elsewhere.
+#[test]
+fn a_million_of_other_arithmetic() {
+    for operator in ARITHMETIC {
+        for (text, count) in [("e8f23t", 150_000), ("e8f23z", 150_000), ("e5f14t", 20_000), ("e5f24t", 20_000)] {
+            randomly(operator, format(text), count);
+        }
+        for text in ["e10f23zt", "e10f23"] {
+            randomly(operator, Domain::new(format(text), Values::Normal), 150_000);
+            randomly(operator, format(text), 50_000);
+        }
+    }
+    for (from, to) in [("e8f23t", "e10f23zt"), ("e10f23zt", "e8f23t"), ("half", "e8f23t"), ("e8f23t", "e5f10t")] {
+        let convert = Operator::Convert { to: format(to) };
+        VALUES.into_iter().for_each(|values| randomly(convert, Domain::new(format(from), values), 100_000));
+    }
+    for operator in [Operator::Sqrt, Operator::Recip] {
+        for text in ["e10f23zr", "e8f23r", "e8f23tr", "e8f15r", "e5f23r", "e5f23tr"] {
+            VALUES.into_iter().for_each(|values| randomly(operator, Domain::new(format(text), values), 100_000));
         }
     }
 }
@@ -251,7 +283,7 @@ fn every_significand_of_root_and_reciprocal() {
 /// Cut for any clock an operator computes the same, new operands in every cycle.
 #[test]
 fn pipelines_compute_the_same() {
-    for format in ["e5f2", "half", "paper", "wide", "e11f52"].map(format) {
+    for format in ["e5f2", "half", "paper", "wide", "e11f52", "e10f23ztr"].map(format) {
         let convert = Operator::Convert { to: if format == Format::WIDE { Format::BINARY32 } else { Format::WIDE } };
         for (operator, clock_mhz) in ARITHMETIC.into_iter().chain([convert]).zip([100.0, 200.0, 300.0].iter().cycle()) {
             // With multiplier blocks of both kinds.

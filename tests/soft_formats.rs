@@ -2,10 +2,10 @@
 
 mod support;
 
-use contact_afu::number::{Format, Number, Soft, Subnormals};
-use rustc_apfloat::Float;
+use contact_afu::number::{Format, Number, Rounding, Soft, Subnormals};
 use rustc_apfloat::FloatConvert;
 use rustc_apfloat::ieee::{IeeeFloat, Semantics};
+use rustc_apfloat::{Float, Round};
 use support::Words;
 
 /// A format of the other library.
@@ -39,6 +39,25 @@ fn check_pair<const E: usize, const F: usize>(a: u128, b: u128) {
     assert_eq!(x.root_exceeds(y), x.sqrt().gt(y), "root of {x:?} > {y:?}");
 }
 
+/// As [`check_pair`], rounded toward zero.
+fn check_pair_toward_zero<const E: usize, const F: usize>(a: u128, b: u128) {
+    let format = kept(E, F).with_rounding(Rounding::TowardZero);
+    let (x, y) = (Soft::from_bits(format, a), Soft::from_bits(format, b));
+    let (p, q) = (Peer::<E, F>::from_bits(a), Peer::<E, F>::from_bits(b));
+    // The peer's sum of opposite numbers, and ours, is +0 toward zero as it is to nearest.
+    assert_eq!((x + y).bits(), word(p.add_r(q, Round::TowardZero).value), "{x:?} + {y:?}");
+    assert_eq!((x - y).bits(), word(p.sub_r(q, Round::TowardZero).value), "{x:?} - {y:?}");
+    assert_eq!((x * y).bits(), word(p.mul_r(q, Round::TowardZero).value), "{x:?} * {y:?}");
+    assert_eq!((x / y).bits(), word(p.div_r(q, Round::TowardZero).value), "{x:?} / {y:?}");
+    assert_eq!(x.root_exceeds(y), x.sqrt().gt(y), "root of {x:?} > {y:?}");
+    // The root is the largest number whose square is not above: binary64 has room for the squares.
+    let (root, value) = (x.sqrt(), x.to_f64());
+    if F <= 25 && E <= 10 && value > 0.0 && value.is_finite() {
+        let next = Soft::from_bits(format, root.bits() + 1).to_f64();
+        assert!(root.to_f64().powi(2) <= value && value < next * next, "root of {x:?}: {root:?}");
+    }
+}
+
 fn check_conversion<const E: usize, const F: usize, const E2: usize, const F2: usize>(a: u128) {
     let ours = Soft::from_bits(kept(E, F), a).to(kept(E2, F2));
     let converted = <Peer<E, F> as FloatConvert<Peer<E2, F2>>>::convert(Peer::<E, F>::from_bits(a), &mut false);
@@ -53,6 +72,7 @@ fn check_random<const E: usize, const F: usize>(count: u64) {
         for _ in part {
             let (a, b) = words.two();
             check_pair::<E, F>(a, b);
+            check_pair_toward_zero::<E, F>(a, b);
         }
     });
 }
@@ -62,6 +82,7 @@ fn every_pair_of_an_8_bit_format() {
     for a in 0..256 {
         for b in 0..256 {
             check_pair::<5, 2>(a, b);
+            check_pair_toward_zero::<5, 2>(a, b);
         }
     }
 }

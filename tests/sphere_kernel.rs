@@ -17,7 +17,7 @@ fn kernel(arithmetic: Format, fields: Fields) -> Arc<Module> {
 
 fn kernel_of(arithmetic: Arithmetic, fields: Fields) -> Arc<Module> {
     let model = DelayModel::default();
-    sphere_kernel(&Settings { arithmetic, record: Format::BINARY32, fields, clock_mhz: 200.0, model }).unwrap()
+    sphere_kernel(&Settings { arithmetic, record: arithmetic.record(), fields, clock_mhz: 200.0, model }).unwrap()
 }
 
 /// What the pipeline gives for the pairs, one in every cycle.
@@ -125,6 +125,15 @@ fn wide() {
 #[test]
 fn paper() {
     every_fields().for_each(|fields| check(Format::BINARY32, fields, 4_000));
+}
+
+/// Rounding toward zero, the other treatment of subnormals, faithful roots, and all of them together.
+#[test]
+fn other_arithmetic() {
+    for text in ["e8f23t", "e8f23z", "e8f23r", "e10f23zr", "e10f23zt", "e10f23", "e10f23ztr", "e5f10tr"] {
+        check(text.parse().unwrap(), Fields::ALL, 1_500);
+        check(text.parse().unwrap(), Fields::HIT, 500);
+    }
 }
 
 #[test]

@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use crate::hdl::verilog::{self, Style};
 use crate::hdl::{DelayModel, Errors, Module};
-use crate::number::Format;
 use crate::pipeline::{Settings, sphere_kernel};
 
 use super::scpu::scpu;
@@ -49,7 +48,7 @@ impl Afu {
         spec.check()?;
         let kernel = sphere_kernel(&Settings {
             arithmetic: spec.config.profile.arithmetic(),
-            record: Format::BINARY32,
+            record: spec.config.profile.arithmetic().record(),
             fields: spec.config.contact,
             clock_mhz: spec.config.clock_mhz,
             model: DelayModel::default(),

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use contact_afu::config::{self, Config, Input, Profile, Results, Shell};
 use contact_afu::kernel::Fields;
+use contact_afu::number::{FormatError, Roots, Rounding, Subnormals};
 
 use super::failure::{Classify, Failure, Kind};
 
@@ -15,6 +16,15 @@ pub struct Machine {
     /// Arithmetic: paper (IEEE binary32), wide, exact, half, bfloat or eXfY (exponent and fraction bits) [default: wide]
     #[arg(long, value_name = "NAME|eXfY")]
     pub profile: Option<Profile>,
+    /// Rounding: nearest (ties to even) or zero (toward it) [default: nearest]
+    #[arg(long, value_name = "HOW")]
+    pub rounding: Option<Rounding>,
+    /// Numbers below the smallest normal one: kept or flushed to zero [default: as the profile has them]
+    #[arg(long, value_name = "HOW")]
+    pub subnormals: Option<Subnormals>,
+    /// Square root and reciprocal: correct (rounded correctly) or faithful (within a unit, faster) [default: correct]
+    #[arg(long, value_name = "HOW")]
+    pub roots: Option<Roots>,
     /// What comes back for a pair: a list of hit, depth, normal, position [default: all four]
     #[arg(long, value_name = "FIELDS")]
     pub contact: Option<Fields>,
@@ -48,12 +58,27 @@ impl Machine {
         self.config_for_any_target()
     }
 
+    /// The options of arithmetic over those of the profile.
+    fn with_options(&self, mut profile: Profile) -> Result<Profile, FormatError> {
+        if let Some(rounding) = self.rounding {
+            profile = profile.with_rounding(rounding)?;
+        }
+        if let Some(subnormals) = self.subnormals {
+            profile = profile.with_subnormals(subnormals)?;
+        }
+        match self.roots {
+            Some(roots) => profile.with_roots(roots),
+            None => Ok(profile),
+        }
+    }
+
     fn config_for_any_target(&self) -> Result<Config, Failure> {
         let mut config = match &self.config {
             Some(file) => config::read(file).ends(Kind::Usage)?,
             None => Config::default(),
         };
         set(&mut config.profile, &self.profile);
+        config.profile = self.with_options(config.profile).ends(Kind::Usage)?;
         set(&mut config.contact, &self.contact);
         set(&mut config.input, &self.input);
         set(&mut config.results, &self.results);
@@ -105,6 +130,9 @@ impl One {
         let given = [
             ("--interval", interval.is_some()),
             ("--profile", m.profile.is_some()),
+            ("--rounding", m.rounding.is_some()),
+            ("--subnormals", m.subnormals.is_some()),
+            ("--roots", m.roots.is_some()),
             ("--contact", m.contact.is_some()),
             ("--input", m.input.is_some()),
             ("--results", m.results.is_some()),

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use contact_afu::config::Config;
 use contact_afu::hdl::DelayModel;
-use contact_afu::number::Format;
 use contact_afu::operator::Operator;
 use contact_afu::report::{operators, synth as report};
 use contact_afu::synth::{self, Figures, SynthError, Target, Unit, synthesise};
@@ -161,9 +160,10 @@ fn operator(name: &str, config: &Config) -> Result<(Operator, contact_afu::confi
         "greater" => Operator::Greater,
         "at_most" => Operator::AtMost,
         "root_exceeds" => Operator::RootExceeds,
-        "to_record" => Operator::Convert { to: Format::BINARY32 },
+        "to_record" => Operator::Convert { to: arithmetic.format().record() },
         "from_record" => {
-            let record = "paper".parse().map_err(|error| Failure::new(Kind::Other, error))?;
+            let record = arithmetic.format().record();
+            let record = record.to_string().parse().map_err(|error| Failure::new(Kind::Other, error))?;
             return Ok((Operator::Convert { to: arithmetic.format() }, record));
         }
         _ => {

@@ -6,9 +6,11 @@ use std::str::FromStr;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::kernel::{Arithmetic, Fields, Reference};
-use crate::number::{Format, FormatError};
+use crate::number::{Format, FormatError, Roots, Rounding, Subnormals};
 
 /// A named arithmetic (`paper`, `wide`, `exact`, `half`, `bfloat`) or one given by its widths (`eXfY`, `eXfYz`).
+///
+/// Behind the name stand the options in which it differs: `wide+zero`, `paper+flushed`, `wide+kept+faithful`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Profile {
     name: &'static str,
@@ -36,6 +38,40 @@ impl Profile {
         *self == Self::EXACT
     }
 
+    /// The same with another rounding.
+    ///
+    /// # Errors
+    /// [`FormatError::Exact`] where the profile's proof is for the rounding it has.
+    pub fn with_rounding(self, rounding: Rounding) -> Result<Self, FormatError> {
+        let format = self.format.with_rounding(rounding);
+        self.with_format(format)
+    }
+
+    /// The same with subnormals kept or flushed.
+    ///
+    /// # Errors
+    /// As of [`Profile::with_rounding`].
+    pub fn with_subnormals(self, subnormals: Subnormals) -> Result<Self, FormatError> {
+        let format = self.format.with_subnormals(subnormals);
+        self.with_format(format)
+    }
+
+    /// The same with roots and reciprocals of the other kind.
+    ///
+    /// # Errors
+    /// As of [`Profile::with_rounding`]; [`FormatError::Unfaithful`] where the fraction is too long for a promise.
+    pub fn with_roots(self, roots: Roots) -> Result<Self, FormatError> {
+        if self.is_exact() && roots != self.format.roots() {
+            return Err(FormatError::Exact);
+        }
+        let format = self.format.with_roots(roots)?;
+        self.with_format(format)
+    }
+
+    fn with_format(self, format: Format) -> Result<Self, FormatError> {
+        if self.is_exact() && format != self.format { Err(FormatError::Exact) } else { Ok(Self { format, ..self }) }
+    }
+
     /// Its kernel and numbers.
     pub fn arithmetic(&self) -> Arithmetic {
         if self.is_exact() { Arithmetic::Exact } else { Arithmetic::Rounded(self.format) }
@@ -54,7 +90,15 @@ impl Profile {
 
 impl fmt::Display for Profile {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.name.is_empty() { self.format.fmt(f) } else { f.write_str(self.name) }
+        let Some(named) = NAMED.into_iter().find(|named| named.name == self.name) else { return self.format.fmt(f) };
+        f.write_str(self.name)?;
+        let (own, plain) = (self.format, named.format);
+        let options = [
+            (own.rounding() != plain.rounding()).then(|| own.rounding().to_string()),
+            (own.subnormals() != plain.subnormals()).then(|| own.subnormals().to_string()),
+            (own.roots() != plain.roots()).then(|| own.roots().to_string()),
+        ];
+        options.into_iter().flatten().try_for_each(|option| write!(f, "+{option}"))
     }
 }
 
@@ -62,10 +106,23 @@ impl FromStr for Profile {
     type Err = FormatError;
 
     fn from_str(text: &str) -> Result<Self, FormatError> {
-        match NAMED.into_iter().find(|profile| profile.name == text) {
-            Some(profile) => Ok(profile),
-            None => Ok(Self { name: "", format: text.parse()? }),
+        let mut parts = text.split('+');
+        let name = parts.next().unwrap_or_default();
+        let mut profile = match NAMED.into_iter().find(|profile| profile.name == name) {
+            Some(profile) => profile,
+            None => Self { name: "", format: name.parse()? },
+        };
+        for option in parts {
+            // No two options share a word.
+            profile = if let Ok(rounding) = option.parse() {
+                profile.with_rounding(rounding)?
+            } else if let Ok(subnormals) = option.parse() {
+                profile.with_subnormals(subnormals)?
+            } else {
+                profile.with_roots(option.parse()?)?
+            };
         }
+        Ok(profile)
     }
 }
 
@@ -93,5 +150,31 @@ mod tests {
         assert_eq!("wide".parse::<Profile>().expect("named").format(), Format::WIDE);
         assert!("exact".parse::<Profile>().expect("named").is_exact() && !Profile::WIDE.is_exact());
         assert!("e99f1".parse::<Profile>().is_err());
+    }
+
+    #[test]
+    fn options_stand_behind_the_name() {
+        for text in ["wide+zero", "paper+flushed", "wide+kept+faithful", "half+zero+flushed+faithful", "e8f15ztr"] {
+            assert_eq!(text.parse::<Profile>().expect(text).to_string(), text);
+        }
+        for (text, same) in [
+            ("wide+flushed+nearest+correct", "wide"),
+            ("paper+faithful+zero", "paper+zero+faithful"),
+            ("e8f15+flushed+zero", "e8f15zt"),
+        ] {
+            assert_eq!(text.parse::<Profile>().expect(text).to_string(), same);
+        }
+        for (text, why) in [
+            ("exact+faithful", "exact has its own arithmetic"),
+            ("exact+zero", "exact has its own arithmetic"),
+            ("e11f24+faithful", "up to 23 bits"),
+            ("e11f52r", "up to 23 bits"),
+            ("wide+up", "unknown option `up`"),
+            ("wide+", "unknown option ``"),
+        ] {
+            let error = text.parse::<Profile>().expect_err(text).to_string();
+            assert!(error.contains(why), "{text}: {error}");
+        }
+        assert!("exact+nearest+flushed+correct".parse::<Profile>().expect("its own").is_exact());
     }
 }

@@ -12,6 +12,7 @@ mod finish;
 mod fold;
 mod graph;
 mod keywords;
+mod lookup;
 mod module;
 mod share_delays;
 mod signal;

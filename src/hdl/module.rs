@@ -52,6 +52,8 @@ pub enum Op {
     },
     /// 2^n bits, of which the one whose index is the operand (of n bits) is set.
     OneHot,
+    /// The word of a table whose index is the operand, of n bits: a table has 2^n words.
+    Lookup(Arc<[u128]>),
     /// One bit: some bit of the operand is set.
     Any,
     /// One bit: every bit of the operand is set.

@@ -22,6 +22,16 @@ pub enum Arithmetic {
     Exact,
 }
 
+impl Arithmetic {
+    /// The format of the pair's and the contact's words: binary32, written by the same rounding.
+    pub const fn record(self) -> Format {
+        match self {
+            Self::Rounded(format) => format.record(),
+            Self::Exact => Format::BINARY32,
+        }
+    }
+}
+
 impl Reference {
     /// The kernel that computes in `arithmetic` and gives `fields`; the others are zero words.
     pub const fn new(arithmetic: Format, fields: Fields) -> Self {
@@ -61,7 +71,7 @@ impl Reference {
 
     /// [`Reference::run`] by way of [`Soft`] in every format: the twin that checks `f32`, and is checked by it.
     pub fn run_soft(&self, pair: &PairRecord) -> ContactRecord {
-        let record = Format::BINARY32;
+        let record = self.arithmetic.record();
         let spheres = pair.read(|word| Soft::from_bits(record, word.into()));
         let valid = pair.is_valid();
         match self.arithmetic {

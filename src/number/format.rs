@@ -3,31 +3,28 @@
 use std::fmt;
 use std::str::FromStr;
 
+use super::options::{Roots, Rounding, Subnormals};
+
 /// Smallest and largest exponent width, in bits, a [`Format`] can have.
 pub const EXPONENT_BITS: std::ops::RangeInclusive<u32> = 5..=15;
 /// Smallest and largest fraction width, in bits, a [`Format`] can have.
 pub const FRACTION_BITS: std::ops::RangeInclusive<u32> = 2..=52;
 
-/// What happens between zero and the smallest normal number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Subnormals {
-    /// Gradual underflow (IEEE 754-2019, clause 3.4).
-    Kept,
-    /// A subnormal operand reads as zero of its sign; a result that would round (to nearest, with an
-    /// unbounded exponent) to less than the smallest normal number is zero of its sign.
-    Flushed,
-}
-
 /// A binary floating-point format in the layout of IEEE 754-2019, clause 3.4: sign, biased exponent, fraction.
 ///
-/// Rounding is to nearest, ties to even. The largest biased exponent encodes infinities and NaN; the only NaN
+/// With it go the ways of its arithmetic: rounding, subnormals, and how exact roots are. The largest biased exponent encodes infinities and NaN; the only NaN
 /// ever produced is the canonical quiet one (sign 0, leading fraction bit 1, all others 0).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Format {
     exponent_bits: u8,
     fraction_bits: u8,
     subnormals: Subnormals,
+    rounding: Rounding,
+    roots: Roots,
 }
+
+/// The longest fraction, in bits, for which faithful roots were tried with every significand.
+pub const FAITHFUL_FRACTION_BITS: u32 = 23;
 
 /// Why a format was refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -40,6 +37,17 @@ pub enum FormatError {
         /// The fraction bits asked for.
         fraction: u32,
     },
+    /// Faithful roots are promised only where every significand was tried.
+    #[error(
+        "{0}: faithful roots are for fractions of up to {FAITHFUL_FRACTION_BITS} bits, of which every one was tried; use correct roots"
+    )]
+    Unfaithful(Format),
+    /// The proof of the profile `exact` is for its own arithmetic.
+    #[error("profile exact has its own arithmetic: rounding nearest, subnormals flushed, roots correct")]
+    Exact,
+    /// Not an option of the arithmetic.
+    #[error("unknown option `{0}` of the arithmetic: use nearest or zero, kept or flushed, correct or faithful")]
+    Option(String),
     /// Not a profile name and not eXfY.
     #[error("unknown profile `{0}`: use paper, wide, exact, half, bfloat or eXfY such as e8f15")]
     Unknown(String),
@@ -63,10 +71,10 @@ impl Format {
     pub const BFLOAT: Self = Self::fixed(8, 7, Subnormals::Kept);
 
     const fn fixed(exponent_bits: u8, fraction_bits: u8, subnormals: Subnormals) -> Self {
-        Self { exponent_bits, fraction_bits, subnormals }
+        Self { exponent_bits, fraction_bits, subnormals, rounding: Rounding::Nearest, roots: Roots::Correct }
     }
 
-    /// A format of `exponent` (5 to 15) and `fraction` (2 to 52) bits.
+    /// A format of `exponent` (5 to 15) and `fraction` (2 to 52) bits, that rounds to nearest and has correct roots.
     ///
     /// # Errors
     /// [`FormatError::Range`] when a width is outside those.
@@ -74,7 +82,54 @@ impl Format {
         if !EXPONENT_BITS.contains(&exponent) || !FRACTION_BITS.contains(&fraction) {
             return Err(FormatError::Range { exponent, fraction });
         }
-        Ok(Self { exponent_bits: exponent as u8, fraction_bits: fraction as u8, subnormals })
+        Ok(Self::fixed(exponent as u8, fraction as u8, subnormals))
+    }
+
+    /// The same format with another rounding.
+    #[must_use]
+    pub const fn with_rounding(self, rounding: Rounding) -> Self {
+        Self { rounding, ..self }
+    }
+
+    /// The same format with subnormals kept or flushed.
+    #[must_use]
+    pub const fn with_subnormals(self, subnormals: Subnormals) -> Self {
+        Self { subnormals, ..self }
+    }
+
+    /// The same format with roots and reciprocals of the other kind.
+    ///
+    /// # Errors
+    /// [`FormatError::Unfaithful`] for faithful roots of a fraction longer than [`FAITHFUL_FRACTION_BITS`].
+    pub const fn with_roots(self, roots: Roots) -> Result<Self, FormatError> {
+        match roots {
+            Roots::Faithful if self.fraction_bits() > FAITHFUL_FRACTION_BITS => Err(FormatError::Unfaithful(self)),
+            _ => Ok(Self { roots, ..self }),
+        }
+    }
+
+    /// The format of records beside arithmetic in this one: [`Format::BINARY32`], written by the same rounding.
+    #[must_use]
+    pub const fn record(self) -> Self {
+        Self { rounding: self.rounding, roots: self.roots, ..Self::BINARY32 }
+    }
+
+    /// How results are rounded.
+    #[inline]
+    pub const fn rounding(self) -> Rounding {
+        self.rounding
+    }
+
+    /// What happens below the smallest normal number.
+    #[inline]
+    pub const fn subnormals(self) -> Subnormals {
+        self.subnormals
+    }
+
+    /// How exact roots and reciprocals are.
+    #[inline]
+    pub const fn roots(self) -> Roots {
+        self.roots
     }
 
     /// Bits of the biased exponent.
@@ -151,17 +206,21 @@ impl Format {
 }
 
 impl fmt::Display for Format {
-    /// Writes `e8f23`, with `z` behind it where subnormals are flushed to zero.
+    /// Writes `e8f23`; behind it `z` where subnormals are flushed to zero, `t` where results are truncated (rounded
+    /// toward zero) and `r` where roots are faithful.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let flush = if self.keeps_subnormals() { "" } else { "z" };
-        write!(f, "e{}f{}{flush}", self.exponent_bits, self.fraction_bits)
+        let truncate = if self.rounding == Rounding::TowardZero { "t" } else { "" };
+        let roots = if self.roots == Roots::Faithful { "r" } else { "" };
+        write!(f, "e{}f{}{flush}{truncate}{roots}", self.exponent_bits, self.fraction_bits)
     }
 }
 
 impl FromStr for Format {
     type Err = FormatError;
 
-    /// Reads a profile name (`paper`, `wide`, `half`, `bfloat`) or `eXfY` (subnormals kept; `eXfYz`: flushed).
+    /// Reads a profile name (`paper`, `wide`, `half`, `bfloat`) or `eXfY` (subnormals kept, nearest, correct
+    /// roots), with `z`, `t` and `r` behind it for flushed subnormals, truncation and faithful roots.
     fn from_str(text: &str) -> Result<Self, FormatError> {
         match text {
             "paper" => return Ok(Self::BINARY32),
@@ -170,14 +229,27 @@ impl FromStr for Format {
             "bfloat" => return Ok(Self::BFLOAT),
             _ => {}
         }
-        let unknown = || FormatError::Unknown(text.to_owned());
-        let (digits, subnormals) = match text.strip_suffix('z') {
-            Some(rest) => (rest, Subnormals::Flushed),
-            None => (text, Subnormals::Kept),
-        };
+        let whole = text;
+        let unknown = || FormatError::Unknown(whole.to_owned());
+        let (text, roots) = option(text, 'r', Roots::Faithful);
+        let (text, rounding) = option(text, 't', Rounding::TowardZero);
+        let (digits, subnormals) = option(text, 'z', Subnormals::Flushed);
         let (exponent, fraction) =
             digits.strip_prefix('e').and_then(|rest| rest.split_once('f')).ok_or_else(unknown)?;
         let plain = |t: &str| t.bytes().all(|b| b.is_ascii_digit()).then(|| t.parse().ok()).flatten();
-        Self::new(plain(exponent).ok_or_else(unknown)?, plain(fraction).ok_or_else(unknown)?, subnormals)
+        let format = Self::new(
+            plain(exponent).ok_or_else(unknown)?,
+            plain(fraction).ok_or_else(unknown)?,
+            subnormals.unwrap_or(Subnormals::Kept),
+        )?;
+        format.with_rounding(rounding.unwrap_or_default()).with_roots(roots.unwrap_or_default())
+    }
+}
+
+/// A letter at the end of a format's text, and what it stands for.
+fn option<T>(text: &str, letter: char, meaning: T) -> (&str, Option<T>) {
+    match text.strip_suffix(letter) {
+        Some(rest) => (rest, Some(meaning)),
+        None => (text, None),
     }
 }

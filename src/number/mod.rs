@@ -1,13 +1,17 @@
 //! Numbers the kernel can be read with: `f32`, [`Soft`] (any format, exact integer arithmetic inside), [`Precise`]
 //! (the truth), and outside this module the netlist's wires. Imports nothing of ours.
 
+mod faithful;
 mod format;
 mod native;
+mod options;
 mod precise;
 mod soft;
 mod window;
 
-pub use format::{EXPONENT_BITS, FRACTION_BITS, Format, FormatError, Subnormals};
+pub use faithful::{Faithful, Function, Piece};
+pub use format::{EXPONENT_BITS, FAITHFUL_FRACTION_BITS, FRACTION_BITS, Format, FormatError};
+pub use options::{Roots, Rounding, Subnormals};
 pub use precise::Precise;
 pub use soft::Soft;
 pub use window::{WINDOW_BITS, WINDOW_INEXACT_BITS, WINDOW_LEADING_BITS, WINDOW_LOST_BITS, Window};
@@ -22,8 +26,8 @@ impl Truth for bool {}
 
 /// A number that carries its own context (format, graph), so that one kernel serves software and hardware.
 ///
-/// There is no Zero and no One: a constant is made from a neighbour. Every operation rounds once, to nearest,
-/// ties to even (IEEE 754-2019, clause 4.3.1). Mixing formats is a mistake of the kernel's author: `Soft` panics
+/// There is no Zero and no One: a constant is made from a neighbour. Every operation rounds once, as its format says
+/// (IEEE 754-2019, clause 4.3); only roots and reciprocals may be faithful instead. Mixing formats is a mistake of the kernel's author: `Soft` panics
 /// with both formats' names, a wire records an error in its graph.
 pub trait Number:
     Copy
@@ -44,16 +48,16 @@ pub trait Number:
 
     /// `value`, in this number's format. `value` must be representable there.
     fn constant(self, value: f64) -> Self;
-    /// √self, correctly rounded (IEEE 754-2019, clause 5.4.1).
+    /// √self, rounded (IEEE 754-2019, clause 5.4.1); faithful where the format says so.
     fn sqrt(self) -> Self;
-    /// 1/self, correctly rounded.
+    /// 1/self, rounded; faithful where the format says so.
     fn recip(self) -> Self;
     /// self > other; false when either is NaN.
     fn gt(self, other: Self) -> Self::Bool;
     /// self ≤ other; false when either is NaN.
     fn le(self, other: Self) -> Self::Bool;
-    /// Whether √self, correctly rounded, is greater than `bound` ≥ 0, decided without a root:
-    /// self > (bound + ½ulp(bound))², taken exactly.
+    /// Whether √self, rounded, is greater than `bound` ≥ 0, decided without a root: self > (bound + ½ulp(bound))², or
+    /// where rounding is toward zero self ≥ (bound + ulp(bound))², taken exactly. A faithful root may differ.
     fn root_exceeds(self, bound: Self) -> Self::Bool;
     /// `yes` where `condition` holds, else `no`.
     fn select(condition: Self::Bool, yes: Self, no: Self) -> Self;

@@ -2,7 +2,7 @@
 //! not negative. The remainder stays exact, so the result is rounded correctly.
 
 use super::Domain;
-use super::parts::{Operand, Special, Unrounded, pack, round};
+use super::parts::{Operand, Rounding, Special, Unrounded, pack, round};
 use crate::hdl::Signal;
 
 /// a / b.
@@ -14,17 +14,22 @@ pub fn div<'g>(a: Signal<'g>, b: Signal<'g>, domain: Domain) -> Signal<'g> {
 
     // Two significands in [1, 2) have a quotient in (1/2, 2): one digit before the point, and as many behind it as
     // make significand and guard bit when the first is 0.
+    // Toward zero nobody asks for the guard bit.
+    let toward_zero = domain.rounding() == Rounding::TowardZero;
+    let guard_bits = u32::from(!toward_zero);
     let precision = domain.significand_bits();
     let mut remainder = dividend.extend(precision + 1);
     let mut digits = Vec::new();
-    for index in 0..precision + 2 {
+    for index in 0..precision + 1 + guard_bits {
         let step = Step::new(remainder, divisor, index);
         digits.push(step.digit);
         remainder = step.remainder.append_zeros(1);
     }
     let quotient = Signal::join(&digits).named("quotient");
     let at_least_one = quotient.msb().named("quotient_at_least_one");
-    let normalised = at_least_one.select(quotient.high(precision + 1), quotient.low(precision + 1)).named("normalised");
+    let normalised = at_least_one
+        .select(quotient.high(precision + guard_bits), quotient.low(precision + guard_bits))
+        .named("normalised");
     let last_digit = at_least_one & quotient.bit(0);
     let exponent = a_exponent
         .minus(b_exponent)
@@ -38,8 +43,8 @@ pub fn div<'g>(a: Signal<'g>, b: Signal<'g>, domain: Domain) -> Signal<'g> {
     let sticky = if domain.keeps_subnormals() { remainder.any() | last_digit } else { sign.graph().constant(1, 1) };
     let unrounded = Unrounded {
         exponent,
-        significand: normalised.drop_low(1).named("significand"),
-        guard: normalised.bit(0).named("guard"),
+        significand: normalised.drop_low(guard_bits).named("significand"),
+        guard: if toward_zero { sign.same(0) } else { normalised.bit(0).named("guard") },
         sticky: sticky.named("sticky"),
         doubled: None,
     };

@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use crate::number::Format;
+use super::parts::Rounding;
+use crate::number::{self, Format};
 
 /// Which values of a format an operator's operands take. What never comes costs no logic.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -72,6 +73,19 @@ impl Domain {
     /// Whether a subnormal may come that counts.
     pub const fn keeps_subnormals(self) -> bool {
         self.format.keeps_subnormals() && !self.is_normal()
+    }
+
+    /// How results are rounded.
+    pub const fn rounding(self) -> Rounding {
+        match self.format.rounding() {
+            number::Rounding::Nearest => Rounding::NearestEven,
+            number::Rounding::TowardZero => Rounding::TowardZero,
+        }
+    }
+
+    /// The same values, of results that are rounded to nearest.
+    pub const fn to_nearest(self) -> Self {
+        Self { format: self.format.with_rounding(number::Rounding::Nearest), ..self }
     }
 
     /// Bits of the biased exponent.

@@ -1,7 +1,7 @@
 //! Half of a number: the exponent less one, and at the lower end of the range the significand moved instead.
 
 use super::Domain;
-use super::parts::{Operand, Rounded, Rounding, Special, pack};
+use super::parts::{Operand, Rounded, Special, pack};
 use crate::hdl::Signal;
 
 /// a · ½.
@@ -15,7 +15,7 @@ pub fn halve(a: Signal<'_>, domain: Domain) -> Signal<'_> {
         // Half of a subnormal or of the smallest binade: the last bit falls off, and it may be a tie.
         let moved = is_normal.select(a.fraction, a.hidden.concat(a.fraction).drop_low(1)).named("half_fraction");
         let guard = (a.fraction.bit(0) & !is_normal).named("guard");
-        let magnitude = Rounding::NearestEven.apply(less_one.gate(is_normal), moved, guard, never);
+        let magnitude = domain.rounding().apply(less_one.gate(is_normal), moved, guard, never);
         Rounded { magnitude, overflow: never, underflow: never }
     } else {
         // Where results are normal, a smallest exponent never comes.

@@ -1,5 +1,5 @@
 //! Floating-point hardware for any [`Format`]: one file an operator, each a graph of bit operations that rounds once,
-//! to nearest, ties to even, and equals its twin in [`crate::number::Soft`] bit for bit.
+//! as the format says, and equals its twin in [`crate::number::Soft`] bit for bit.
 //!
 //! Operators are made combinational ([`build`]) and cut into stages for a clock afterwards ([`pipelined`]).
 
@@ -8,6 +8,7 @@ mod compare;
 mod convert;
 mod div;
 mod domain;
+mod faithful;
 mod halve;
 mod mul;
 mod parts;
@@ -22,7 +23,7 @@ pub use domain::{Domain, Values};
 use std::sync::Arc;
 
 use crate::hdl::{DelayModel, Errors, Graph, Module, cut};
-use crate::number::Format;
+use crate::number::{self, Format, Roots};
 use parts::Rounding;
 
 /// What an operator computes, of operands `a`, `b`, `c` and `d` in one format.
@@ -119,7 +120,7 @@ impl Operator {
         }
     }
 
-    fn about(self) -> String {
+    fn about(self, faithful: bool) -> String {
         match self {
             Self::Add => "result = a + b, rounded once".to_owned(),
             Self::Sub => "result = a - b, rounded once".to_owned(),
@@ -129,6 +130,8 @@ impl Operator {
             Self::Square => "result = a * a, rounded once".to_owned(),
             Self::AddMagnitudes => "result = a + b, neither of them negative, rounded once".to_owned(),
             Self::Div => "result = a / b, rounded once".to_owned(),
+            Self::Recip if faithful => "result = 1 / a, within one unit of the last place".to_owned(),
+            Self::Sqrt if faithful => "result = square root of a, within one unit of the last place".to_owned(),
             Self::Recip => "result = 1 / a, rounded once".to_owned(),
             Self::Sqrt => "result = square root of a, rounded once".to_owned(),
             Self::Halve => "result = a / 2, rounded once".to_owned(),
@@ -153,22 +156,25 @@ pub fn build(operator: Operator, domain: impl Into<Domain>) -> Result<Arc<Module
     let domain = domain.into();
     let format = domain.format();
     let graph = Graph::new(operator.module_name(domain));
-    graph.about(operator.about());
+    let faithful = format.roots() == Roots::Faithful;
+    graph.about(operator.about(faithful));
     graph.about(about_format(format));
     about_values(domain.values()).into_iter().for_each(|line| graph.about(line));
     let inputs: Vec<_> = INPUTS[..operator.operands()].iter().map(|name| graph.input(name, format.width())).collect();
     let [a, b, c, d] = [0, 1, 2, 3].map(|index| inputs[index.min(inputs.len() - 1)]);
     let result = match operator {
-        Operator::Add => add::add(a, b, domain, false, Rounding::NearestEven),
-        Operator::Sub => add::add(a, b, domain, true, Rounding::NearestEven),
+        Operator::Add => add::add(a, b, domain, false, domain.rounding()),
+        Operator::Sub => add::add(a, b, domain, true, domain.rounding()),
         Operator::AddToOdd => add::add(a, b, domain, false, Rounding::Odd),
         Operator::SubToOdd => add::add(a, b, domain, true, Rounding::Odd),
         Operator::Mul => mul::mul(a, b, domain),
         Operator::Square => mul::squared(a, domain),
         Operator::AddMagnitudes if domain.is_normal() => add::add_magnitudes(a, b, domain),
-        Operator::AddMagnitudes => add::add(a, b, domain, false, Rounding::NearestEven),
+        Operator::AddMagnitudes => add::add(a, b, domain, false, domain.rounding()),
         Operator::Div => div::div(a, b, domain),
+        Operator::Recip if faithful => faithful::recip(a, domain),
         Operator::Recip => recip::recip(a, domain),
+        Operator::Sqrt if faithful => faithful::sqrt(a, domain),
         Operator::Sqrt => sqrt::sqrt(a, domain),
         Operator::Halve => halve::halve(a, domain),
         Operator::Greater => compare::greater(a, b, domain),
@@ -205,10 +211,14 @@ fn about_values(values: Values) -> Option<&'static str> {
 
 fn about_format(format: Format) -> String {
     format!(
-        "{format}: sign, {} exponent bits (bias {}), {} fraction bits; subnormals {}; nearest, ties to even",
+        "{format}: sign, {} exponent bits (bias {}), {} fraction bits; subnormals {}; {}",
         format.exponent_bits(),
         format.bias(),
         format.fraction_bits(),
-        if format.keeps_subnormals() { "kept" } else { "flushed to zero" }
+        if format.keeps_subnormals() { "kept" } else { "flushed to zero" },
+        match format.rounding() {
+            number::Rounding::Nearest => "nearest, ties to even",
+            number::Rounding::TowardZero => "rounded toward zero",
+        }
     )
 }

@@ -2,7 +2,7 @@
 
 use super::Domain;
 use super::div::Step;
-use super::parts::{Operand, Special, Unrounded, pack, round};
+use super::parts::{Operand, Rounding, Special, Unrounded, pack, round};
 use crate::hdl::Signal;
 
 /// 1 / a.
@@ -15,12 +15,15 @@ pub fn recip(a: Signal<'_>, domain: Domain) -> Signal<'_> {
     let a = Operand::unpack(a, domain, "a");
     let (a_exponent, divisor) = a.normalised();
 
+    let toward_zero = domain.rounding() == Rounding::TowardZero;
+    // Behind the significand stands a guard bit, where anything asks for it.
+    let guard_bits = u32::from(!toward_zero);
     let precision = domain.significand_bits();
     let digit_one = graph.constant(1, 1);
     let mut digits = vec![digit_one];
     // 2 − divisor: what the digit 1 leaves, one place further on.
     let mut remainder = (divisor.same(0) - divisor).named("remainder_1");
-    for index in 2..precision + 2 {
+    for index in 2..precision + 1 + guard_bits {
         let step = Step::new(remainder.append_zeros(1), divisor, index);
         digits.push(step.digit);
         remainder = step.remainder;
@@ -28,6 +31,19 @@ pub fn recip(a: Signal<'_>, domain: Domain) -> Signal<'_> {
     let quotient = Signal::join(&digits).named("quotient");
     let exponent = a_exponent.subtracted_from(2 * i64::from(domain.bias()) - 1).named("quotient_exponent");
 
+    if toward_zero {
+        // Nothing rounds 0.111…1 up: a power of two is a case of its own.
+        let is_power = divisor.low(domain.fraction_bits()).is_zero().named("is_power_of_two");
+        let fraction = quotient.low(domain.fraction_bits()).gate(!is_power);
+        let unrounded = Unrounded {
+            exponent,
+            significand: digit_one.concat(fraction).named("significand"),
+            guard: graph.constant(1, 0),
+            sticky: graph.constant(1, 0),
+            doubled: Some(is_power),
+        };
+        return finish(domain, a, unrounded);
+    }
     let unrounded = Unrounded {
         exponent,
         significand: quotient.drop_low(1).named("significand"),
@@ -36,6 +52,11 @@ pub fn recip(a: Signal<'_>, domain: Domain) -> Signal<'_> {
         sticky: graph.constant(1, 1),
         doubled: None,
     };
+    finish(domain, a, unrounded)
+}
+
+/// The reciprocal's word: of zero it is infinity, of infinity zero.
+pub fn finish<'g>(domain: Domain, a: Operand<'g>, unrounded: Unrounded<'g>) -> Signal<'g> {
     let special = Special { nan: a.is_nan(), infinity: a.is_zero(), zero: a.is_infinity() };
     pack(domain, a.sign, round(domain, unrounded), special)
 }

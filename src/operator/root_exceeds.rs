@@ -1,13 +1,14 @@
 //! Whether the rounded root of one number is greater than another, without the root.
 //!
 //! RN(√a) > b exactly when a > (b + ½ulp(b))², or equal and b odd: the middle between b and the next number has one
-//! bit more than b, and its square is taken whole.
+//! bit more than b, and its square is taken whole. Toward zero the next number itself stands in the middle's place, and
+//! a ≥ its square decides.
 
 use super::Domain;
-use super::parts::{Operand, Signed, leading_zeros, shift_left, square};
+use super::parts::{Operand, Rounding, Signed, leading_zeros, shift_left, square};
 use crate::hdl::Signal;
 
-/// RN(√a) > b; false with a NaN or where a has no root, true where b is negative and a has one.
+/// √a, rounded, > b; false with a NaN or where a has no root, true where b is negative and a has one.
 pub fn root_exceeds<'g>(a: Signal<'g>, b: Signal<'g>, domain: Domain) -> Signal<'g> {
     let (a, b) = (Operand::unpack(a, domain, "a"), Operand::unpack(b, domain, "b"));
     let a_exceeds = finite_exceeds(&a, &b, domain).named("finite_exceeds");
@@ -33,7 +34,11 @@ fn finite_exceeds<'g>(a: &Operand<'g>, b: &Operand<'g>, domain: Domain) -> Signa
     let above = at_least_two.select(lead.at_least(2), lead.at_least(1)).named("exponent_is_above");
     let level = at_least_two.select(lead.is(1), lead.is(0)).named("exponent_is_level");
     let mut significand_above = a_significand.greater_than(high).named("significand_is_above");
-    if !subnormal_squares_vanish(domain) {
+    if domain.rounding() == Rounding::TowardZero {
+        let rest = normalised.low(normalised.width() - precision);
+        let level = a_significand.equals(high) & rest.is_zero();
+        significand_above = (significand_above | level).named("significand_is_not_below");
+    } else if !subnormal_squares_vanish(domain) {
         // The square of an odd number is odd, so a tie needs a middle that ends in zeros: that of a subnormal.
         let rest = normalised.low(normalised.width() - precision);
         let tie = a_significand.equals(high) & rest.is_zero();
@@ -47,7 +52,7 @@ fn subnormal_squares_vanish(domain: Domain) -> bool {
     !domain.keeps_subnormals() || domain.min_exponent() <= -(domain.fraction_bits() as i32)
 }
 
-/// The middle between a number and the next one up: biased exponent, and significand with its leading bit set.
+/// The middle between a number and the next one up, or the next one: biased exponent, and significand with its leading bit set.
 struct Middle<'g> {
     exponent: Signed<'g>,
     significand: Signal<'g>,
@@ -57,6 +62,9 @@ struct Middle<'g> {
 
 impl<'g> Middle<'g> {
     fn above(b: &Operand<'g>, domain: Domain) -> Self {
+        if domain.rounding() == Rounding::TowardZero {
+            return Self::next(b, domain);
+        }
         let one = b.fraction.graph().constant(1, 1);
         let largest = i64::from(domain.special_exponent()) - 1;
         if subnormal_squares_vanish(domain) {
@@ -75,5 +83,28 @@ impl<'g> Middle<'g> {
             significand: shift_left(unshifted, zeros, "middle_normalise").named("middle"),
             certain: b.is_zero(),
         }
+    }
+
+    /// The next number, with a zero behind its significand to be as wide as a middle.
+    fn next(b: &Operand<'g>, domain: Domain) -> Self {
+        let zero = b.fraction.graph().constant(1, 0);
+        let next = b.magnitude().plus(1).named("b_next");
+        let (field, fraction) = (next.drop_low(domain.fraction_bits()), next.low(domain.fraction_bits()));
+        let largest = i64::from(domain.special_exponent());
+        if subnormal_squares_vanish(domain) {
+            let significand = Signal::join(&[zero.same(1), fraction, zero]).named("next_significand");
+            let exponent = Signed::unsigned(field, 1, largest);
+            return Self { exponent, significand, certain: (!b.hidden).named("b_is_tiny") };
+        }
+        let hidden = field.any().named("next_hidden");
+        let unshifted = Signal::join(&[hidden, fraction, zero]).named("next_unshifted");
+        let (zeros, _) = leading_zeros(unshifted, "next");
+        let zeros = zeros.named("next_leading_zeros");
+        let effective = field.drop_low(1).concat(field.bit(0) | !hidden);
+        let exponent = Signed::unsigned(effective, 1, largest)
+            .minus(Signed::unsigned(zeros, 0, i64::from(domain.significand_bits())))
+            .named("next_exponent");
+        let significand = shift_left(unshifted, zeros, "next_normalise").named("next_significand");
+        Self { exponent, significand, certain: zero }
     }
 }

@@ -1,7 +1,7 @@
 //! Square root, by restoring digit recurrence: each step tries a 1 as the root's next digit.
 
 use super::Domain;
-use super::parts::{Operand, Special, Unrounded, pack, round};
+use super::parts::{Operand, Rounding, Special, Unrounded, pack, round};
 use crate::hdl::Signal;
 
 /// √a. √−0 is −0; of any other negative number it is NaN.
@@ -17,6 +17,13 @@ pub fn sqrt(a: Signal<'_>, domain: Domain) -> Signal<'_> {
     let radicand = radicand.named("radicand");
     let exponent = a_exponent.offset(i64::from(domain.bias())).half().named("root_exponent");
 
+    if domain.rounding() == Rounding::TowardZero {
+        // Nobody asks for what is below the significand.
+        let (root, _) = root(radicand, precision);
+        let zero = graph.constant(1, 0);
+        let significand = root.named("significand");
+        return finish(domain, a, Unrounded { exponent, significand, guard: zero, sticky: zero, doubled: None });
+    }
     let (root, remainder) = root(radicand, precision + 1);
     // A root of p + 1 bits exactly would need a radicand of more than 2p bits, so a normal result is never a tie,
     // and only a subnormal one asks whether anything is left.
@@ -28,6 +35,11 @@ pub fn sqrt(a: Signal<'_>, domain: Domain) -> Signal<'_> {
         sticky,
         doubled: None,
     };
+    finish(domain, a, unrounded)
+}
+
+/// The root's word.
+pub fn finish<'g>(domain: Domain, a: Operand<'g>, unrounded: Unrounded<'g>) -> Signal<'g> {
     let negative = a.sign & !a.is_zero();
     let special = Special { nan: a.is_nan() | negative, infinity: a.is_infinity(), zero: a.is_zero() };
     pack(domain, a.sign, round(domain, unrounded), special)

@@ -59,7 +59,11 @@ impl Operator {
 
     /// Whether the result for zero or normal operands is zero or, without regard to the exponent's ends, normal.
     fn gives_normal(self, format: Format, a: u128, b: u128) -> bool {
-        let Ok(unbounded) = Format::new(15, format.fraction_bits(), Subnormals::Flushed) else { return false };
+        let Ok(unbounded) = Format::new(15, format.fraction_bits(), Subnormals::Flushed)
+            .and_then(|wider| wider.with_rounding(format.rounding()).with_roots(format.roots()))
+        else {
+            return false;
+        };
         // Formats with the longest exponent cannot be looked at from a longer one: their ends are left out.
         let widen = |word: u128| Soft::from_bits(format, word).to(unbounded).bits();
         match self.result_format(format) {

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::panic::Location;
 
 use crate::hdl::Error;
-use crate::number::{Format, Soft};
+use crate::number::{Format, Roots, Soft};
 use crate::operator::Operator;
 
 /// A value's index in its kernel. Operands have lower indices than what is computed of them.
@@ -162,7 +162,10 @@ impl Kernel {
                 return self.operator(Operator::Halve, &[a]);
             }
             (Operator::Mul, &[a, b]) if a == b => return self.operator(Operator::Square, &[a]),
-            (Operator::Div, &[one, a]) if self.is_number(one, 1.0) => return self.operator(Operator::Recip, &[a]),
+            // A quotient is rounded correctly, which a faithful reciprocal is not.
+            (Operator::Div, &[one, a]) if self.is_number(one, 1.0) && format.roots() == Roots::Correct => {
+                return self.operator(Operator::Recip, &[a]);
+            }
             _ => {}
         }
         let result = match operator.result_format(format) {

@@ -189,6 +189,7 @@ impl Lowered {
             Op::Concat => self.concat(node, operands, widths),
             Op::Slice { low } => (0..count).map(|i| self.slice(&operands[0], widths[0], low, bits(i), i)).collect(),
             Op::OneHot => (0..count).map(|i| self.step(Kind::OneHot, [operands[0][0]; 3], i as u32)).collect(),
+            Op::Lookup(ref table) => (0..count).map(|i| self.lookup(table, &operands[0], i)).collect(),
             Op::Any => {
                 let any = self.reduce(Kind::Or, &operands[0]);
                 vec![self.step(Kind::Any, [any; 3], 0)]
@@ -210,6 +211,23 @@ impl Lowered {
             | Op::InstanceOutput { .. }
             | Op::Wire => self.number(0, count),
         }
+    }
+
+    /// Word `index` of a table's word: a tree of choices, by the address from its lowest bit on.
+    fn lookup(&mut self, table: &[u128], address: &[Word], index: usize) -> Word {
+        let part = |word: &u128| if index < 2 { (*word >> (64 * index)) as u64 } else { 0 };
+        let mut words: Vec<Word> = table.iter().map(|word| self.constant(part(word))).collect();
+        for bit in 0..table.len().ilog2() {
+            let chosen = self.step(Kind::Slice, [address[0]; 3], field(bit, 1));
+            words = words
+                .chunks(2)
+                .map(|pair| match *pair {
+                    [no, yes] if no != yes => self.step(Kind::Mux, [chosen, yes, no], 0),
+                    _ => pair[0],
+                })
+                .collect();
+        }
+        words[0]
     }
 
     fn bitwise(&mut self, kind: Kind, operands: &[Vec<Word>]) -> Vec<Word> {

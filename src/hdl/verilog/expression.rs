@@ -61,10 +61,13 @@ impl Expressions<'_> {
             Op::Any => format!("|{}", term(0)),
             Op::All => format!("&{}", term(0)),
             Op::Wire => self.value(node.operands[0]),
-            // State and instance outputs are declared, never written in place.
-            Op::Input | Op::Delay { .. } | Op::Register { .. } | Op::MemoryRead { .. } | Op::InstanceOutput { .. } => {
-                String::new()
-            }
+            // Tables, state and instance outputs are declared, never written in place.
+            Op::Lookup(_)
+            | Op::Input
+            | Op::Delay { .. }
+            | Op::Register { .. }
+            | Op::MemoryRead { .. }
+            | Op::InstanceOutput { .. } => String::new(),
         }
     }
 

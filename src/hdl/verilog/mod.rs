@@ -3,6 +3,7 @@
 
 mod delay;
 mod expression;
+mod lookup;
 mod names;
 mod primitive;
 mod print;

@@ -49,7 +49,7 @@ impl Names {
         for port in &module.ports {
             let Some(id) = port.node else { continue };
             let node = module.node(id);
-            let constant = matches!(node.op, Op::Input | Op::Constant(_) | Op::Parameter(_));
+            let constant = matches!(node.op, Op::Input | Op::Constant(_) | Op::Parameter(_) | Op::Lookup(_));
             let free = self.declared[id.index()].is_none();
             let fits = node.name.as_ref().is_none_or(|name| *name == port.name);
             if !port.output {
@@ -85,6 +85,7 @@ impl Names {
             },
             Op::Slice { low } => format!("{}_{}_{low}", part(0), low + node.width - 1),
             Op::OneHot => format!("{}_one_hot", part(0)),
+            Op::Lookup(_) => format!("{}_word", part(0)),
             Op::Any => format!("{}_any", part(0)),
             Op::All => format!("{}_all", part(0)),
             Op::Concat => {
@@ -220,7 +221,7 @@ impl Uses {
             Op::Constant(_) => self.sliced[id.index()],
             Op::Parameter(_) => self.sliced[id.index()],
             Op::Delay { .. } | Op::Register { .. } | Op::MemoryRead { .. } | Op::InstanceOutput { .. } => true,
-            Op::Input | Op::Wire => true,
+            Op::Input | Op::Wire | Op::Lookup(_) => true,
             _ if node.name.is_some() || self.sliced[id.index()] => true,
             Op::Slice { .. } => false,
             Op::Not => self.size[id.index()] > 1 && self.count[id.index()] > 1,

@@ -7,6 +7,7 @@ use super::super::state::address_width;
 use super::Style;
 use super::delay::DelayKind;
 use super::expression::{Expressions, constant, range};
+use super::lookup::lookup;
 use super::names::stage;
 use super::print::is_register;
 use super::unused::unconnected;
@@ -143,6 +144,10 @@ impl<'a> Sections<'a> {
             let node = self.module.node(id);
             let Some(name) = &self.text.names.declared[id.index()] else { continue };
             if matches!(node.op, Op::Input | Op::InstanceOutput { .. }) || is_register(self.module, id) {
+                continue;
+            }
+            if let Op::Lookup(table) = &node.op {
+                out += &lookup(name, node.width, table, &self.text.value(node.operands[0]));
                 continue;
             }
             let value = self.text.definition(id);

@@ -1,7 +1,7 @@
 //! Order of two words, and the comparison with a rounded root that needs no root.
 
 use super::parts::{Class, Parts};
-use crate::number::Format;
+use crate::number::{Format, Rounding};
 use std::cmp::Ordering;
 
 /// How a compares to b; nothing when either is NaN. −0 equals +0.
@@ -20,7 +20,7 @@ fn key(format: Format, bits: u128) -> Option<i128> {
     Some(if bits & format.sign_mask() == 0 { magnitude } else { -magnitude })
 }
 
-/// RN(√q) > s, without the root: q > (s + ½ulp(s))², taken exactly.
+/// RN(√q) > s, without the root: q > (s + ½ulp(s))², taken exactly. Toward zero √q ≥ s + ulp(s), so q ≥ (s + ulp(s))².
 ///
 /// The middle between s and the next number has one significand bit more than s, so its square has at most
 /// 2·(53 + 1) bits. No format can tie: the square of a normal s's middle is odd in its last of more than 2p bits,
@@ -37,11 +37,13 @@ pub fn root_exceeds(format: Format, q: Parts, s: Parts) -> bool {
         (_, Class::Infinity) | (Class::Zero, _) => false,
         (Class::Infinity, _) => true,
         _ => {
-            let middle = upper_middle(format, s);
+            let nearest = format.rounding() == Rounding::Nearest;
+            let middle = if nearest { upper_middle(format, s) } else { next_up(format, s) };
             let square = u128::from(middle.significand) * u128::from(middle.significand);
             let shift = square.leading_zeros(); // 0 or 1
             let square = (2 * middle.exponent + 1 - shift as i32, square << shift);
-            (q.exponent, u128::from(q.significand) << 64) > square
+            let q = (q.exponent, u128::from(q.significand) << 64);
+            if nearest { q > square } else { q >= square }
         }
     }
 }
@@ -56,4 +58,18 @@ fn upper_middle(format: Format, s: Parts) -> Parts {
     // The bit below the last one: a subnormal's significand, being aligned, has it higher up.
     let aligned = (format.min_exponent() - s.exponent).max(0);
     Parts::finite(false, s.exponent, s.significand | 1 << (62 - fraction + aligned))
+}
+
+/// The next number above s ≥ 0; above the largest, the one that would follow.
+fn next_up(format: Format, s: Parts) -> Parts {
+    let fraction = format.fraction_bits() as i32;
+    if s.class == Class::Zero {
+        let exponent = format.min_exponent() - if format.keeps_subnormals() { fraction } else { 0 };
+        return Parts::finite(false, exponent, 1 << 63);
+    }
+    let aligned = (format.min_exponent() - s.exponent).max(0);
+    match s.significand.checked_add(1 << (63 - fraction + aligned)) {
+        Some(significand) => Parts::finite(false, s.exponent, significand),
+        None => Parts::finite(false, s.exponent + 1, 1 << 63),
+    }
 }

@@ -2,10 +2,11 @@
 
 mod arithmetic;
 mod compare;
+mod faithful;
 mod parts;
 mod window;
 
-use super::{Format, Number, Window};
+use super::{Format, Number, Roots, Rounding, Window};
 use parts::{Parts, pack, pack_odd, unpack};
 use std::cmp::Ordering;
 use std::fmt;
@@ -13,7 +14,8 @@ use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssi
 
 /// A word and the format it is to be read in.
 ///
-/// Every operation is exact inside and rounds once, to nearest, ties to even; every NaN that an operation
+/// Every operation is exact inside and rounds once, as its format says (faithful roots are computed as the hardware
+/// computes them); every NaN that an operation
 /// produces is the canonical one. Two numbers of different formats in one operation panic with both names.
 ///
 /// `==` compares words, so +0 differs from −0 and a NaN equals itself: use [`Number::gt`] and [`Number::le`] for
@@ -80,6 +82,12 @@ impl Soft {
         Self { bits: pack(self.format, operation(self.parts(), other.parts())), format: self.format }
     }
 
+    /// A faithful result is as near as it is: where a subnormal has less room, it is rounded to nearest.
+    fn faithful(self, function: impl Fn(u32, Parts) -> Parts) -> Self {
+        let result = function(self.format.fraction_bits(), self.parts());
+        Self { bits: pack(self.format.with_rounding(Rounding::Nearest), result), ..self }
+    }
+
     #[inline]
     fn must_share_format(self, other: Self) {
         assert!(self.format == other.format, "an operation mixes the formats {} and {}", self.format, other.format);
@@ -142,12 +150,18 @@ impl Number for Soft {
 
     #[inline]
     fn sqrt(self) -> Self {
-        Self { bits: pack(self.format, arithmetic::square_root(self.parts())), format: self.format }
+        match self.format.roots() {
+            Roots::Correct => Self { bits: pack(self.format, arithmetic::square_root(self.parts())), ..self },
+            Roots::Faithful => self.faithful(faithful::square_root),
+        }
     }
 
     #[inline]
     fn recip(self) -> Self {
-        Self { bits: pack(self.format, arithmetic::divide(Parts::ONE, self.parts())), format: self.format }
+        match self.format.roots() {
+            Roots::Correct => Self { bits: pack(self.format, arithmetic::divide(Parts::ONE, self.parts())), ..self },
+            Roots::Faithful => self.faithful(faithful::reciprocal),
+        }
     }
 
     #[inline]

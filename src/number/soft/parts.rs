@@ -1,6 +1,6 @@
 //! A word taken apart, and a result put together: the only place that rounds.
 
-use crate::number::Format;
+use crate::number::{Format, Rounding};
 
 /// What kind of value a number is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,7 +71,7 @@ pub fn unpack(format: Format, bits: u128) -> Parts {
     Parts::finite(negative, format.min_exponent() - shift as i32, aligned << shift)
 }
 
-/// Rounds a value to nearest, ties to even, and writes its word.
+/// Rounds a value as the format says, and writes its word.
 #[inline]
 pub fn pack(format: Format, value: Parts) -> u128 {
     let (biased, fraction) = match value.class {
@@ -103,18 +103,27 @@ pub fn pack_odd(format: Format, value: Parts) -> u128 {
 fn round(format: Format, exponent: i32, significand: u64) -> (u32, u64) {
     let below = format.min_exponent() - exponent;
     let dropped = 64 - format.significand_bits();
+    let nearest = format.rounding() == Rounding::Nearest;
+    let round = |shift| {
+        if nearest { round_shift(significand, shift) } else { significand.checked_shr(shift).unwrap_or(0) }
+    };
     if below > 0 && format.keeps_subnormals() {
         // Gradual underflow: more bits are dropped.
-        return (0, round_shift(significand, dropped.saturating_add(below as u32)));
+        return (0, round(dropped.saturating_add(below as u32)));
     }
     // A carry out of the significand leaves a fraction of zeros, under the next exponent.
-    let rounded = round_shift(significand, dropped);
+    let rounded = round(dropped);
     let carry = (rounded >> format.significand_bits()) as i32;
     let biased = exponent + carry + format.bias();
     if biased < 1 {
         (0, 0)
     } else if biased >= format.special_exponent() as i32 {
-        (format.special_exponent(), 0)
+        // Toward zero nothing finite becomes infinite (IEEE 754-2019, clause 7.4).
+        if nearest {
+            (format.special_exponent(), 0)
+        } else {
+            (format.special_exponent() - 1, (1 << format.fraction_bits()) - 1)
+        }
     } else {
         (biased as u32, rounded & ((1 << format.fraction_bits()) - 1))
     }

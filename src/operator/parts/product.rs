@@ -34,6 +34,17 @@ pub fn square(a: Signal<'_>) -> Signal<'_> {
     total(rows, 2 * width)
 }
 
+/// The whole product of two factors of any width, the second of at most one tile's: tiles are named after `name`.
+#[track_caller]
+pub fn product_of<'g>(a: Signal<'g>, b: Signal<'g>, name: &str) -> Signal<'g> {
+    let digit = digit_width(a.width());
+    let tile = |(place, a): (usize, Signal<'g>)| {
+        let bits = (a * b).named(&format!("{name}_tile_{place}"));
+        Row { offset: place as u32 * digit, bits }
+    };
+    total(digits(a).into_iter().enumerate().map(tile).collect(), a.width() + b.width()).named(name)
+}
+
 /// A term of the sum: bits · 2^offset.
 #[derive(Clone, Copy)]
 struct Row<'g> {

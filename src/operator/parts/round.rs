@@ -1,4 +1,4 @@
-//! Rounding to nearest, ties to even, the ends of the range, and the result put together.
+//! Rounding, the ends of the range, and the result put together.
 
 use super::{Signed, shift_right_sticky};
 use crate::hdl::Signal;
@@ -52,6 +52,8 @@ fn rounds_up<'g>(fraction: Signal<'g>, guard: Signal<'g>, sticky: Signal<'g>) ->
 pub enum Rounding {
     /// To the nearest, ties to even.
     NearestEven,
+    /// Toward zero: what does not fit is dropped.
+    TowardZero,
     /// To odd: what does not fit sets the last bit of what does.
     Odd,
 }
@@ -68,6 +70,7 @@ impl Rounding {
     ) -> Signal<'g> {
         match self {
             Self::NearestEven => nearest_even(exponent, fraction, guard, sticky),
+            Self::TowardZero => exponent.concat(fraction).named("rounded"),
             Self::Odd => {
                 let last = (fraction.bit(0) | guard | sticky).named("odd_bit");
                 exponent.concat(fraction.drop_low(1)).concat(last).named("rounded")
@@ -96,14 +99,14 @@ fn inside_range<'g>(domain: Domain, value: Unrounded<'g>) -> Signal<'g> {
     (truncated + increments).named("rounded")
 }
 
-/// Rounds to nearest, with gradual underflow or flushing as the format has it. What the exponent's range excludes costs
-/// nothing.
+/// Rounds as the format says, with gradual underflow or flushing as it has it. What the exponent's range excludes
+/// costs nothing.
 #[track_caller]
 pub fn round<'g>(domain: Domain, value: Unrounded<'g>) -> Rounded<'g> {
-    round_so(domain, value, Rounding::NearestEven)
+    round_so(domain, value, domain.rounding())
 }
 
-/// [`round`] in one of the two ways.
+/// [`round`] in one of the ways there are.
 #[track_caller]
 pub fn round_so<'g>(domain: Domain, value: Unrounded<'g>, rounding: Rounding) -> Rounded<'g> {
     let never = value.guard.same(0);
@@ -138,7 +141,7 @@ pub fn round_so<'g>(domain: Domain, value: Unrounded<'g>, rounding: Rounding) ->
                     let becomes_normal = (fraction.all() & rounds_up(fraction, guard, sticky)).named("becomes_normal");
                     value.exponent.is(0) & !becomes_normal
                 }
-                Rounding::Odd => value.exponent.is(0),
+                Rounding::TowardZero | Rounding::Odd => value.exponent.is(0),
             };
             underflow = (value.exponent.is_negative() | too_small).named("underflow");
         }
@@ -168,13 +171,26 @@ pub fn pack<'g>(domain: Domain, sign: Signal<'g>, rounded: Rounded<'g>, special:
         return sign.named("sign").concat(rounded.magnitude.gate(!is_zero).named("magnitude"));
     }
     let nan = special.nan.named("is_nan");
-    // A zero operand leaves nonsense in the exponent, which may look like an overflow.
-    let infinity = (special.infinity | (rounded.overflow & !special.zero)).named("is_infinity");
+    // A zero operand leaves nonsense in the exponent, which may look like an overflow; so does an infinity.
+    let overflow = rounded.overflow & !special.zero;
     let zero = (special.zero | rounded.underflow).named("is_zero");
-    let special_exponent = (nan | infinity).repeat(domain.exponent_bits());
-    let special_fraction = nan.append_zeros(domain.fraction_bits() - 1);
+    let (infinity, largest) = if domain.rounding() == Rounding::TowardZero {
+        // What is too large becomes the largest finite number.
+        (special.infinity.named("is_infinity"), (overflow & !special.infinity & !nan).named("is_largest"))
+    } else {
+        ((special.infinity | overflow).named("is_infinity"), nan.same(0))
+    };
+    let special_fraction = if domain.rounding() == Rounding::TowardZero {
+        (nan | largest).concat(largest.repeat(domain.fraction_bits() - 1))
+    } else {
+        nan.append_zeros(domain.fraction_bits() - 1)
+    };
+    let special_exponent = match domain.rounding() {
+        Rounding::TowardZero => (nan | infinity | largest).repeat(domain.exponent_bits() - 1).concat(nan | infinity),
+        _ => (nan | infinity).repeat(domain.exponent_bits()),
+    };
     let special_magnitude = special_exponent.concat(special_fraction).named("special_magnitude");
-    let is_special = (nan | infinity | zero).named("is_special");
+    let is_special = (nan | infinity | largest | zero).named("is_special");
     let magnitude = is_special.select(special_magnitude, rounded.magnitude).named("magnitude");
     (sign & !nan).named("sign").concat(magnitude)
 }

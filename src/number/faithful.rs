@@ -1,0 +1,195 @@
+//! Reciprocal and square root by a table and a polynomial of second degree: the numbers that hardware and twin share.
+//!
+//! A piece of the argument's range is chosen by the fraction's upper bits; in it, of the lower bits t,
+//!
+//! ```text
+//! value = c0 ± (c1 − (c2 · t_high >> inner_shift)) · t >> outer_shift
+//! ```
+//!
+//! in integers, minus for the reciprocal and plus for the root. Half a unit of the last place is contained in c0, so
+//! the value's upper bits are rounded to nearest by being cut off. The value before that is less than half a unit from
+//! the exact one, which makes the result less than one unit wrong, and right where it is a number of the format.
+//! `tests/faithful.rs` holds both for every significand of every fraction length there is.
+
+use std::sync::OnceLock;
+
+use super::format::FAITHFUL_FRACTION_BITS;
+
+/// What is computed, of a significand m in [1, 2).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Function {
+    /// 2/m, in (1, 2].
+    Reciprocal,
+    /// √m, or √2m where the exponent is odd: in [1, 2).
+    Root,
+}
+
+/// One polynomial.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Piece {
+    /// The value where the piece begins, and half a unit of the result's last place.
+    pub c0: u64,
+    /// The slope there, without its sign.
+    pub c1: u64,
+    /// How much less the slope becomes.
+    pub c2: u64,
+}
+
+/// A function's table for one length of the fraction, and the shifts between its terms.
+#[derive(Clone, Debug)]
+pub struct Faithful {
+    function: Function,
+    fraction_bits: u32,
+    /// Upper bits of the fraction that choose a piece.
+    index_bits: u32,
+    /// Upper bits of t that the second degree looks at.
+    high_bits: u32,
+    inner_shift: u32,
+    outer_shift: u32,
+    pieces: Vec<Piece>,
+}
+
+/// Bits of a value below the result's last place.
+const GUARD_BITS: u32 = 3;
+/// Fractions up to this length have every result in the table.
+const LONGEST_WHOLE: u32 = 6;
+/// Places at which a piece's error is looked at before its c0 is chosen.
+const SAMPLES: u64 = 512;
+
+impl Faithful {
+    /// The table for fractions of `fraction_bits`, 1 to [`FAITHFUL_FRACTION_BITS`]; longer ones have that of the longest.
+    pub fn of(function: Function, fraction_bits: u32) -> &'static Self {
+        static TABLES: [[OnceLock<Faithful>; FAITHFUL_FRACTION_BITS as usize + 1]; 2] =
+            [const { [const { OnceLock::new() }; FAITHFUL_FRACTION_BITS as usize + 1] }; 2];
+        let fraction_bits = fraction_bits.min(FAITHFUL_FRACTION_BITS);
+        TABLES[function as usize][fraction_bits as usize].get_or_init(|| Self::make(function, fraction_bits))
+    }
+
+    /// The function's value for a fraction, in units of the result's last place: 2^F to 2^(F+1). `odd` is 1 for the
+    /// root of 2m, else 0.
+    #[inline]
+    pub fn value(&self, odd: u32, fraction: u64) -> u64 {
+        let t_bits = self.t_bits();
+        let piece = self.pieces[(odd << self.index_bits) as usize + (fraction >> t_bits) as usize];
+        self.unrounded(piece, fraction & ((1 << t_bits) - 1)) >> GUARD_BITS
+    }
+
+    #[inline]
+    fn unrounded(&self, Piece { c0, c1, c2 }: Piece, t: u64) -> u64 {
+        let high = t >> (self.t_bits() - self.high_bits);
+        let slope = c1 - ((c2 * high) >> self.inner_shift);
+        let term = (slope * t) >> self.outer_shift;
+        match self.function {
+            Function::Reciprocal => c0 - term,
+            Function::Root => c0 + term,
+        }
+    }
+
+    /// Bits of the fraction below those that choose a piece; none where the table holds every result.
+    pub fn t_bits(&self) -> u32 {
+        self.fraction_bits - self.index_bits
+    }
+
+    /// How many of them, from the top, the second degree looks at.
+    pub fn high_bits(&self) -> u32 {
+        self.high_bits
+    }
+
+    /// The shift behind c2 · t_high.
+    pub fn inner_shift(&self) -> u32 {
+        self.inner_shift
+    }
+
+    /// The shift behind slope · t.
+    pub fn outer_shift(&self) -> u32 {
+        self.outer_shift
+    }
+
+    /// Bits of a value below the result's last place.
+    pub fn guard_bits(&self) -> u32 {
+        GUARD_BITS
+    }
+
+    /// The pieces, by the fraction's upper bits; for the root, those of odd exponents behind the others.
+    pub fn pieces(&self) -> &[Piece] {
+        &self.pieces
+    }
+
+    fn make(function: Function, fraction_bits: u32) -> Self {
+        // A parabola in a piece of width h is wrong by h³/16 (reciprocal) or h³/360 (root): a quarter of a unit or less.
+        let index_bits = match function {
+            _ if fraction_bits <= LONGEST_WHOLE => fraction_bits,
+            Function::Reciprocal => (fraction_bits - 2).div_ceil(3),
+            Function::Root => (fraction_bits - 6).div_ceil(3),
+        };
+        let t_bits = fraction_bits - index_bits;
+        let slope_bits = fraction_bits + 3 - index_bits;
+        let curve_bits = fraction_bits.saturating_sub(2 * index_bits);
+        let high_bits = t_bits.min((fraction_bits + 4).saturating_sub(2 * index_bits));
+        let mut this = Self {
+            function,
+            fraction_bits,
+            index_bits,
+            high_bits,
+            inner_shift: (curve_bits + index_bits + high_bits).saturating_sub(slope_bits),
+            outer_shift: slope_bits - GUARD_BITS,
+            pieces: Vec::new(),
+        };
+        let halves = if function == Function::Root { 0..2 } else { 0..1 };
+        for (odd, index) in halves.flat_map(|odd| (0..1_u64 << index_bits).map(move |index| (odd, index))) {
+            let piece = this.piece(odd, index, slope_bits, curve_bits);
+            this.pieces.push(piece);
+        }
+        this
+    }
+
+    /// The exact function, but for the roundings of binary64.
+    fn exact(&self, odd: u64, m: f64) -> f64 {
+        match self.function {
+            Function::Reciprocal => 2.0 / m,
+            Function::Root if odd == 0 => m.sqrt(),
+            Function::Root => (2.0 * m).sqrt(),
+        }
+    }
+
+    fn piece(&self, odd: u64, index: u64, slope_bits: u32, curve_bits: u32) -> Piece {
+        let width = power(-(self.index_bits as i32));
+        let start = 1.0 + index as f64 * width;
+        let f = |u: f64| self.exact(odd, start + u);
+        let sign = if self.function == Function::Reciprocal { -1.0 } else { 1.0 };
+        let (mut c1, mut c2) = (0, 0);
+        if self.t_bits() > 0 {
+            // The parabola through three Chebyshev points. Where its second degree is rounded, the slope makes up for it.
+            let [a, b, c] = [-0.75_f64.sqrt(), 0.0, 0.75_f64.sqrt()].map(|x| 0.5 * width * (1.0 + x));
+            let slope = (f(b) - f(a)) / (b - a);
+            let curve = ((f(c) - f(b)) / (c - b) - slope) / (c - a);
+            c2 = (-sign * curve * power(curve_bits as i32)).round() as u64;
+            let lost = curve + sign * c2 as f64 * power(-(curve_bits as i32));
+            let slope = slope - curve * (a + b) + lost * width;
+            c1 = (sign * slope * power(slope_bits as i32)).round() as u64;
+        }
+        // What the integers make of it without c0, as far from the exact value above as below.
+        let unit = power((self.fraction_bits + GUARD_BITS) as i32);
+        let base = 1_u64 << 40;
+        let last = (1_u64 << self.t_bits()) - 1;
+        let error = |t: u64| {
+            let term = self.unrounded(Piece { c0: base, c1, c2 }, t) as f64 - base as f64;
+            f(t as f64 * power(-(self.fraction_bits as i32))) * unit - term
+        };
+        let samples = (0..=SAMPLES).map(|i| error((last * i).div_euclid(SAMPLES)));
+        let (low, high) = samples.fold((f64::MAX, f64::MIN), |(low, high), e| (low.min(e), high.max(e)));
+        let half = 1 << (GUARD_BITS - 1);
+        let mut piece = Piece { c0: ((low + high) / 2.0).round() as u64 + half, c1, c2 };
+        // The root of the largest significand stays below 2.
+        let is_last = odd == 1 && index + 1 == 1 << self.index_bits;
+        while is_last && self.unrounded(piece, last) >> (self.fraction_bits + 1 + GUARD_BITS) != 0 {
+            piece.c0 -= 1;
+        }
+        piece
+    }
+}
+
+/// 2^exponent.
+fn power(exponent: i32) -> f64 {
+    f64::from_bits(((1023 + exponent) as u64) << 52)
+}

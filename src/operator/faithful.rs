@@ -1,0 +1,72 @@
+//! Reciprocal and square root within one unit of the last place: a table of parabolas, two products and two sums.
+//!
+//! [`Faithful`] has the table and the integers that the hardware computes. A result that is a number of the format comes
+//! out exact.
+
+use super::parts::{Operand, Signed, Unrounded, product_of};
+use super::{Domain, recip, sqrt};
+use crate::hdl::Signal;
+use crate::number::{Faithful, Function, Piece};
+
+/// 1 / a.
+pub fn recip(a: Signal<'_>, domain: Domain) -> Signal<'_> {
+    // Less than one unit wrong is all that is asked of a subnormal result too.
+    let domain = domain.to_nearest();
+    let a = Operand::unpack(a, domain, "a");
+    let (a_exponent, significand) = a.normalised();
+    let fraction = significand.low(domain.fraction_bits()).named("significand_fraction");
+    let value = value(Function::Reciprocal, domain, fraction, None);
+    // Of a power of two the value is 2, which leaves no fraction under an exponent that is one more.
+    let is_power = fraction.is_zero().named("is_power_of_two");
+    let exponent = a_exponent.subtracted_from(2 * i64::from(domain.bias()) - 1).named("quotient_exponent");
+    recip::finish(domain, a, unrounded(domain, exponent.plus_bit(is_power).named("result_exponent"), value))
+}
+
+/// √a. √−0 is −0; of any other negative number it is NaN.
+pub fn sqrt(a: Signal<'_>, domain: Domain) -> Signal<'_> {
+    let domain = domain.to_nearest();
+    let a = Operand::unpack(a, domain, "a");
+    let (a_exponent, significand) = a.normalised();
+    // The bias is odd, so an even biased exponent stands for an odd one, of which one goes into the radicand.
+    let is_odd = (!a_exponent.bits(1)).named("exponent_is_odd");
+    let exponent = a_exponent.offset(i64::from(domain.bias())).half().named("root_exponent");
+    let value = value(Function::Root, domain, significand.low(domain.fraction_bits()), Some(is_odd));
+    sqrt::finish(domain, a, unrounded(domain, exponent, value))
+}
+
+/// The value's leading one is known, and what is below its last place was rounded off by the table.
+fn unrounded<'g>(domain: Domain, exponent: Signed<'g>, value: Signal<'g>) -> Unrounded<'g> {
+    let zero = value.graph().constant(1, 0);
+    let significand = zero.same(1).concat(value.low(domain.fraction_bits())).named("significand");
+    Unrounded { exponent, significand, guard: zero, sticky: zero, doubled: None }
+}
+
+/// [`Faithful::value`], without the bits above the fraction.
+fn value<'g>(function: Function, domain: Domain, fraction: Signal<'g>, odd: Option<Signal<'g>>) -> Signal<'g> {
+    let table = Faithful::of(function, domain.fraction_bits());
+    let t_bits = table.t_bits();
+    let index = fraction.drop_low(t_bits);
+    let index = odd.map_or(index, |odd| odd.concat(index)).named("piece");
+    let words = |of: fn(&Piece) -> u64| table.pieces().iter().map(|piece| u128::from(of(piece))).collect::<Vec<_>>();
+    let bits = |words: &[u128]| 128 - words.iter().max().map_or(0, |largest| largest.leading_zeros());
+    // The value's bits above the fraction are known, so sums wrap there.
+    let value_bits = domain.fraction_bits() + table.guard_bits();
+    let begins: Vec<u128> = words(|piece| piece.c0).into_iter().map(|word| word & ((1 << value_bits) - 1)).collect();
+    let begin = index.lookup(&begins, value_bits).named("piece_begin");
+    if t_bits == 0 {
+        return begin.drop_low(table.guard_bits());
+    }
+    let (slopes, curves) = (words(|piece| piece.c1), words(|piece| piece.c2));
+    let slope = index.lookup(&slopes, bits(&slopes)).named("piece_slope");
+    let curve = index.lookup(&curves, bits(&curves)).named("piece_curve");
+
+    let t = fraction.low(t_bits).named("t");
+    let bend = product_of(curve, t.high(table.high_bits()), "bend").drop_low(table.inner_shift());
+    let bent = (slope - bend.extend(slope.width())).named("bent_slope");
+    let rise = product_of(bent, t, "rise").drop_low(table.outer_shift()).extend(value_bits);
+    let sum = match function {
+        Function::Reciprocal => begin - rise,
+        Function::Root => begin + rise,
+    };
+    sum.named("value").drop_low(table.guard_bits())
+}
