@@ -26,7 +26,13 @@ const HOUSE: &[(&str, &[&str])] = &[
         "report",
         &["plot", "synth", "verify", "host", "tools", "cosim", "config", "afu", "link", "pairs", "kernel", "number"],
     ),
-    ("accuracy", &["report", "config", "ode", "pairs", "kernel", "number"]),
+    (
+        "accuracy",
+        &[
+            "report", "plot", "synth", "verify", "host", "cosim", "config", "ode", "afu", "link", "pairs", "kernel",
+            "number",
+        ],
+    ),
     (
         "paper",
         &["report", "plot", "verify", "host", "cosim", "config", "ode", "afu", "link", "pairs", "kernel", "number"],

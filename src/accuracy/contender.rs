@@ -1,5 +1,6 @@
 //! Who answers pairs.
 
+use super::engine::in_parallel;
 use super::{Answer, Formula};
 use crate::config::Profile;
 use crate::kernel::{ContactRecord, EngineError, Fields, PairRecord, Reference, settle};
@@ -28,22 +29,29 @@ impl Profiled {
     pub fn new(profile: &Profile) -> Self {
         Self { profile: profile.clone(), reference: profile.reference(Fields::ALL) }
     }
+
+    /// Its name as a contender.
+    pub fn title(&self) -> String {
+        self.profile.to_string()
+    }
 }
 
 impl Contender for Profiled {
     fn name(&self) -> String {
-        self.profile.to_string()
+        self.title()
     }
 
     fn answers(&mut self, pairs: &[PairRecord]) -> Result<Vec<Answer>, EngineError> {
-        let raw = self.reference.run_all(pairs);
-        let mut settled = raw.clone();
-        settle(pairs, &mut settled, Fields::ALL);
         let answer = |(raw, settled): (ContactRecord, ContactRecord)| Answer {
             unsettled: raw.is_unsettled(),
             ..Answer::from(settled)
         };
-        Ok(raw.into_iter().zip(settled).map(answer).collect())
+        Ok(in_parallel(pairs, |pairs| {
+            let raw = self.reference.run_all(pairs);
+            let mut settled = raw.clone();
+            settle(pairs, &mut settled, Fields::ALL);
+            raw.into_iter().zip(settled).map(answer).collect()
+        }))
     }
 }
 

@@ -68,6 +68,9 @@ pub struct Judgement {
     /// of the depth; of 1; of the largest of the component, the first centre's and the radii. Zero where there is
     /// nothing to compare, infinite for a number that is none.
     pub ulps: [f64; 3],
+    /// The same errors relative to what makes them: of the depth, to the sum of the radii; of the normal, to 1; of the
+    /// position, to the largest coordinate or radius.
+    pub relative: [f64; 3],
 }
 
 /// Judges an answer.
@@ -109,7 +112,13 @@ pub fn judge(standard: &Standard, answer: &Answer) -> Judgement {
     };
     let positions = (0..3).map(in_units).fold(0.0, f64::max);
     found.ulps = [depth / ulp(exact.depth.abs() as f32), normal / ulp(1.0), positions];
+    found.relative = [share(depth, radii), normal, share(position, size)];
     found
+}
+
+/// An error's share of what makes it; none of nothing.
+fn share(error: f64, of: f64) -> f64 {
+    if error == 0.0 { 0.0 } else { error / of }
 }
 
 /// Position, normal, depth.

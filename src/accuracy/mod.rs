@@ -1,10 +1,12 @@
 //! How right answers are: engines and profiles on the same pairs, judged against the truth, in one store of results.
 //!
-//! A [`Contender`] answers pairs; [`judge`] says what is wrong with an answer; [`fill`] runs contenders over the hard
-//! categories and keeps what came of them in a [`Record`], keyed by what went in.
+//! A [`Contender`] answers pairs; [`judge`] says what is wrong with an answer; [`measure`] does so for contenders on a
+//! set of pairs, and makes a [`Row`] of each, keyed by what went in. [`fill`] does that over the hard categories, and
+//! keeps the rows in a [`Record`].
 
 mod answer;
 mod contender;
+mod engine;
 mod formula;
 mod judge;
 #[cfg(feature = "ode")]
@@ -12,11 +14,15 @@ mod ode;
 #[cfg(feature = "parry")]
 mod parry;
 mod record;
+mod spread;
 mod study;
 mod tally;
+#[cfg(feature = "cosim")]
+pub mod trade;
 
 pub use answer::Answer;
 pub use contender::{Contender, Contenders, Profiled, contenders};
+pub use engine::{Failed, assess, measure};
 pub use formula::Formula;
 pub use judge::{Judgement, Standard, judge};
 #[cfg(feature = "ode")]
@@ -24,5 +30,6 @@ pub use ode::OdeDouble;
 #[cfg(feature = "parry")]
 pub use parry::Parry;
 pub use record::{Record, RecordError, Row, SCHEMA};
+pub use spread::{Errors, Spread};
 pub use study::{StudyError, Task, fill};
 pub use tally::Tally;

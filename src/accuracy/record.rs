@@ -1,6 +1,6 @@
 //! The store of results: a row for each category and contender, in a folder that is written as it grows.
 
-use super::{Tally, Task};
+use super::{Errors, Tally, Task};
 use crate::report::folder::{self, replace_file};
 use crate::report::table::{grouped, table};
 use serde::{Deserialize, Serialize};
@@ -17,7 +17,7 @@ const CSV: &str = "hard.csv";
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Row {
-    /// The category's name.
+    /// The name of the category, or of the set of pairs.
     pub category: String,
     /// The contender's name.
     pub contender: String,
@@ -25,11 +25,14 @@ pub struct Row {
     pub key: String,
     /// What came out.
     pub tally: Tally,
+    /// How large the errors are.
+    pub errors: Errors,
 }
 
 impl Row {
     pub(super) fn new(category: &str, contender: &str, key: String) -> Self {
-        Self { category: category.to_owned(), contender: contender.to_owned(), key, tally: Tally::default() }
+        let (category, contender) = (category.to_owned(), contender.to_owned());
+        Self { category, contender, key, tally: Tally::default(), errors: Errors::default() }
     }
 }
 

@@ -29,7 +29,7 @@ const CORPUS: &str = "afu-corpus.csv";
 /// the link, and what it wrote into destination memory against the reference kernel. One table of all jobs ends it.
 #[derive(Args, Debug)]
 pub struct Cosim {
-    /// Pairs: diamond:H, random:N, hard:N, or a .csv or .npy file; given several times, several jobs
+    /// Pairs: diamond:H, random:N, dense:N, hard:N, or a .csv or .npy file; given several times, several jobs
     #[arg(long, value_name = "SET|FILE", default_value = "diamond:10")]
     pairs: Vec<String>,
     /// Write the contacts of the only job, as they lie in destination memory: .csv or .npy; with --results hits, only those

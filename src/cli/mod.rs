@@ -1,5 +1,7 @@
 //! The command line: a file a subcommand, which reads options, calls the library and writes what it gives.
 
+#[cfg(feature = "cosim")]
+mod accuracy;
 mod completions;
 #[cfg(feature = "cosim")]
 mod cosim;
@@ -55,6 +57,8 @@ enum Command {
     Paper(paper::Paper),
     /// Measure an operator, an SCPU or the AFU on an FPGA: cells by Yosys, the clock by nextpnr
     Synth(synth::Synth),
+    #[cfg(feature = "cosim")]
+    Accuracy(accuracy::Accuracy),
     Hard(hard::Hard),
     /// Say which tools are there, what needs them, and what installs the missing ones
     Doctor(doctor::Doctor),
@@ -81,6 +85,8 @@ fn run(program: &Program) -> Result<(), Failure> {
         #[cfg(feature = "cosim")]
         Command::Paper(options) => paper::run(options),
         Command::Synth(options) => synth::run(options),
+        #[cfg(feature = "cosim")]
+        Command::Accuracy(options) => accuracy::run(options),
         Command::Hard(options) => hard::run(options),
         Command::Doctor(options) => doctor::run(options),
         Command::Completions(options) => completions::run(options),

@@ -11,11 +11,11 @@ use super::output;
 
 #[derive(Args, Debug)]
 pub struct Pairs {
-    /// diamond:H (candidate pairs of the paper's diamond of H layers), random:N (N seeded pairs of every kind) or hard:N
-    /// (N seeded pairs where floating-point engines fail)
+    /// diamond:H (candidate pairs of the paper's diamond of H layers), random:N (N seeded pairs of every kind),
+    /// dense:N (N candidate pairs of crowded scenes) or hard:N (N seeded pairs where floating-point engines fail)
     #[arg(value_name = "SET")]
     set: Set,
-    /// Seed of random and hard pairs
+    /// Seed of all but the diamond
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     /// File to write: .csv (x1,y1,z1,r1,x2,y2,z2,r2 in decimals that read back the same) or .npy (<f4, n x 8)
@@ -27,7 +27,7 @@ pub fn run(options: &Pairs) -> Result<(), Failure> {
     let made = options.set.pairs(options.seed);
     pairs::write_pairs(&options.out, &made)?;
     let seed = match options.set {
-        Set::Random(_) | Set::Hard(_) => format!(", seed {}", options.seed),
+        Set::Random(_) | Set::Dense(_) | Set::Hard(_) => format!(", seed {}", options.seed),
         Set::Diamond(_) => String::new(),
     };
     output::show(

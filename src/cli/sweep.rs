@@ -24,7 +24,7 @@ pub struct Sweep {
     /// Cycles from one pair to the next in one SCPU: 1
     #[arg(long, value_name = "LIST", default_value = "1")]
     interval: List,
-    /// Pairs: diamond:H, random:N, hard:N, or a .csv or .npy file
+    /// Pairs: diamond:H, random:N, dense:N, hard:N, or a .csv or .npy file
     #[arg(long, value_name = "SET|FILE", default_value = "diamond:10")]
     pairs: String,
     /// Link between AFU and memory: ideal, late, shuffled, hostile, harp1, harp2, pcie3x8, or a .toml file of a link

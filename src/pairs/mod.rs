@@ -1,6 +1,7 @@
 //! Pairs by name (`diamond:10`, `random:1000`, `hard:1000`) and from files, and contacts to files: CSV and `.npy`.
 
 mod contacts_csv;
+mod dense;
 mod diamond;
 mod error;
 mod file;

@@ -1,13 +1,13 @@
 //! The sets of pairs that have names.
 
-use super::{diamond, hard, random};
+use super::{dense, diamond, hard, random};
 use crate::kernel::PairRecord;
 use std::fmt;
 use std::str::FromStr;
 
 /// The most layers a diamond can have: some 16 million pairs.
 const LAYERS: u32 = 100;
-/// The most random or hard pairs: 3.2 GB of records.
+/// The most random, dense or hard pairs: 3.2 GB of records.
 const COUNT: u64 = 100_000_000;
 
 /// A set of pairs made from a name.
@@ -17,6 +17,8 @@ pub enum Set {
     Diamond(u32),
     /// So many random pairs of every kind.
     Random(u64),
+    /// So many candidate pairs of crowded scenes.
+    Dense(u64),
     /// So many pairs of the hard categories, each in turn.
     Hard(u64),
 }
@@ -25,7 +27,7 @@ pub enum Set {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SetError {
     /// Neither of the kinds there are.
-    #[error("unknown set of pairs `{0}`: use diamond:H, random:N or hard:N")]
+    #[error("unknown set of pairs `{0}`: use diamond:H, random:N, dense:N or hard:N")]
     Unknown(String),
     /// Not a number, or too large a one.
     #[error("set of pairs `{name}`: `{size}` must be a number from {least} to {most}")]
@@ -44,14 +46,15 @@ pub enum SetError {
 impl Set {
     /// Whether `text` can only be meant as the name of a set, right or wrong, and not as a file.
     pub fn is_name(text: &str) -> bool {
-        text.split_once(':').is_some_and(|(kind, _)| matches!(kind, "diamond" | "random" | "hard"))
+        text.split_once(':').is_some_and(|(kind, _)| matches!(kind, "diamond" | "random" | "dense" | "hard"))
     }
 
-    /// The pairs, the same on every machine. `seed` matters to random and hard sets only.
+    /// The pairs, the same on every machine. `seed` matters to all but the diamond.
     pub fn pairs(self, seed: u64) -> Vec<PairRecord> {
         match self {
             Self::Diamond(layers) => diamond::pairs(layers),
             Self::Random(count) => random::pairs(count, seed),
+            Self::Dense(count) => dense::pairs(count, seed),
             Self::Hard(count) => hard::pairs(count, seed),
         }
     }
@@ -62,6 +65,7 @@ impl fmt::Display for Set {
         match self {
             Self::Diamond(layers) => write!(f, "diamond:{layers}"),
             Self::Random(count) => write!(f, "random:{count}"),
+            Self::Dense(count) => write!(f, "dense:{count}"),
             Self::Hard(count) => write!(f, "hard:{count}"),
         }
     }
@@ -85,6 +89,7 @@ impl FromStr for Set {
         match kind {
             "diamond" => Ok(Self::Diamond(number(1, LAYERS.into())? as u32)),
             "random" => Ok(Self::Random(number(0, COUNT)?)),
+            "dense" => Ok(Self::Dense(number(0, COUNT)?)),
             "hard" => Ok(Self::Hard(number(0, COUNT)?)),
             _ => Err(SetError::Unknown(text.to_owned())),
         }
@@ -97,7 +102,7 @@ mod tests {
 
     #[test]
     fn names_read_back_and_others_are_refused() {
-        for set in [Set::Diamond(10), Set::Random(0), Set::Random(COUNT), Set::Hard(17)] {
+        for set in [Set::Diamond(10), Set::Random(0), Set::Random(COUNT), Set::Dense(5), Set::Hard(17)] {
             assert_eq!(set.to_string().parse(), Ok(set));
         }
         for wrong in

@@ -4,7 +4,7 @@ use maud::{Markup, PreEscaped, html};
 
 use super::layout::{Layout, SAMPLE, WIDTH};
 use super::style::{COLOURS, STYLE};
-use super::{Marker, Plot, Series};
+use super::{Marker, Plot, Series, names};
 
 pub(super) fn file(plot: &Plot) -> Markup {
     let layout = Layout::new(plot);
@@ -71,13 +71,14 @@ fn inside(plot: &Plot, layout: &Layout) -> Markup {
                         path class={ "line " (class(series)) " " (format!("{line:?}")) } d=(path(plot, series, layout)) {}
                     }
                     @if let Some(marker) = series.marker {
-                        @for &(x, y) in series.points.iter().filter(|p| shown(plot, p)) {
-                            (sign(marker, layout.at(x, y), &class(series)))
+                        @for (number, &(x, y)) in series.points.iter().enumerate().filter(|(_, p)| shown(plot, p)) {
+                            (pointed(series.names.get(number), layout.at(x, y), sign(marker, layout.at(x, y), &class(series))))
                         }
                     }
                 }
             }
         }
+        (beside(plot, layout))
         g class="legend" {
             @for (series, &(x, y)) in plot.series.iter().zip(&layout.legend) {
                 @if let Some(line) = series.line {
@@ -88,6 +89,37 @@ fn inside(plot: &Plot, layout: &Layout) -> Markup {
                     (sign(marker, (x + SAMPLE / 2.0, y - 4.0), &class(series)))
                 }
                 text x=(x + SAMPLE + 8.0) y=(y) { (series.name) }
+            }
+        }
+    }
+}
+
+/// A sign that can be pointed at, where its point has a name: a ground larger than it helps.
+fn pointed(name: Option<&String>, (x, y): (f64, f64), sign: Markup) -> Markup {
+    let Some(name) = name else { return sign };
+    html! {
+        g class="point" data-point=(name) tabindex="0" {
+            title { (name) }
+            circle class="around" cx=(round(x)) cy=(round(y)) r="8" {}
+            (sign)
+        }
+    }
+}
+
+/// The names beside points. The first series' come first to a place.
+fn beside(plot: &Plot, layout: &Layout) -> Markup {
+    let named = plot.series.iter().flat_map(|series| series.points.iter().zip(&series.names));
+    let points: Vec<(f64, f64, &str)> = named
+        .filter(|(point, _)| shown(plot, point))
+        .map(|(&(x, y), name)| (layout.at(x, y), name.as_str()))
+        .map(|((x, y), name)| (x, y, name))
+        .collect();
+    let within = [layout.left + 2.0, layout.top + 2.0, layout.left + layout.wide - 2.0, layout.top + layout.high - 2.0];
+    let places = names::place(&points, within);
+    html! {
+        g class="names" {
+            @for ((_, _, name), place) in points.iter().zip(places) {
+                @if let Some((x, y)) = place { text x=(round(x)) y=(round(y)) { (name) } }
             }
         }
     }

@@ -6,6 +6,7 @@
 mod axis;
 mod draw;
 mod layout;
+mod names;
 mod series;
 mod style;
 
@@ -97,6 +98,18 @@ mod tests {
         let path =
             svg.split("class=\"line c0 Solid\" d=\"").nth(1).and_then(|rest| rest.split('"').next()).expect("a path");
         assert_eq!(path.matches('M').count(), 2, "{path}");
+    }
+
+    #[test]
+    fn named_points_can_be_pointed_at() {
+        let axis = || Axis::new("", Scale::Linear).from_to(0.0, 10.0);
+        let points = [(1.0, 1.0), (5.0, f64::NAN), (9.0, 9.0)];
+        let series = Series::new("s", 0, points).hollow(Marker::Circle);
+        let svg = Plot::new("", axis(), axis()).with(series.named(["a", "lost", "b"].map(str::to_owned))).svg();
+        for text in ["data-point=\"a\"", "data-point=\"b\"", ">a</text>", ">b</text>", "<title>b</title>"] {
+            assert!(svg.contains(text), "{text}: {svg}");
+        }
+        assert!(!svg.contains("lost"), "a point without a place has no name either");
     }
 
     #[test]

@@ -32,13 +32,21 @@ pub struct Series {
     pub(super) points: Vec<(f64, f64)>,
     pub(super) line: Option<Line>,
     pub(super) marker: Option<(Marker, bool)>,
+    pub(super) names: Vec<String>,
 }
 
 impl Series {
     /// Points in colour `colour`, a number that begins again after six. Points that have no place on an axis (not
     /// finite, or not above zero on a logarithmic one) are left out, and part the line.
     pub fn new(name: &str, colour: usize, points: impl IntoIterator<Item = (f64, f64)>) -> Self {
-        Self { name: name.to_owned(), colour, points: points.into_iter().collect(), line: None, marker: None }
+        Self {
+            name: name.to_owned(),
+            colour,
+            points: points.into_iter().collect(),
+            line: None,
+            marker: None,
+            names: Vec::new(),
+        }
     }
 
     /// Joined by a line.
@@ -51,6 +59,13 @@ impl Series {
     #[must_use]
     pub fn marker(self, marker: Marker) -> Self {
         Self { marker: Some((marker, false)), ..self }
+    }
+
+    /// With a name for each point, in their order: beside it where there is room, and as `data-point` of its sign, which a
+    /// reader can point at.
+    #[must_use]
+    pub fn named(self, names: impl IntoIterator<Item = String>) -> Self {
+        Self { names: names.into_iter().collect(), ..self }
     }
 
     /// With a hollow sign at each point.

@@ -27,5 +27,8 @@ font-family:system-ui,'DejaVu Sans',sans-serif;font-size:12px}
 .plot .c3{stroke:var(--c3)}.plot .c4{stroke:var(--c4)}.plot .c5{stroke:var(--c5)}
 .plot .full.c0{fill:var(--c0)}.plot .full.c1{fill:var(--c1)}.plot .full.c2{fill:var(--c2)}
 .plot .full.c3{fill:var(--c3)}.plot .full.c4{fill:var(--c4)}.plot .full.c5{fill:var(--c5)}
+.plot .around{fill:transparent;stroke:none}.plot .point{cursor:pointer;outline:none}
+.plot .point:hover .sign,.plot .point:focus .sign,.plot .point.chosen .sign{stroke-width:4}
+.plot .names{font-size:11px;pointer-events:none}
 .plot .ink{stroke:var(--soft)}
 ";

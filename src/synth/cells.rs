@@ -23,6 +23,14 @@ pub struct Area {
     pub brams: u64,
 }
 
+impl Area {
+    /// How many of `unit` fit, by what runs out first.
+    pub fn fits(&self, unit: &Self) -> u64 {
+        let pairs = [(self.luts, unit.luts), (self.ffs, unit.ffs), (self.dsps, unit.dsps), (self.brams, unit.brams)];
+        pairs.into_iter().filter(|(_, each)| *each > 0).map(|(all, each)| all / each).min().unwrap_or(0)
+    }
+}
+
 impl Sub for Area {
     type Output = Self;
 
@@ -103,6 +111,14 @@ mod tests {
 
     fn cells(list: &[(&str, u64)]) -> Cells {
         list.iter().map(|(name, count)| ((*name).to_owned(), *count)).collect()
+    }
+
+    #[test]
+    fn what_runs_out_first_decides_how_many_fit() {
+        let device = Area { luts: 100, ffs: 100, dsps: 9, brams: 5 };
+        assert_eq!(device.fits(&Area { luts: 10, ffs: 20, dsps: 2, brams: 0 }), 4);
+        assert_eq!(device.fits(&Area { luts: 60, ffs: 20, dsps: 2, brams: 0 }), 1);
+        assert_eq!(device.fits(&Area { luts: 101, ..Area::default() }), 0);
     }
 
     #[test]

@@ -5,6 +5,8 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
+use super::Area;
+
 /// An FPGA family.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -56,6 +58,14 @@ impl Target {
             }
             Self::Ice40 => Some(("ice40", &["--hx8k", "--package", "ct256", "--pcf-allow-unconstrained"])),
             Self::Cyclonev | Self::Xilinx => None,
+        }
+    }
+
+    /// What the device holds, where one is routed for that SCPUs fit in: of the LFE5U-85F as its data sheet says.
+    pub const fn capacity(self) -> Option<Area> {
+        match self {
+            Self::Ecp5 => Some(Area { luts: 83_640, ffs: 83_640, dsps: 156, brams: 208 }),
+            Self::Ice40 | Self::Cyclonev | Self::Xilinx => None,
         }
     }
 

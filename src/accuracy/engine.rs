@@ -1,0 +1,107 @@
+//! Contenders on a set of pairs, judged: the one engine of every study of accuracy.
+
+use super::spread::Gathered;
+use super::{Answer, Contender, Errors, Row, Standard, Tally, judge};
+use crate::kernel::{EngineError, PairRecord};
+use sha2::{Digest, Sha256};
+use std::thread;
+
+/// Pairs that are judged at a time: the truth about each takes 2 KB.
+const BATCH: usize = 4096;
+
+/// A contender that failed.
+#[derive(Debug, thiserror::Error)]
+#[error("{contender}: {error}")]
+pub struct Failed {
+    /// Which.
+    pub contender: String,
+    /// Its own error.
+    pub error: EngineError,
+}
+
+/// A row for each contender on `pairs`, all valid, which are called `set`: one of `earlier` whose pairs, name and
+/// version are the same, or measured now. `progress` hears of pairs done. Says how many rows are of `earlier`.
+///
+/// # Errors
+/// When a contender fails.
+pub fn measure(
+    set: &str,
+    pairs: &[PairRecord],
+    contenders: &mut [Box<dyn Contender>],
+    earlier: &[Row],
+    mut progress: impl FnMut(u64),
+) -> Result<(Vec<Row>, usize), Failed> {
+    let mut rows: Vec<Row> =
+        contenders.iter().map(|contender| Row::new(set, &contender.name(), key(&contender.name(), pairs))).collect();
+    let mut open = Vec::new();
+    for (index, row) in rows.iter_mut().enumerate() {
+        match earlier.iter().find(|known| known.key == row.key) {
+            Some(known) => {
+                (row.tally, row.errors) = (known.tally, known.errors);
+                progress(pairs.len() as u64);
+            }
+            None => open.push((index, Gathered::default())),
+        }
+    }
+    let resumed = rows.len() - open.len();
+    // No contender is left to answer: no need of the truth either.
+    let anyone = !open.is_empty();
+    for batch in pairs.chunks(BATCH).take_while(|_| anyone) {
+        let standards = standards(batch);
+        for (index, errors) in &mut open {
+            let contender = &mut contenders[*index];
+            let answers = contender.answers(batch).map_err(|error| Failed { contender: contender.name(), error })?;
+            let (tally, found) = count_up(&standards, &answers);
+            rows[*index].tally = rows[*index].tally.plus(&tally);
+            errors.extend(found);
+            progress(batch.len() as u64);
+        }
+    }
+    for (index, errors) in open {
+        rows[index].errors = errors.errors();
+    }
+    Ok((rows, resumed))
+}
+
+/// The truth about each pair, found on all processors.
+fn standards(pairs: &[PairRecord]) -> Vec<Standard> {
+    in_parallel(pairs, |part| part.iter().map(Standard::of).collect())
+}
+
+/// What `work` makes of parts of `pairs`, one after the other.
+pub(super) fn in_parallel<T: Send>(pairs: &[PairRecord], work: impl Fn(&[PairRecord]) -> Vec<T> + Sync) -> Vec<T> {
+    let workers = thread::available_parallelism().map_or(1, usize::from);
+    let share = pairs.len().div_ceil(workers).max(1);
+    let work = &work;
+    thread::scope(|scope| {
+        let parts: Vec<_> = pairs.chunks(share).map(|part| scope.spawn(move || work(part))).collect();
+        // A worker only ever ends by returning: a panic in it is one here.
+        parts.into_iter().flat_map(|part| part.join().unwrap_or_default()).collect()
+    })
+}
+
+fn count_up(standards: &[Standard], answers: &[Answer]) -> (Tally, Gathered) {
+    let (mut tally, mut errors) = (Tally::default(), Gathered::default());
+    for (standard, answer) in standards.iter().zip(answers) {
+        let found = judge(standard, answer);
+        tally.add(standard.is_contact(), &found);
+        if standard.is_contact() && answer.hit {
+            errors.add(&found);
+        }
+    }
+    (tally, errors)
+}
+
+/// The tally and the errors of answers to valid pairs, whoever gave them.
+pub fn assess(pairs: &[PairRecord], answers: &[Answer]) -> (Tally, Errors) {
+    let (tally, errors) = count_up(&standards(pairs), answers);
+    (tally, errors.errors())
+}
+
+/// SHA-256 of everything that decides a row: this program's version, the contender, the pairs.
+fn key(contender: &str, pairs: &[PairRecord]) -> String {
+    let mut hash = Sha256::new();
+    hash.update(format!("{} {contender} ", env!("CARGO_PKG_VERSION")));
+    pairs.iter().flat_map(|pair| pair.0).for_each(|word| hash.update(word.to_le_bytes()));
+    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+}

@@ -1,0 +1,139 @@
+//! The configurations of a study.
+
+use crate::config::{Config, Profile, Shell};
+
+/// A configuration as studies have it: one SCPU, nothing around the line port. What more SCPUs give follows from it.
+fn one(config: Config) -> Config {
+    Config { scpus: 1, shell: Shell::Line, ..config }
+}
+
+/// What a configuration is called: its profile, and what else is not as by default.
+pub fn name(config: &Config) -> String {
+    let default = Config::default();
+    let rest = Config { scpus: default.scpus, shell: default.shell, profile: default.profile, ..config.clone() };
+    let others = rest.flags().join(" ");
+    format!("{} {}", config.profile, others.replace("--", "")).trim_end().to_owned()
+}
+
+/// A value of an axis: the axis, and the configuration.
+pub type Choice = (&'static str, Config);
+
+fn profile(name: &str) -> Option<Config> {
+    // A name that is none is left out; the tests hold that there is none such.
+    name.parse::<Profile>().ok().map(|profile| one(Config { profile, ..Config::default() }))
+}
+
+/// Profiles that were asked for.
+pub(super) fn chosen(profiles: Vec<Profile>) -> Vec<Choice> {
+    profiles.into_iter().map(|profile| ("profile", one(Config { profile, ..Config::default() }))).collect()
+}
+
+fn profiles(axis: &'static str, names: &[&str]) -> Vec<Choice> {
+    names.iter().filter_map(|name| profile(name)).map(|config| (axis, config)).collect()
+}
+
+fn clocks(mhz: &[f64]) -> Vec<Choice> {
+    mhz.iter().map(|&clock_mhz| ("clock", one(Config { clock_mhz, ..Config::default() }))).collect()
+}
+
+fn intervals(cycles: &[u32]) -> Vec<Choice> {
+    cycles.iter().map(|&interval| ("interval", one(Config { interval, ..Config::default() }))).collect()
+}
+
+/// A row a profile: from narrow to exact.
+pub(super) fn of_profiles() -> Vec<Choice> {
+    profiles("profile", &["half", "bfloat", "e8f15", "paper", "wide", "exact"])
+}
+
+/// Some ten configurations.
+pub(super) fn few() -> Vec<Choice> {
+    [of_profiles(), profiles("fraction bits", &["e10f11z", "e10f19z"]), clocks(&[100.0])].concat()
+}
+
+/// One axis at a time from `wide`.
+pub(super) fn each_alone() -> Vec<Choice> {
+    let fraction: Vec<String> =
+        [5, 7, 9, 11, 13, 15, 17, 19, 20, 21, 22, 24, 25, 27, 31].map(|bits| format!("e10f{bits}z")).to_vec();
+    let exponent: Vec<String> = [6, 7, 8, 9, 11, 12].map(|bits| format!("e{bits}f23z")).to_vec();
+    let of = |axis, list: &[String]| profiles(axis, &list.iter().map(String::as_str).collect::<Vec<_>>());
+    [
+        of_profiles(),
+        of("fraction bits", &fraction),
+        of("exponent bits", &exponent),
+        profiles("subnormals", &["e10f23"]),
+        clocks(&[50.0, 75.0, 100.0, 150.0, 250.0, 300.0]),
+        intervals(&[2, 4]),
+    ]
+    .concat()
+}
+
+/// Configurations one step from `config`: a fraction or exponent bit more or less, the next clock up or down.
+pub(super) fn neighbours(config: &Config) -> Vec<Choice> {
+    let format = config.profile.format();
+    let (exponent, fraction) = (format.exponent_bits(), format.fraction_bits());
+    let mut all = Vec::new();
+    let mut add = |changed: Option<Config>| all.extend(changed.map(|config| ("neighbour of the front", config)));
+    if !config.profile.is_exact() {
+        for (exponent, fraction) in
+            [(exponent, fraction + 1), (exponent, fraction - 1), (exponent + 1, fraction), (exponent - 1, fraction)]
+        {
+            let named = profile(&format!("e{exponent}f{fraction}z"));
+            add(named.map(|named| Config { profile: named.profile, ..config.clone() }));
+        }
+    }
+    for factor in [0.75, 1.25] {
+        add(Some(Config { clock_mhz: (config.clock_mhz * factor).round(), ..config.clone() }));
+    }
+    all
+}
+
+/// The same without those that cannot be generated, which are told apart with the reason, and without repetitions.
+pub(super) fn possible(choices: Vec<Choice>) -> (Vec<Choice>, Vec<String>) {
+    let (mut good, mut left_out): (Vec<Choice>, Vec<String>) = (Vec::new(), Vec::new());
+    for (axis, config) in choices {
+        match config.check() {
+            Err(error) => left_out.push(error.to_string()),
+            Ok(()) => {
+                let same = |other: &Config| {
+                    other.profile.arithmetic() == config.profile.arithmetic()
+                        && Config { profile: config.profile.clone(), ..other.clone() } == config
+                };
+                if !good.iter().any(|(_, other)| same(other)) {
+                    good.push((axis, config));
+                }
+            }
+        }
+    }
+    left_out.dedup();
+    (good, left_out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn configurations_have_the_names_one_would_give() {
+        let wide = profile("wide").expect("a profile");
+        assert_eq!(name(&wide), "wide");
+        assert_eq!(name(&Config { clock_mhz: 300.0, ..wide }), "wide clock 300");
+        assert_eq!(name(&profile("e8f15").expect("a profile")), "e8f15");
+    }
+
+    #[test]
+    fn every_name_is_a_profile_and_nothing_comes_twice() {
+        assert_eq!(of_profiles().len(), 6);
+        assert_eq!(few().len(), 9);
+        let (good, left_out) = possible(each_alone());
+        assert_eq!(good.len(), 6 + 15 + 6 + 1 + 6);
+        assert_eq!(left_out.len(), 2, "{left_out:?}");
+        assert!(left_out[0].starts_with("interval 2: not built yet"), "{left_out:?}");
+        // wide is e10f23z under another name.
+        let (two, _) = possible([profiles("a", &["wide", "e10f23z"]), profiles("b", &["e10f24z"])].concat());
+        assert_eq!(two.len(), 2);
+        let around = neighbours(&profile("wide").expect("a profile"));
+        assert_eq!(around.len(), 6);
+        assert!(around.iter().any(|(_, config)| name(config) == "e10f22z"));
+        assert!(around.iter().any(|(_, config)| name(config) == "wide clock 150"));
+    }
+}

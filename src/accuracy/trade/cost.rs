@@ -1,0 +1,102 @@
+//! What a configuration takes: cycles by cosim, area and clock by synthesis.
+
+use super::plan::Plan;
+use crate::config::Config;
+use crate::kernel::PairRecord;
+use crate::link::LinkModel;
+use crate::report::tally::Tally;
+use crate::synth::{Area, Figures, Options, SynthError, Unit, synthesise};
+use crate::verify::{Bench, VerifyError};
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+/// Cycles of an AFU, each counted by simulating its Verilog.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Cycles {
+    /// What was simulated, over which link at which clock: a hash.
+    pub key: String,
+    /// From the line of a lone pair in to the line of its contact out, over the link `ideal`.
+    pub lone: u64,
+    /// A pair, over the link `ideal`: what one SCPU needs.
+    pub compute: f64,
+    /// A pair, over the link of the study, at the clock of the point.
+    pub link: f64,
+    /// The least a pair that the link allows.
+    pub link_limit: f64,
+    /// Records that differ from the reference kernel's, and other checks that failed: 0, or nothing here holds.
+    pub mismatches: u64,
+}
+
+/// Counts the cycles of an AFU for a lone pair, and for `pairs` over the link `ideal` and over `link`.
+///
+/// # Errors
+/// When a job does not end.
+pub fn cycles(
+    bench: &Bench,
+    pairs: &[PairRecord],
+    link: &LinkModel,
+    seed: u64,
+    key: String,
+) -> Result<Cycles, VerifyError> {
+    let mut mismatches = 0;
+    let mut tally = |pairs: &[PairRecord], link: &LinkModel| {
+        let verdict = bench.run(pairs, link, seed)?;
+        mismatches += (verdict.mismatches.len() + verdict.unmet.len()) as u64;
+        Ok::<_, VerifyError>(Tally::of(&verdict, bench.config()))
+    };
+    let ideal = LinkModel::ideal();
+    let lone = tally(&pairs[..pairs.len().min(1)], &ideal)?;
+    let alone = tally(pairs, &ideal)?;
+    let linked = tally(pairs, link)?;
+    Ok(Cycles {
+        key,
+        lone: lone.latency_cycles.unwrap_or_default(),
+        compute: alone.cycles_per_pair().unwrap_or_default(),
+        link: linked.cycles_per_pair().unwrap_or_default(),
+        link_limit: linked.limit_per_pair().unwrap_or_default(),
+        mismatches,
+    })
+}
+
+/// The hash of what decides [`Cycles`].
+pub(super) fn cycles_key(rtl: &str, pairs: &[PairRecord], link: &LinkModel, seed: u64) -> String {
+    let mut hash = Sha256::new();
+    // A link is plain values: it has JSON.
+    let link = serde_json::to_string(link).unwrap_or_default();
+    hash.update(format!("cycles 1 {rtl} {link} {seed} "));
+    pairs.iter().flat_map(|pair| pair.0).for_each(|word| hash.update(word.to_le_bytes()));
+    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// An SCPU on an FPGA.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Hardware {
+    /// What was synthesised, and how: a hash.
+    pub key: String,
+    /// Its area.
+    pub area: Area,
+    /// The clock after place and route, MHz; none where cells were only counted.
+    pub routed_mhz: Option<f64>,
+}
+
+/// The hash of what decides [`Hardware`].
+pub(super) fn hardware_key(rtl: &str, plan: &Plan, seeds: &[u32]) -> String {
+    let mut hash = Sha256::new();
+    hash.update(format!("hardware 1 {rtl} {} {seeds:?}", plan.target));
+    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Synthesises the SCPU of a configuration, and routes it where there are `seeds` for the placer.
+pub(super) fn hardware(
+    config: &Config,
+    plan: &Plan,
+    seeds: &[u32],
+    key: String,
+    progress: impl FnMut(&str),
+) -> Result<Hardware, SynthError> {
+    let options = Options { target: plan.target, seeds: seeds.to_vec() };
+    let Figures { area, clock_mhz, .. } = synthesise(&Unit::scpu(config)?, &options, progress)?;
+    Ok(Hardware { key, area, routed_mhz: clock_mhz })
+}

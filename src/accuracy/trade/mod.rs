@@ -1,0 +1,25 @@
+//! What accuracy costs: configurations with their errors, their time and their area.
+//!
+//! A [`Point`] is a configuration with everything measured of it. [`run`] measures a [`Plan`]: errors against the truth
+//! on named sets of pairs by the engine of all studies ([`measure`](super::measure)), cycles by cosim, area and clock by
+//! synthesis. Every measurement is kept by the hash of what went into it, so that an interrupted study goes on.
+
+mod axes;
+mod cost;
+mod front;
+mod picture;
+mod plan;
+mod point;
+mod results;
+mod run;
+mod table;
+
+pub use axes::name;
+pub use cost::{Cycles, Hardware, cycles};
+pub use front::{Time, front, step};
+pub use picture::picture;
+pub use plan::{Named, Plan, Size};
+pub use point::Point;
+pub use results::{Results, ResultsError, SCHEMA, SetFigures};
+pub use run::{TradeError, Work, run};
+pub use table::table;

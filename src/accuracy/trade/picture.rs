@@ -1,0 +1,58 @@
+//! The pictures: time across, error up.
+
+use super::front::{Time, front};
+use super::{Point, Results};
+use crate::plot::{Axis, Line, Marker, Plot, Scale, Series};
+
+/// The picture of a time.
+pub fn picture(results: &Results, time: Time) -> Plot {
+    let routed = |point: &Point| point.routed_mhz().is_some();
+    let place = |point: &Point| Some((time.of(point, results)?, results.worst(point)));
+    let of = |which: &dyn Fn(&Point) -> bool| -> (Vec<(f64, f64)>, Vec<String>) {
+        let chosen = results.points.iter().filter(|point| which(point));
+        chosen.filter_map(|point| Some((place(point)?, point.name.clone()))).unzip()
+    };
+    let line = |among: &dyn Fn(&Point) -> bool| -> Vec<(f64, f64)> {
+        front(results, time, among).into_iter().filter_map(|index| place(&results.points[index])).collect()
+    };
+    let times = results.points.iter().filter_map(|point| time.of(point, results));
+    let [least, most] = times.fold([f64::INFINITY, 0.0], |[least, most], t| [least.min(t), most.max(t)]);
+    let x = Axis::new(label(time), Scale::Linear);
+    // Room at both ends for names; where the times are nearly one, from nothing.
+    let room = 0.12 * (most - least);
+    let x = match most - least > 0.1 * most {
+        true => x.from_to((least - room).max(0.0), most + room),
+        false if most > 0.0 => x.from_to(0.0, 2.0 * most),
+        false => x,
+    };
+    let title = match time {
+        Time::Lone => "A lone pair",
+        Time::Device => "Throughput of a full device",
+        Time::Link => "Over the link",
+    };
+    let y = Axis::new("largest relative error on the scenes", Scale::Log);
+    let mut plot = Plot::new(title, x, y);
+    let anyone_routed = results.points.iter().any(routed);
+    plot = if anyone_routed {
+        plot.with(Series::new("front, placed and routed", 0, line(&routed)).line(Line::Solid))
+    } else {
+        plot.with(Series::new("front by the delay model, nothing of it routed", 5, line(&|_| true)).line(Line::Dotted))
+    };
+    if anyone_routed {
+        let (points, names) = of(&routed);
+        plot = plot.with(Series::new("placed and routed", 0, points).marker(Marker::Circle).named(names));
+    }
+    let (points, names) = of(&|point| !routed(point));
+    if !points.is_empty() {
+        plot = plot.with(Series::new("clock by the delay model", 1, points).hollow(Marker::Circle).named(names));
+    }
+    plot
+}
+
+fn label(time: Time) -> &'static str {
+    match time {
+        Time::Lone => "a lone pair, line in to line out, ns",
+        Time::Device => "ns a pair, of a device full of SCPUs",
+        Time::Link => "ns a pair over the link, one SCPU",
+    }
+}

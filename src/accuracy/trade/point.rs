@@ -1,0 +1,96 @@
+//! A configuration with all that was measured of it.
+
+use super::cost::{Cycles, Hardware};
+use crate::accuracy::{Errors, Row, Tally};
+use crate::config::Config;
+use crate::synth::{Area, Target};
+use serde::{Deserialize, Serialize};
+
+/// A configuration, its errors, its time and its area.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Point {
+    /// Its name, the only one of that name.
+    pub name: String,
+    /// The axis along which it was chosen.
+    pub axis: String,
+    /// The configuration, of one SCPU with nothing around its line port.
+    pub config: Config,
+    /// The clock that its stages came out at by the delay model, MHz: not above the one asked for.
+    pub modelled_mhz: f64,
+    /// Stages of the SCPU, as the generator counts them.
+    pub scpu_cycles: u32,
+    /// SHA-256 of its Verilog.
+    pub rtl_sha256: String,
+    /// A row a set of pairs.
+    pub rows: Vec<Row>,
+    /// Cycles by cosim.
+    pub cycles: Cycles,
+    /// Area and clock, where the tools for it are there.
+    pub hardware: Option<Hardware>,
+    /// Nanoseconds a pair of the same arithmetic in software, on one thread of this machine.
+    pub software_ns: Option<f64>,
+}
+
+impl Point {
+    /// The clock that its times are of, MHz: after place and route, else by the delay model.
+    pub fn clock_mhz(&self) -> f64 {
+        self.routed_mhz().unwrap_or(self.modelled_mhz)
+    }
+
+    /// The clock after place and route, MHz.
+    pub fn routed_mhz(&self) -> Option<f64> {
+        self.hardware.as_ref().and_then(|hardware| hardware.routed_mhz)
+    }
+
+    fn ns(&self, cycles: f64) -> f64 {
+        1000.0 * cycles / self.clock_mhz()
+    }
+
+    /// From the line of a lone pair in to the line of its contact out, ns.
+    pub fn lone_ns(&self) -> f64 {
+        self.ns(self.cycles.lone as f64)
+    }
+
+    /// A pair through one SCPU, ns.
+    pub fn compute_ns(&self) -> f64 {
+        self.ns(self.cycles.compute)
+    }
+
+    /// A pair over the link, ns.
+    pub fn link_ns(&self) -> f64 {
+        self.ns(self.cycles.link)
+    }
+
+    /// SCPUs that a device of the target holds.
+    pub fn on_device(&self, target: Target) -> Option<u64> {
+        Some(target.capacity()?.fits(&self.area()?))
+    }
+
+    /// A pair through a device full of SCPUs, ns; none where not even one fits.
+    pub fn device_ns(&self, target: Target) -> Option<f64> {
+        self.on_device(target).filter(|&scpus| scpus > 0).map(|scpus| self.compute_ns() / scpus as f64)
+    }
+
+    /// Its SCPU's area.
+    pub fn area(&self) -> Option<Area> {
+        self.hardware.as_ref().map(|hardware| hardware.area)
+    }
+
+    /// What it came to on all pairs.
+    pub fn tally(&self) -> Tally {
+        self.rows.iter().fold(Tally::default(), |sum, row| sum.plus(&row.tally))
+    }
+
+    /// Wrong decisions on all pairs.
+    pub fn wrong(&self) -> u64 {
+        let tally = self.tally();
+        tally.missed + tally.false_hits
+    }
+
+    /// Its errors on the sets of these names.
+    pub fn errors(&self, sets: &[String]) -> Errors {
+        let rows = self.rows.iter().filter(|row| sets.contains(&row.category));
+        rows.fold(Errors::default(), |sum, row| sum.plus(&row.errors))
+    }
+}

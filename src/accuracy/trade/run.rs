@@ -1,0 +1,298 @@
+//! A study, carried out.
+
+use super::axes::{Choice, name, neighbours};
+use super::cost::{Cycles, Hardware, cycles, cycles_key, hardware, hardware_key};
+use super::front::{Time, front};
+use super::results::Store;
+use super::{Plan, Point, Results, ResultsError};
+use crate::accuracy::{Contenders, Failed, Profiled, Row, measure};
+use crate::config::Config;
+use crate::link::LinkError;
+use crate::synth::{SynthError, Unit};
+use crate::verify::{Bench, VerifyError, rtl_sha256};
+use std::collections::VecDeque;
+use std::path::Path;
+use std::sync::{Mutex, PoisonError, mpsc};
+use std::thread;
+
+/// Why a study did not come to its end.
+#[derive(Debug, thiserror::Error)]
+pub enum TradeError {
+    /// A kernel failed.
+    #[error(transparent)]
+    Engine(#[from] Failed),
+    /// No model, or no end of a job.
+    #[error(transparent)]
+    Verify(#[from] VerifyError),
+    /// A synthesis program refused.
+    #[error(transparent)]
+    Synth(#[from] SynthError),
+    /// The link cannot be at a point's clock.
+    #[error(transparent)]
+    Link(#[from] LinkError),
+    /// The store of results.
+    #[error(transparent)]
+    Results(#[from] ResultsError),
+}
+
+/// A piece of work done, for progress.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Work {
+    /// So many pieces of work more.
+    Planned(usize),
+    /// Something begins.
+    Begun(String),
+    /// A piece is done.
+    Done,
+}
+
+/// Measures `plan`. What `folder` (taken even if it is not ours with `true`) holds from an earlier run is not measured
+/// again, and everything new is put there as it comes.
+///
+/// # Errors
+/// When a program refuses, a job does not end, or the folder is not ours or cannot be written. A missing synthesis
+/// program is no error: the results say so.
+pub fn run(plan: &Plan, folder: Option<(&Path, bool)>, mut progress: impl FnMut(Work)) -> Result<Results, TradeError> {
+    let mut store = Store::open(folder)?;
+    let mut results = Results::new(plan);
+    progress(Work::Planned(plan.choices.len() + plan.sets.len()));
+    add(plan, &plan.choices, &mut results, &mut store, &mut progress)?;
+    if plan.neighbours > 0 {
+        let more = beside_the_front(plan, &results);
+        progress(Work::Planned(more.len() + plan.sets.len()));
+        add(plan, &more, &mut results, &mut store, &mut progress)?;
+    }
+    route(plan, &mut results, &mut store, &mut progress)?;
+    Ok(results)
+}
+
+/// Configurations a step from those on a front that are not there yet: as many as the plan has, those of each in turn.
+fn beside_the_front(plan: &Plan, results: &Results) -> Vec<Choice> {
+    let mut around: Vec<VecDeque<Choice>> =
+        best(results).into_iter().map(|index| neighbours(&results.points[index].config).into()).collect();
+    let there = |choices: &[Choice], config: &Config| choices.iter().any(|(_, other)| name(other) == name(config));
+    let mut more: Vec<Choice> = Vec::new();
+    while more.len() < plan.neighbours && around.iter().any(|choices| !choices.is_empty()) {
+        for choice in around.iter_mut().filter_map(VecDeque::pop_front) {
+            let is_new = !there(&plan.choices, &choice.1) && !there(&more, &choice.1) && choice.1.check().is_ok();
+            if is_new && more.len() < plan.neighbours {
+                more.push(choice);
+            }
+        }
+    }
+    more
+}
+
+/// The points on a front of any time, by the clocks known so far.
+fn best(results: &Results) -> Vec<usize> {
+    let mut all: Vec<usize> = Time::ALL.into_iter().flat_map(|time| front(results, time, |_| true)).collect();
+    all.sort_unstable();
+    all.dedup();
+    all
+}
+
+/// How often fronts are looked at anew: a clock that place and route lowers may bring another point there.
+const ROUNDS: usize = 4;
+
+/// Places and routes the points on the fronts.
+fn route(
+    plan: &Plan,
+    results: &mut Results,
+    store: &mut Store,
+    progress: &mut impl FnMut(Work),
+) -> Result<(), TradeError> {
+    for _ in 0..if plan.placer_seeds.is_empty() { 0 } else { ROUNDS } {
+        let open = |point: &Point| point.hardware.is_some() && point.routed_mhz().is_none();
+        let chosen: Vec<usize> = best(results).into_iter().filter(|&index| open(&results.points[index])).collect();
+        if chosen.is_empty() {
+            break;
+        }
+        progress(Work::Planned(chosen.len()));
+        let configs: Vec<Config> = chosen.iter().map(|&index| results.points[index].config.clone()).collect();
+        let costs = costs(plan, &configs.iter().collect::<Vec<_>>(), &plan.placer_seeds, store, progress)?;
+        for (index, cost) in chosen.into_iter().zip(costs) {
+            let point = &mut results.points[index];
+            (point.cycles, point.hardware) = (cost.cycles, cost.hardware);
+        }
+    }
+    Ok(())
+}
+
+/// Measures `choices` and adds their points.
+fn add(
+    plan: &Plan,
+    choices: &[Choice],
+    results: &mut Results,
+    store: &mut Store,
+    progress: &mut impl FnMut(Work),
+) -> Result<(), TradeError> {
+    let configs: Vec<&Config> = choices.iter().map(|(_, config)| config).collect();
+    let rows = errors(plan, &configs, store, progress)?;
+    let costs = costs(plan, &configs, &[], store, progress)?;
+    for (((axis, config), rows), cost) in choices.iter().zip(rows).zip(costs) {
+        if let Some(missing) = cost.missing {
+            if !results.left_out.contains(&missing) {
+                results.left_out.push(missing);
+            }
+        }
+        results.points.push(Point {
+            name: name(config),
+            axis: (*axis).to_owned(),
+            config: config.clone(),
+            modelled_mhz: cost.modelled_mhz,
+            scpu_cycles: cost.scpu_cycles,
+            rtl_sha256: cost.rtl_sha256,
+            rows,
+            cycles: cost.cycles,
+            hardware: cost.hardware,
+            software_ns: None,
+        });
+    }
+    Ok(())
+}
+
+/// The rows of each configuration: the errors of its arithmetic on each set.
+fn errors(
+    plan: &Plan,
+    configs: &[&Config],
+    store: &mut Store,
+    progress: &mut impl FnMut(Work),
+) -> Result<Vec<Vec<Row>>, TradeError> {
+    // The clock changes no bit: an arithmetic answers once.
+    let mut contenders = Contenders::new();
+    let mut names: Vec<String> = Vec::new();
+    for config in configs {
+        let contender: Box<dyn crate::accuracy::Contender> = Box::new(Profiled::new(&config.profile));
+        if !names.contains(&contender.name()) {
+            names.push(contender.name());
+            contenders.push(contender);
+        }
+    }
+    let mut found: Vec<Vec<Row>> = vec![Vec::new(); configs.len()];
+    for set in &plan.sets {
+        progress(Work::Begun(format!("errors on {}", set.name)));
+        let (rows, _) = measure(&set.name, &set.pairs, &mut contenders, &store.rows, |_| {})?;
+        for (config, found) in configs.iter().zip(&mut found) {
+            let name = Profiled::new(&config.profile).title();
+            found.extend(rows.iter().find(|row| row.contender == name).cloned());
+        }
+        let new: Vec<Row> =
+            rows.into_iter().filter(|row| !store.rows.iter().any(|known| known.key == row.key)).collect();
+        store.rows.extend(new);
+        store.save()?;
+        progress(Work::Done);
+    }
+    Ok(found)
+}
+
+/// What was measured of a configuration's hardware.
+struct Cost {
+    rtl_sha256: String,
+    scpu_cycles: u32,
+    modelled_mhz: f64,
+    cycles: Cycles,
+    hardware: Option<Hardware>,
+    missing: Option<String>,
+}
+
+/// What workers tell.
+enum News {
+    Begun(String),
+    Cycles(Cycles),
+    Hardware(Hardware),
+    Ended(usize, Box<Result<Cost, TradeError>>),
+}
+
+/// The cost of each configuration, `plan.jobs` of them at a time.
+fn costs(
+    plan: &Plan,
+    configs: &[&Config],
+    seeds: &[u32],
+    store: &mut Store,
+    progress: &mut impl FnMut(Work),
+) -> Result<Vec<Cost>, TradeError> {
+    let open: Mutex<VecDeque<usize>> = Mutex::new((0..configs.len()).collect());
+    let next = || open.lock().unwrap_or_else(PoisonError::into_inner).pop_front();
+    let stop = || open.lock().unwrap_or_else(PoisonError::into_inner).clear();
+    let known = (store.cycles.clone(), store.hardware.clone());
+    let mut costs: Vec<Option<Cost>> = configs.iter().map(|_| None).collect();
+    thread::scope(|scope| {
+        let (sender, receiver) = mpsc::channel();
+        for _ in 0..plan.jobs.clamp(1, configs.len().max(1)) {
+            let (sender, known, next) = (sender.clone(), &known, &next);
+            scope.spawn(move || {
+                while let Some(index) = next() {
+                    let tell = |news| drop(sender.send(news)); // nobody listens any more: nothing to tell
+                    let cost = cost(plan, configs[index], seeds, known, &tell);
+                    tell(News::Ended(index, Box::new(cost)));
+                }
+            });
+        }
+        drop(sender);
+        for news in receiver {
+            match news {
+                News::Begun(what) => progress(Work::Begun(what)),
+                News::Cycles(cycles) => {
+                    store.cycles.push(cycles);
+                    store.save().inspect_err(|_| stop())?;
+                }
+                News::Hardware(hardware) => {
+                    store.hardware.push(hardware);
+                    store.save().inspect_err(|_| stop())?;
+                }
+                News::Ended(index, cost) => {
+                    costs[index] = Some((*cost).inspect_err(|_| stop())?);
+                    progress(Work::Done);
+                }
+            }
+        }
+        Ok::<_, TradeError>(())
+    })?;
+    Ok(costs.into_iter().flatten().collect())
+}
+
+fn cost(
+    plan: &Plan,
+    config: &Config,
+    seeds: &[u32],
+    (known_cycles, known_hardware): &(Vec<Cycles>, Vec<Hardware>),
+    tell: &impl Fn(News),
+) -> Result<Cost, TradeError> {
+    let rtl_sha256 = rtl_sha256(config)?;
+    let unit = Unit::scpu(config)?;
+    let modelled_mhz = unit.modelled_mhz().unwrap_or(config.clock_mhz).min(config.clock_mhz);
+    let scpu_cycles = unit.latency.unwrap_or_default();
+
+    let key = hardware_key(&rtl_sha256, plan, seeds);
+    let mut missing = None;
+    let kept = known_hardware.iter().find(|hardware| hardware.key == key).cloned();
+    let hardware = match kept {
+        Some(kept) => Some(kept),
+        None if !plan.synthesis => None,
+        None => match hardware(config, plan, seeds, key, |what| tell(News::Begun(what.to_owned()))) {
+            Ok(made) => {
+                tell(News::Hardware(made.clone()));
+                Some(made)
+            }
+            Err(SynthError::MissingTool(tool)) => {
+                missing = Some(format!("area and clock: {tool}"));
+                None
+            }
+            Err(error) => return Err(error.into()),
+        },
+    };
+    let clock = hardware.as_ref().and_then(|hardware| hardware.routed_mhz).unwrap_or(modelled_mhz);
+    let link = plan.link.at(clock)?;
+    let pairs = plan.sets.first().map_or(&[][..], |set| &set.pairs);
+    let key = cycles_key(&rtl_sha256, pairs, &link, plan.seed);
+    let cycles = match known_cycles.iter().find(|cycles| cycles.key == key) {
+        Some(kept) => kept.clone(),
+        None => {
+            tell(News::Begun(format!("{}: cosim", name(config))));
+            let made = cycles(&Bench::new(config)?, pairs, &link, plan.seed, key)?;
+            tell(News::Cycles(made.clone()));
+            made
+        }
+    };
+    Ok(Cost { rtl_sha256, scpu_cycles, modelled_mhz, cycles, hardware, missing })
+}

@@ -1,0 +1,89 @@
+//! The table for people: a row a configuration, every time beside that of `paper`.
+
+use super::{Point, Results};
+use crate::report::table::{grouped, table as drawn};
+
+/// What times are compared with.
+const BASE: &str = "paper";
+/// Times that differ by less than this share are the same: links stall at random.
+const SAME: f64 = 0.03;
+
+/// The table, and below it what its words mean.
+pub fn table(results: &Results) -> String {
+    let heading = [
+        "",
+        "wrong",
+        "BAD",
+        "worst error",
+        "typical",
+        "lone pair, ns",
+        "×",
+        "link, ns",
+        "×",
+        "device, ns",
+        "×",
+        "LUT",
+        "at the link",
+    ];
+    let base = results.point(BASE);
+    let rows = results.points.iter().map(|point| row(results, point, base));
+    let scenes = results.scenes().join(" and ");
+    let target = results.target;
+    let mut text = format!(
+        "{}\n\
+         wrong: decisions, of {} pairs; BAD: gross failures. Errors are relative, of {scenes}. Times: a lone pair, line in to\n\
+         line out; a pair over link {}; a pair through a {} full of SCPUs. ×: to {BASE}. LUT: of an SCPU.\n",
+        drawn(&heading, rows),
+        grouped(results.pairs()),
+        results.link,
+        target.device(),
+    );
+    text += if results.points.iter().any(|point| point.routed_mhz().is_some()) {
+        "Clocks are those of place and route, or else of the delay model.\n"
+    } else {
+        "Clocks are the delay model's: nothing was placed and routed.\n"
+    };
+    results.left_out.iter().for_each(|what| text += &format!("left out: {what}\n"));
+    text.trim_end().to_owned()
+}
+
+fn row(results: &Results, point: &Point, base: Option<&Point>) -> Vec<String> {
+    let times = |time: &dyn Fn(&Point) -> Option<f64>| {
+        let mine = time(point);
+        let ratio = mine.zip(base.and_then(time)).map(|(mine, base)| mine / base);
+        let show = |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{value:.2}"));
+        [show(mine), show(ratio)]
+    };
+    let mut cells = vec![
+        point.name.clone(),
+        grouped(point.wrong()),
+        grouped(point.tally().bad),
+        format!("{:.1e}", results.worst(point)),
+        format!("{:.1e}", results.typical(point)),
+    ];
+    cells.extend(times(&|point| Some(point.lone_ns())));
+    cells.extend(times(&|point| Some(point.link_ns())));
+    cells.extend(times(&|point| point.device_ns(results.target)));
+    cells.push(point.area().map_or("-".to_owned(), |area| grouped(area.luts)));
+    cells.push(base.map_or_else(String::new, |base| at_the_link(point, base)));
+    cells
+}
+
+/// What a point costs more than `base` where a link is in the way.
+pub(super) fn at_the_link(point: &Point, base: &Point) -> String {
+    let ratio = point.link_ns() / base.link_ns();
+    let hidden = |point: &Point| point.cycles.link <= point.cycles.link_limit * (1.0 + 3.0 * SAME);
+    if point.name == base.name {
+        return String::new();
+    }
+    if (ratio - 1.0).abs() > SAME {
+        return format!("{ratio:.2} × the time");
+    }
+    let why = if hidden(point) { "free here" } else { "no slower here" };
+    let Some((mine, base)) = point.area().zip(base.area()) else { return why.to_owned() };
+    match mine.luts.checked_sub(base.luts) {
+        Some(0) => why.to_owned(),
+        Some(more) => format!("{why}; costs {} LUT", grouped(more)),
+        None => format!("{why}; saves {} LUT", grouped(base.luts - mine.luts)),
+    }
+}

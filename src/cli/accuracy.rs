@@ -1,0 +1,78 @@
+//! `afu accuracy`: what accuracy costs in time.
+
+use std::path::PathBuf;
+use std::thread;
+
+use clap::Args;
+use contact_afu::accuracy::trade::{self, ResultsError, Size, TradeError, Work};
+use contact_afu::config::Profile;
+
+use super::failure::{Failure, Kind};
+use super::{link, output, progress};
+
+/// Show what accuracy costs in time: errors against the truth beside latency, throughput and area
+///
+/// For each arithmetic: wrong decisions and errors on the diamond, crowded scenes and the hard pairs; the time of a lone
+/// pair and of many over a link, from the simulated Verilog; area and clock of an SCPU, from synthesis. Models and
+/// netlists are kept, so only a first run builds them.
+#[derive(Args, Debug)]
+pub struct Accuracy {
+    /// Link between AFU and memory: a name or file as in `afu cosim`
+    #[arg(long, value_name = "NAME|FILE", default_value = "harp1")]
+    link: String,
+    /// Seed of pairs and link
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Configurations worked on at a time [default: one a processor]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256))]
+    jobs: Option<u32>,
+    /// Only these profiles: a list of half, bfloat, paper, wide, exact, eXfY
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    profile: Vec<Profile>,
+    /// Neither Yosys nor nextpnr: no areas, and clocks by the delay model
+    #[arg(long)]
+    no_synth: bool,
+    /// Write the results as JSON too (schema contact-afu/accuracy/1); - is standard output
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+pub fn run(options: &Accuracy) -> Result<(), Failure> {
+    let jobs = options.jobs.map_or_else(|| thread::available_parallelism().map_or(1, usize::from), |n| n as usize);
+    let mut plan = Size::Profiles.plan(link::describe(&options.link)?, &options.link, options.seed, jobs);
+    if !options.profile.is_empty() {
+        plan.only(&options.profile);
+    }
+    plan.synthesis = !options.no_synth;
+    let bar = progress::bar("accuracy", "measurements", 0);
+    let results = trade::run(&plan, None, |work| match work {
+        Work::Planned(more) => bar.inc_length(more as u64),
+        Work::Begun(what) => bar.set_prefix(what),
+        Work::Done => bar.inc(1),
+    });
+    bar.finish_and_clear();
+    let results = results?;
+    output::show(&trade::table(&results), options.json.as_deref().is_some_and(output::is_stdout))?;
+    if let Some(path) = &options.json {
+        output::json(path, &results)?;
+    }
+    match results.points.iter().find(|point| point.cycles.mismatches > 0) {
+        None => Ok(()),
+        Some(point) => {
+            let message = format!("{}: {} mismatches with the reference", point.name, point.cycles.mismatches);
+            Err(Failure::new(Kind::Unmet, message))
+        }
+    }
+}
+
+impl From<TradeError> for Failure {
+    fn from(error: TradeError) -> Self {
+        match error {
+            TradeError::Verify(error) => error.into(),
+            TradeError::Synth(error) => error.into(),
+            TradeError::Results(ResultsError::Folder(error)) => error.into(),
+            TradeError::Link(_) => Self::caused(Kind::Usage, error),
+            TradeError::Engine(_) | TradeError::Results(_) => Self::caused(Kind::Other, error),
+        }
+    }
+}

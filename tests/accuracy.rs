@@ -1,0 +1,111 @@
+//! Errors as the studies of accuracy have them, against computations of their own.
+
+use contact_afu::accuracy::{Answer, Contender, Contenders, Errors, Formula, Profiled, Row, assess, measure};
+use contact_afu::kernel::{EngineError, PairRecord};
+use contact_afu::pairs::Set;
+
+fn profiled(name: &str) -> Box<dyn Contender> {
+    Box::new(Profiled::new(&name.parse().expect("a profile")))
+}
+
+fn rows(pairs: &[PairRecord], mut contenders: Contenders) -> Vec<Row> {
+    measure("dense", pairs, &mut contenders, &[], |_| {}).expect("no contender fails").0
+}
+
+fn dense() -> Vec<PairRecord> {
+    Set::Dense(10_000).pairs(3)
+}
+
+/// `paper` is binary32: the formula in the machine's own `f32`, and errors found with `f64` alone, which are right to
+/// 29 bits of what is compared.
+#[test]
+fn errors_of_paper_are_those_of_f32() {
+    let pairs = dense();
+    let rows = rows(&pairs, vec![profiled("paper"), Box::new(Formula)]);
+    assert_eq!((rows[0].tally, rows[0].errors), (rows[1].tally, rows[1].errors));
+
+    let (mut sum, mut largest, mut count) = (0.0, 0.0_f64, 0_u64);
+    for pair in &pairs {
+        let [x1, y1, z1, r1, x2, y2, z2, r2] = pair.values();
+        let (dx, dy, dz) = (x1 - x2, y1 - y2, z1 - z2);
+        let distance = (dx * dx + dy * dy + dz * dz).sqrt();
+        let [x, y, z] = [[x1, x2], [y1, y2], [z1, z2]].map(|[a, b]| f64::from(a) - f64::from(b));
+        let (exact, radii) = ((x * x + y * y + z * z).sqrt(), f64::from(r1) + f64::from(r2));
+        if distance > r1 + r2 || exact > radii {
+            continue;
+        }
+        let error = (f64::from(r1 + r2 - distance) - (radii - exact)).abs() / radii;
+        (sum, largest, count) = (sum + error, largest.max(error), count + 1);
+    }
+    let depth = rows[0].errors.depth;
+    assert_eq!(depth.count, count);
+    assert!((depth.mean - sum / count as f64).abs() < 1e-12, "{depth:?}, {}", sum / count as f64);
+    assert!((depth.largest - largest).abs() < 1e-12, "{depth:?}, {largest}");
+    assert!(depth.mean < depth.p999 && depth.p999 <= depth.largest);
+}
+
+/// Up to the 23 bits of the record every bit makes errors smaller. With one more they grow, and then fall again: a number
+/// of 24 bits lies in the middle of two records every second time, and what is rounded there is rounded a second time.
+/// In the end they are those of rounding the true number to the record, which no arithmetic escapes.
+#[test]
+fn more_fraction_bits_are_no_more_error_on_average_but_from_23_to_24() {
+    let bits: Vec<u32> = (5..=32).collect();
+    let rows = rows(&dense(), bits.iter().map(|bits| profiled(&format!("e10f{bits}z"))).collect());
+    let of = |row: &Row| [row.errors.depth.mean, row.errors.normal.mean, row.errors.position.mean];
+    for (pair, bits) in rows.windows(2).zip(&bits) {
+        for (fewer, more) in of(&pair[0]).into_iter().zip(of(&pair[1])) {
+            // From 28 bits on a mean moves as chance moves.
+            let limit = fewer * if *bits < 28 { 1.0 } else { 1.001 };
+            assert!(*bits == 23 || more <= limit, "{bits} bits: {fewer:e}, one more: {more:e}");
+        }
+    }
+    // Of a position in units of what is rounded: a quarter on average, with a tie every second time 5/16.
+    let [at_23, at_24, at_32] = [23, 24, 32].map(|bits| of(&rows[bits - 5])[2]);
+    assert!((1.2..1.3).contains(&(at_24 / at_32)) && at_24 > 1.2 * at_23, "{at_23:e} {at_24:e} {at_32:e}");
+    // Between 5 and 20 bits each halves the error, nearly.
+    let [first, last] = [0, 15].map(|i| rows[i].errors.contact.mean);
+    assert!((0.4..0.6).contains(&(last / first).powf(1.0 / 15.0)), "{first:e} {last:e}");
+}
+
+/// A formula of which one sum is rounded the wrong way.
+struct Broken;
+
+impl Contender for Broken {
+    fn name(&self) -> String {
+        "broken".to_owned()
+    }
+
+    fn answers(&mut self, pairs: &[PairRecord]) -> Result<Vec<Answer>, EngineError> {
+        let mut answers = Formula.answers(pairs)?;
+        for answer in &mut answers {
+            // Toward zero, where the nearest is further from it.
+            answer.depth = f64::from((answer.depth as f32).next_down());
+        }
+        Ok(answers)
+    }
+}
+
+#[test]
+fn a_broken_rounding_is_seen() {
+    let pairs = dense();
+    let found = rows(&pairs, vec![profiled("paper"), Box::new(Broken)]);
+    let [good, bad] = [&found[0].errors, &found[1].errors];
+    assert!(bad.depth_ulps.mean > good.depth_ulps.mean * 1.01, "{good:?} {bad:?}");
+    assert_eq!(bad.normal, good.normal, "nothing else changed");
+    assert_eq!(bad.position, good.position);
+}
+
+#[test]
+fn a_known_row_is_not_measured_again() {
+    let pairs = &dense()[..500];
+    let mut row = rows(pairs, vec![profiled("wide")]).remove(0);
+    let (tally, errors) = assess(pairs, &profiled("wide").answers(pairs).expect("answers"));
+    assert_eq!((row.tally, row.errors), (tally, errors));
+    row.errors = Errors::default();
+    let mut contenders = vec![profiled("wide"), profiled("paper")];
+    let (again, known) = measure("dense", pairs, &mut contenders, &[row.clone()], |_| {}).expect("answers");
+    assert_eq!((known, &again[0]), (1, &row));
+    assert_ne!(again[1].errors, Errors::default());
+    let (others, known) = measure("dense", &pairs[1..], &mut contenders, &[row], |_| {}).expect("answers");
+    assert_eq!((known, others.len()), (0, 2), "other pairs are other rows");
+}
