@@ -10,7 +10,7 @@ const SPHERES: usize = 1000;
 /// the origin and radii from ¼ to ½. A candidate is a pair whose bounding boxes touch. The first n pairs are the same
 /// for every count of at least n.
 pub fn pairs(count: u64, seed: u64) -> Vec<PairRecord> {
-    let mut source = Source::new(seed ^ 0x6465_6E73_65);
+    let mut source = Source::new(seed ^ 0x64_656E_7365);
     let mut pairs = Vec::new();
     while (pairs.len() as u64) < count {
         let mut spheres: Vec<[f32; 4]> = (0..SPHERES).map(|_| source.in_a_box()).collect();

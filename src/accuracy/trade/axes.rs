@@ -1,6 +1,7 @@
 //! The configurations of a study.
 
 use crate::config::{Config, Profile, Shell};
+use crate::number::{Format, Roots};
 
 /// A configuration as studies have it: one SCPU, nothing around the line port. What more SCPUs give follows from it.
 fn one(config: Config) -> Config {
@@ -42,7 +43,7 @@ fn intervals(cycles: &[u32]) -> Vec<Choice> {
 
 /// A row a profile: from narrow to exact.
 pub(super) fn of_profiles() -> Vec<Choice> {
-    profiles("profile", &["half", "bfloat", "e8f15", "paper", "wide", "exact"])
+    profiles("profile", &["half", "bfloat", "e8f15", "paper", "wide", "wide+faithful", "exact"])
 }
 
 /// Some ten configurations.
@@ -54,37 +55,51 @@ pub(super) fn few() -> Vec<Choice> {
 pub(super) fn each_alone() -> Vec<Choice> {
     let fraction: Vec<String> =
         [5, 7, 9, 11, 13, 15, 17, 19, 20, 21, 22, 24, 25, 27, 31].map(|bits| format!("e10f{bits}z")).to_vec();
-    let exponent: Vec<String> = [6, 7, 8, 9, 11, 12].map(|bits| format!("e{bits}f23z")).to_vec();
+    let exponent: Vec<String> = [6, 7, 9, 11, 12].map(|bits| format!("e{bits}f23z")).to_vec();
     let of = |axis, list: &[String]| profiles(axis, &list.iter().map(String::as_str).collect::<Vec<_>>());
     [
         of_profiles(),
         of("fraction bits", &fraction),
         of("exponent bits", &exponent),
-        profiles("subnormals", &["e10f23"]),
+        profiles("subnormals", &["wide+kept", "paper+flushed", "half+flushed"]),
+        profiles("rounding", &["wide+zero", "paper+zero"]),
+        profiles("roots", &["paper+faithful", "e10f15zr", "e10f19zr"]),
         clocks(&[50.0, 75.0, 100.0, 150.0, 250.0, 300.0]),
         intervals(&[2, 4]),
     ]
     .concat()
 }
 
-/// Configurations one step from `config`: a fraction or exponent bit more or less, the next clock up or down.
+/// Configurations one step from `config`: a fraction or exponent bit more or less, roots of the other kind, the next clock
+/// up or down.
 pub(super) fn neighbours(config: &Config) -> Vec<Choice> {
     let format = config.profile.format();
     let (exponent, fraction) = (format.exponent_bits(), format.fraction_bits());
-    let mut all = Vec::new();
-    let mut add = |changed: Option<Config>| all.extend(changed.map(|config| ("neighbour of the front", config)));
-    if !config.profile.is_exact() {
-        for (exponent, fraction) in
-            [(exponent, fraction + 1), (exponent, fraction - 1), (exponent + 1, fraction), (exponent - 1, fraction)]
-        {
-            let named = profile(&format!("e{exponent}f{fraction}z"));
-            add(named.map(|named| Config { profile: named.profile, ..config.clone() }));
-        }
-    }
-    for factor in [0.75, 1.25] {
-        add(Some(Config { clock_mhz: (config.clock_mhz * factor).round(), ..config.clone() }));
-    }
-    all
+    let with = |exponent, fraction, roots| {
+        let other = Format::new(exponent, fraction, format.subnormals()).ok()?.with_rounding(format.rounding());
+        // As text it is the profile of that format.
+        other.with_roots(roots).ok()?.to_string().parse::<Profile>().ok()
+    };
+    let other_roots = if format.roots() == Roots::Correct { Roots::Faithful } else { Roots::Correct };
+    let formats = match config.profile.is_exact() {
+        true => Vec::new(),
+        false => vec![
+            with(exponent, fraction, other_roots),
+            with(exponent, fraction + 1, format.roots()),
+            with(exponent, fraction - 1, format.roots()),
+            with(exponent - 1, fraction, format.roots()),
+            with(exponent + 1, fraction, format.roots()),
+        ],
+    };
+    let formats = formats.into_iter().flatten().map(|profile| Config { profile, ..config.clone() });
+    let clocks = [0.75, 1.25].map(|factor| Config { clock_mhz: (config.clock_mhz * factor).round(), ..config.clone() });
+    formats.chain(clocks).map(|config| ("neighbour of the front", config)).collect()
+}
+
+/// Whether two configurations are one under two names.
+pub(super) fn is_same(a: &Config, b: &Config) -> bool {
+    let renamed = Config { profile: a.profile.clone(), ..b.clone() };
+    a.profile.arithmetic() == b.profile.arithmetic() && *a == renamed
 }
 
 /// The same without those that cannot be generated, which are told apart with the reason, and without repetitions.
@@ -94,11 +109,7 @@ pub(super) fn possible(choices: Vec<Choice>) -> (Vec<Choice>, Vec<String>) {
         match config.check() {
             Err(error) => left_out.push(error.to_string()),
             Ok(()) => {
-                let same = |other: &Config| {
-                    other.profile.arithmetic() == config.profile.arithmetic()
-                        && Config { profile: config.profile.clone(), ..other.clone() } == config
-                };
-                if !good.iter().any(|(_, other)| same(other)) {
+                if !good.iter().any(|(_, other)| is_same(other, &config)) {
                     good.push((axis, config));
                 }
             }
@@ -122,18 +133,17 @@ mod tests {
 
     #[test]
     fn every_name_is_a_profile_and_nothing_comes_twice() {
-        assert_eq!(of_profiles().len(), 6);
-        assert_eq!(few().len(), 9);
+        assert_eq!(of_profiles().len(), 7);
+        assert_eq!(few().len(), 10);
         let (good, left_out) = possible(each_alone());
-        assert_eq!(good.len(), 6 + 15 + 6 + 1 + 6);
+        assert_eq!(good.len(), 7 + 15 + 5 + 3 + 2 + 3 + 6);
         assert_eq!(left_out.len(), 2, "{left_out:?}");
         assert!(left_out[0].starts_with("interval 2: not built yet"), "{left_out:?}");
         // wide is e10f23z under another name.
         let (two, _) = possible([profiles("a", &["wide", "e10f23z"]), profiles("b", &["e10f24z"])].concat());
         assert_eq!(two.len(), 2);
         let around = neighbours(&profile("wide").expect("a profile"));
-        assert_eq!(around.len(), 6);
-        assert!(around.iter().any(|(_, config)| name(config) == "e10f22z"));
-        assert!(around.iter().any(|(_, config)| name(config) == "wide clock 150"));
+        let names: Vec<_> = around.iter().map(|(_, config)| name(config)).collect();
+        assert_eq!(names, ["e10f23zr", "e10f24z", "e10f22z", "e9f23z", "e11f23z", "wide clock 150", "wide clock 250"]);
     }
 }

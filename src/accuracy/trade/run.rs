@@ -1,6 +1,6 @@
 //! A study, carried out.
 
-use super::axes::{Choice, name, neighbours};
+use super::axes::{Choice, is_same, name, neighbours};
 use super::cost::{Cycles, Hardware, cycles, cycles_key, hardware, hardware_key};
 use super::front::{Time, front};
 use super::results::Store;
@@ -70,7 +70,7 @@ pub fn run(plan: &Plan, folder: Option<(&Path, bool)>, mut progress: impl FnMut(
 fn beside_the_front(plan: &Plan, results: &Results) -> Vec<Choice> {
     let mut around: Vec<VecDeque<Choice>> =
         best(results).into_iter().map(|index| neighbours(&results.points[index].config).into()).collect();
-    let there = |choices: &[Choice], config: &Config| choices.iter().any(|(_, other)| name(other) == name(config));
+    let there = |choices: &[Choice], config: &Config| choices.iter().any(|(_, other)| is_same(other, config));
     let mut more: Vec<Choice> = Vec::new();
     while more.len() < plan.neighbours && around.iter().any(|choices| !choices.is_empty()) {
         for choice in around.iter_mut().filter_map(VecDeque::pop_front) {
@@ -130,11 +130,7 @@ fn add(
     let rows = errors(plan, &configs, store, progress)?;
     let costs = costs(plan, &configs, &[], store, progress)?;
     for (((axis, config), rows), cost) in choices.iter().zip(rows).zip(costs) {
-        if let Some(missing) = cost.missing {
-            if !results.left_out.contains(&missing) {
-                results.left_out.push(missing);
-            }
-        }
+        results.left_out.extend(cost.missing.filter(|missing| !results.left_out.contains(missing)));
         results.points.push(Point {
             name: name(config),
             axis: (*axis).to_owned(),
