@@ -8,7 +8,7 @@ use contact_afu::accuracy::trade::{self, ResultsError, Size, TradeError, Work};
 use contact_afu::config::Profile;
 
 use super::failure::{Failure, Kind};
-use super::{link, output, progress};
+use super::{link, origin, output, progress};
 
 /// Show what accuracy costs in time: errors against the truth beside latency, throughput and area
 ///
@@ -17,6 +17,19 @@ use super::{link, output, progress};
 /// netlists are kept, so only a first run builds them.
 #[derive(Args, Debug)]
 pub struct Accuracy {
+    /// Folder to write: report.html, front.svg, throughput.svg, link.svg, results.csv, results.json, and manifest.json, from
+    /// which the same command goes on where it was stopped. Without it, a row a profile
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Some ten configurations and fewer pairs, nothing placed and routed
+    #[arg(long, requires = "out")]
+    quick: bool,
+    /// Write into the folder even if afu did not make it; other files in it are left alone
+    #[arg(long, requires = "out")]
+    force: bool,
+    /// Place and route nothing: the fronts are then those of the delay model
+    #[arg(long)]
+    no_route: bool,
     /// Link between AFU and memory: a name or file as in `afu cosim`
     #[arg(long, value_name = "NAME|FILE", default_value = "harp1")]
     link: String,
@@ -39,20 +52,37 @@ pub struct Accuracy {
 
 pub fn run(options: &Accuracy) -> Result<(), Failure> {
     let jobs = options.jobs.map_or_else(|| thread::available_parallelism().map_or(1, usize::from), |n| n as usize);
-    let mut plan = Size::Profiles.plan(link::describe(&options.link)?, &options.link, options.seed, jobs);
+    let size = match (&options.out, options.quick) {
+        (None, _) => Size::Profiles,
+        (Some(_), true) => Size::Quick,
+        (Some(_), false) => Size::Full,
+    };
+    let mut plan = size.plan(link::describe(&options.link)?, &options.link, options.seed, jobs);
     if !options.profile.is_empty() {
         plan.only(&options.profile);
     }
     plan.synthesis = !options.no_synth;
+    if options.no_route || options.no_synth {
+        plan.placer_seeds.clear();
+    }
+    let folder = options.out.as_deref().map(|folder| (folder, options.force));
     let bar = progress::bar("accuracy", "measurements", 0);
-    let results = trade::run(&plan, None, |work| match work {
+    let results = trade::run(&plan, folder, |work| match work {
         Work::Planned(more) => bar.inc_length(more as u64),
         Work::Begun(what) => bar.set_prefix(what),
         Work::Done => bar.inc(1),
     });
     bar.finish_and_clear();
-    let results = results?;
-    output::show(&trade::table(&results), options.json.as_deref().is_some_and(output::is_stdout))?;
+    let mut results = results?;
+    (results.date, results.command, results.processor) = (origin::today(), origin::command(), origin::processor());
+    if let Some(folder) = &options.out {
+        trade::write(&results, folder)?;
+    }
+    let mut text = trade::table(&results);
+    if let Some(folder) = &options.out {
+        text += &format!("\n{}", folder.join("report.html").display());
+    }
+    output::show(&text, options.json.as_deref().is_some_and(output::is_stdout))?;
     if let Some(path) = &options.json {
         output::json(path, &results)?;
     }
@@ -65,14 +95,23 @@ pub fn run(options: &Accuracy) -> Result<(), Failure> {
     }
 }
 
+impl From<ResultsError> for Failure {
+    fn from(error: ResultsError) -> Self {
+        match error {
+            ResultsError::Folder(error) => error.into(),
+            _ => Self::caused(Kind::Other, error),
+        }
+    }
+}
+
 impl From<TradeError> for Failure {
     fn from(error: TradeError) -> Self {
         match error {
             TradeError::Verify(error) => error.into(),
             TradeError::Synth(error) => error.into(),
-            TradeError::Results(ResultsError::Folder(error)) => error.into(),
+            TradeError::Results(error) => error.into(),
             TradeError::Link(_) => Self::caused(Kind::Usage, error),
-            TradeError::Engine(_) | TradeError::Results(_) => Self::caused(Kind::Other, error),
+            TradeError::Engine(_) => Self::caused(Kind::Other, error),
         }
     }
 }

@@ -17,7 +17,7 @@ use serde::Serialize;
 
 use super::failure::{Classify, Failure, Kind};
 use super::paper::Paper;
-use super::{link, output, progress};
+use super::{link, origin, output, progress};
 
 /// Points of the simulation, from which a later run goes on.
 const SIMULATED: &str = "simulated.json";
@@ -38,8 +38,8 @@ pub fn run(options: &Paper) -> Result<(), Failure> {
     let bench = bench?;
 
     let settings = Settings {
-        command: std::iter::once("afu".to_owned()).chain(std::env::args().skip(1)).collect::<Vec<_>>().join(" "),
-        processor: processor(),
+        command: origin::command(),
+        processor: origin::processor(),
         h_max: options.h_max,
         d_sph: options.d_sph,
         t_col: options.t_col.clone(),
@@ -168,13 +168,6 @@ fn told(s: &Summary) -> String {
         100.0 * s.link_share
     );
     format!("{title}\n{}", table(&["who", "ns a collision", "time over the AFU's", "AFU faster from"], rows))
-}
-
-/// What the processor calls itself.
-fn processor() -> String {
-    let info = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let name = info.lines().find(|line| line.starts_with("model name")).and_then(|line| line.split_once(':'));
-    name.map_or(std::env::consts::ARCH.to_owned(), |(_, name)| name.trim().to_owned())
 }
 
 impl From<ode::Error> for Failure {

@@ -2,6 +2,8 @@
 
 #[cfg(feature = "cosim")]
 mod accuracy;
+#[cfg(feature = "cosim")]
+mod choose;
 mod completions;
 #[cfg(feature = "cosim")]
 mod cosim;
@@ -14,6 +16,8 @@ mod hard;
 mod link;
 mod list;
 mod machine;
+#[cfg(feature = "cosim")]
+mod origin;
 mod output;
 mod pairs;
 #[cfg(feature = "cosim")]
@@ -59,6 +63,8 @@ enum Command {
     Synth(synth::Synth),
     #[cfg(feature = "cosim")]
     Accuracy(accuracy::Accuracy),
+    #[cfg(feature = "cosim")]
+    Choose(choose::Choose),
     Hard(hard::Hard),
     /// Say which tools are there, what needs them, and what installs the missing ones
     Doctor(doctor::Doctor),
@@ -87,6 +93,8 @@ fn run(program: &Program) -> Result<(), Failure> {
         Command::Synth(options) => synth::run(options),
         #[cfg(feature = "cosim")]
         Command::Accuracy(options) => accuracy::run(options),
+        #[cfg(feature = "cosim")]
+        Command::Choose(options) => choose::run(options),
         Command::Hard(options) => hard::run(options),
         Command::Doctor(options) => doctor::run(options),
         Command::Completions(options) => completions::run(options),

@@ -3,6 +3,7 @@
 
 pub mod batch;
 mod contact;
+pub mod double;
 mod engine;
 mod exact;
 mod fields;

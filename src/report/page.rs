@@ -1,6 +1,9 @@
-//! Pages of HTML that need nothing but themselves: no script, no network, light or dark as the reader has it.
+//! Pages of HTML that need nothing but themselves: no network, light or dark as the reader has it, and no script but one
+//! of the page's own.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use sha2::{Digest, Sha256};
 
 use crate::plot;
 
@@ -22,16 +25,33 @@ td.n,th.n{text-align:right;white-space:nowrap}
 code,pre{font-family:ui-monospace,'DejaVu Sans Mono',monospace;font-size:.92em}
 pre{overflow-x:auto;border:1px solid var(--grid);padding:.7rem}
 a{color:inherit}
+h3{font-size:1rem;margin-bottom:.3rem}
+th[aria-sort]::after{content:\" ↑\"}th[aria-sort=descending]::after{content:\" ↓\"}
+#points{font-size:.85em}#points th{cursor:pointer;white-space:normal;vertical-align:bottom}#points td{white-space:nowrap}
+#points tr.chosen td{background:var(--grid)}
+#row{position:sticky;bottom:0;display:flex;flex-wrap:wrap;gap:.2rem 1.1rem;padding:.5rem .7rem;font-size:.85em;\
+background:var(--ground);border:1px solid var(--grid);font-variant-numeric:tabular-nums}#row small{color:var(--soft)}
 ";
 
 /// A page: its title, and what is below it.
 pub fn page(title: &str, body: &Markup) -> String {
+    whole(title, body, None)
+}
+
+/// A page with a script, which runs when everything is there. No other script does: the policy names it by its hash.
+pub fn scripted(title: &str, body: &Markup, script: &str) -> String {
+    whole(title, body, Some(script))
+}
+
+fn whole(title: &str, body: &Markup, script: Option<&str>) -> String {
+    let hash = |script: &str| format!("{POLICY}; script-src 'sha256-{}'", base64(&Sha256::digest(script.as_bytes())));
+    let policy = script.map_or(POLICY.to_owned(), hash);
     let page = html! {
         (DOCTYPE)
         html lang="en" {
             head {
                 meta charset="utf-8";
-                meta http-equiv="Content-Security-Policy" content=(POLICY);
+                meta http-equiv="Content-Security-Policy" content=(policy);
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 title { (title) }
                 style { (PreEscaped(STYLE)) (PreEscaped(plot::STYLE)) }
@@ -39,10 +59,23 @@ pub fn page(title: &str, body: &Markup) -> String {
             body {
                 h1 { (title) }
                 (body)
+                @if let Some(script) = script { script { (PreEscaped(script)) } }
             }
         }
     };
     page.into_string()
+}
+
+/// Bytes in base 64 (RFC 4648, section 4), as policies have hashes.
+fn base64(bytes: &[u8]) -> String {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::new();
+    for three in bytes.chunks(3) {
+        let word = (0..3).fold(0, |word, i| word << 8 | u32::from(three.get(i).copied().unwrap_or(0)));
+        let digit = |place: usize| char::from(DIGITS[(word >> (18 - 6 * place) & 63) as usize]);
+        (0..4).for_each(|place| text.push(if place <= three.len() { digit(place) } else { '=' }));
+    }
+    text
 }
 
 /// A table: a caption, headings, and rows. Columns but the first `words` are figures, on the right.
@@ -66,6 +99,15 @@ pub fn table(caption: &str, heading: &[&str], words: usize, rows: &[Vec<String>]
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn bytes_in_base_64_are_as_the_standard_has_them() {
+        for (bytes, text) in [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")] {
+            assert_eq!(base64(bytes.as_bytes()), text);
+        }
+        let page = scripted("t", &html! {}, "let a = 1 < 2;");
+        assert!(page.contains("script-src 'sha256-") && page.contains("<script>let a = 1 < 2;</script>"), "{page}");
+    }
 
     #[test]
     fn a_page_loads_nothing_and_escapes_its_text() {

@@ -5,21 +5,29 @@
 //! synthesis. Every measurement is kept by the hash of what went into it, so that an interrupted study goes on.
 
 mod axes;
+mod choose;
+mod columns;
 mod cost;
 mod front;
+mod output;
+mod page;
 mod picture;
 mod plan;
 mod point;
 mod results;
 mod run;
+mod software;
 mod table;
 
 pub use axes::name;
+pub use choose::{Bound, Bounds, Instead, choose, to_build};
 pub use cost::{Cycles, Hardware, cycles};
 pub use front::{Time, front, step};
+pub use output::write;
+pub use page::{page, steps};
 pub use picture::picture;
 pub use plan::{Named, Plan, Size};
 pub use point::Point;
-pub use results::{Results, ResultsError, SCHEMA, SetFigures};
+pub use results::{Results, ResultsError, SCHEMA, SetFigures, committed};
 pub use run::{TradeError, Work, run};
 pub use table::table;

@@ -4,6 +4,7 @@ use super::axes::{Choice, is_same, name, neighbours};
 use super::cost::{Cycles, Hardware, cycles, cycles_key, hardware, hardware_key};
 use super::front::{Time, front};
 use super::results::Store;
+use super::software;
 use super::{Plan, Point, Results, ResultsError};
 use crate::accuracy::{Contenders, Failed, Profiled, Row, measure};
 use crate::config::Config;
@@ -63,6 +64,13 @@ pub fn run(plan: &Plan, folder: Option<(&Path, bool)>, mut progress: impl FnMut(
         add(plan, &more, &mut results, &mut store, &mut progress)?;
     }
     route(plan, &mut results, &mut store, &mut progress)?;
+    // Last of all, when nothing else runs.
+    progress(Work::Begun("software".to_owned()));
+    let pairs = plan.sets.iter().rfind(|set| set.is_scene).map_or(&[][..], |set| &set.pairs);
+    results.kernels = software::kernels(pairs);
+    for point in &mut results.points {
+        point.software_ns = software::of_profile(&point.config.profile, pairs);
+    }
     Ok(results)
 }
 

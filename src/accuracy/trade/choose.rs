@@ -1,0 +1,110 @@
+//! The cheapest configuration that meets bounds, out of a study's results.
+
+use super::{Point, Results, Time};
+use crate::config::{Config, SCPUS};
+
+/// What a configuration must meet; none: anything goes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Bounds {
+    /// The largest relative error on the scenes, at most.
+    pub error: Option<f64>,
+    /// Nanoseconds, at most.
+    pub ns: Option<f64>,
+    /// LUTs of an SCPU, at most.
+    pub luts: Option<f64>,
+    /// Gross failures on all pairs of the study, at most.
+    pub bad: Option<f64>,
+}
+
+/// What is bounded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bound {
+    /// The largest error.
+    Error,
+    /// The time.
+    Ns,
+    /// The LUTs.
+    Luts,
+    /// The gross failures.
+    Bad,
+}
+
+impl Bound {
+    const ALL: [Self; 4] = [Self::Error, Self::Ns, Self::Luts, Self::Bad];
+
+    fn of(self, bounds: &Bounds) -> Option<f64> {
+        match self {
+            Self::Error => bounds.error,
+            Self::Ns => bounds.ns,
+            Self::Luts => bounds.luts,
+            Self::Bad => bounds.bad,
+        }
+    }
+
+    fn figure(self, results: &Results, point: &Point, time: Time) -> Option<f64> {
+        match self {
+            Self::Error => Some(results.worst(point)),
+            Self::Ns => time.of(point, results),
+            Self::Luts => point.area().map(|area| area.luts as f64),
+            Self::Bad => Some(point.tally().bad as f64),
+        }
+    }
+
+    /// A value of it, in words.
+    pub fn words(self, value: f64) -> String {
+        match self {
+            Self::Error => format!("an error of {value:.1e}"),
+            Self::Ns => format!("{value:.1} ns"),
+            Self::Luts => format!("{value:.0} LUTs"),
+            Self::Bad => format!("{value:.0} gross failures"),
+        }
+    }
+}
+
+/// What would have to give way: a bound, the least value that would do, and the point that has it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Instead<'a> {
+    /// The bound.
+    pub bound: Bound,
+    /// The value that would be enough, the other bounds kept.
+    pub value: f64,
+    /// Who has it.
+    pub point: &'a Point,
+}
+
+/// The point with the fewest LUTs of those that meet `bounds` (then the one with the least time); where none does, for
+/// each bound what it would take if it alone gave way. That is empty where even then nothing meets the others.
+pub fn choose<'a>(results: &'a Results, bounds: &Bounds, time: Time) -> Result<&'a Point, Vec<Instead<'a>>> {
+    let figure = |bound: Bound, point: &Point| bound.figure(results, point, time);
+    let meets = |bound: Bound, point: &Point| {
+        bound.of(bounds).is_none_or(|most| figure(bound, point).is_some_and(|value| value <= most))
+    };
+    let all = |point: &&Point, but: Option<Bound>| Bound::ALL.into_iter().all(|b| Some(b) == but || meets(b, point));
+    let cost = |point: &Point| {
+        let of = |bound| figure(bound, point).unwrap_or(f64::INFINITY);
+        (of(Bound::Luts), of(Bound::Ns))
+    };
+    let cheapest = results.points.iter().filter(|point| all(point, None)).min_by(|a, b| {
+        let (a, b) = (cost(a), cost(b));
+        a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
+    });
+    cheapest.ok_or_else(|| {
+        let instead = |bound: Bound| {
+            bound.of(bounds)?;
+            let others = results.points.iter().filter(|point| all(point, Some(bound)));
+            let valued = others.filter_map(|point| Some((figure(bound, point)?, point)));
+            let (value, point) = valued.min_by(|a, b| a.0.total_cmp(&b.0))?;
+            Some(Instead { bound, value, point })
+        };
+        Bound::ALL.into_iter().filter_map(instead).collect()
+    })
+}
+
+/// The configuration to build of a point: its arithmetic and clock, with the default shell; one SCPU, or, where the time
+/// is a full device's, as many as it holds.
+pub fn to_build(results: &Results, point: &Point, time: Time) -> Config {
+    let default = Config::default();
+    let full = point.on_device(results.target).unwrap_or(1).clamp((*SCPUS.start()).into(), (*SCPUS.end()).into());
+    let scpus = if time == Time::Device { full as u32 } else { point.config.scpus };
+    Config { scpus, shell: default.shell, ..point.config.clone() }
+}

@@ -1,0 +1,114 @@
+//! `report.html`: the pictures, the steps along their fronts, and a table that sorts.
+
+use super::columns::COLUMNS;
+use super::front::{Time, front, step};
+use super::{Point, Results, picture};
+use crate::report::page;
+use crate::report::table::grouped;
+use maud::{Markup, html};
+
+/// The page's own script: pointing shows a row, a heading sorts.
+const SCRIPT: &str = include_str!("report.js");
+
+/// The page.
+pub fn page(results: &Results) -> String {
+    let body = html! {
+        p { "Each point is a configuration of the AFU: its error, measured against the truth in arbitrary precision, over "
+            "its time, counted by simulating its Verilog. Down is more accurate, left is faster. Point at a point and its row "
+            "stands below." }
+        (sentences(results))
+        @for time in Time::ALL { figure { (picture(results, time).figure()) } }
+        aside #row aria-live="polite" { span { small { "Point at a point, and its row stands here." } } }
+        h2 { "Points" }
+        p.soft { "A click on a heading sorts. Errors are of " (results.scenes().join(" and ")) ": of a contact the largest of the "
+            "depth’s (relative to the sum of the radii), the normal’s (to 1) and the position’s (to the largest coordinate or "
+            "radius), and in units in the last place of binary32. Decisions and gross failures are of all "
+            (grouped(results.pairs())) " pairs." }
+        (table(results))
+        h2 { "How it was done" }
+        (method(results))
+    };
+    page::scripted("What accuracy costs in time", &body, SCRIPT)
+}
+
+/// The sentences for each step along the fronts.
+pub fn steps(results: &Results) -> Vec<(Time, Vec<String>)> {
+    let anyone = results.points.iter().any(|point| point.routed_mhz().is_some());
+    let of = |time: Time| {
+        let front = front(results, time, |point| !anyone || point.routed_mhz().is_some());
+        let pairs = front.windows(2).map(|two| step(results, time, &results.points[two[0]], &results.points[two[1]]));
+        (time, pairs.collect())
+    };
+    Time::ALL.into_iter().map(of).collect()
+}
+
+fn sentences(results: &Results) -> Markup {
+    html! {
+        h2 { "Step by step" }
+        @for (time, steps) in steps(results) {
+            h3 { "By " (time.words()) }
+            @if steps.is_empty() {
+                p { "One configuration has both the least time and the least error." }
+            } @else {
+                ol { @for step in steps { li { (step) } } }
+            }
+        }
+    }
+}
+
+fn table(results: &Results) -> Markup {
+    html! {
+        div.wide {
+            table #points {
+                thead { tr {
+                    th { "configuration" }
+                    th { "axis" }
+                    @for column in &COLUMNS { th.n { (column.heading) } }
+                } }
+                tbody { @for point in &results.points { (row(results, point)) } }
+            }
+        }
+    }
+}
+
+fn row(results: &Results, point: &Point) -> Markup {
+    html! {
+        tr data-name=(point.name) {
+            td { (point.name) }
+            td { (point.axis) }
+            @for column in &COLUMNS {
+                td.n data-v=((column.value)(results, point).map_or(String::new(), |value| value.to_string())) {
+                    (column.text(results, point))
+                }
+            }
+        }
+    }
+}
+
+fn method(results: &Results) -> Markup {
+    html! {
+        ul {
+            li { "Pairs: "
+                @for (number, set) in results.sets.iter().enumerate() {
+                    @if number > 0 { ", " }
+                    (grouped(set.pairs)) " of " code { (set.name) }
+                }
+                "; seed " (results.seed) "." }
+            li { "Time: cycles of one SCPU’s AFU, simulated, at the clock after place and route where there is one (filled points), "
+                "else at the delay model’s (hollow). A lone pair: from its line in to its contact’s line out. Over the link: "
+                code { (results.link) } "." }
+            li { "Area: an SCPU by Yosys for " (results.target.device()) "; a full device holds as many as fit by what runs out "
+                "first, controller and shell not counted." }
+            @if !results.kernels.is_empty() {
+                li { "Software: the same arithmetic on one thread of " (results.processor) "; its best kernels take "
+                    @for (number, (name, ns)) in results.kernels.iter().enumerate() {
+                        @if number > 0 { ", " }
+                        (format!("{ns:.2}")) " ns a pair (" (name) ")"
+                    } "." }
+            }
+            @for what in &results.left_out { li { "Left out: " (what) "." } }
+        }
+        pre { (results.command) }
+        p.soft { (results.date) ", contact-afu " (results.version) }
+    }
+}
