@@ -29,6 +29,6 @@ font-family:system-ui,'DejaVu Sans',sans-serif;font-size:12px}
 .plot .full.c3{fill:var(--c3)}.plot .full.c4{fill:var(--c4)}.plot .full.c5{fill:var(--c5)}
 .plot .around{fill:transparent;stroke:none}.plot .point{cursor:pointer;outline:none}
 .plot .point:hover .sign,.plot .point:focus .sign,.plot .point.chosen .sign{stroke-width:4}
-.plot .names{font-size:11px;pointer-events:none}
+.plot .names text{font-size:11px;pointer-events:none;stroke:var(--ground);stroke-width:3;paint-order:stroke}
 .plot .ink{stroke:var(--soft)}
 ";
