@@ -63,6 +63,7 @@ module credits (
   (* hierconn *) wire                       \dut.packer.flush ;
   (* hierconn *) wire [31:0]                \dut.packer.emerged ;
   (* hierconn *) wire [$clog2(`LINES):0]    \dut.dispatcher.stored ;
+  (* hierconn *) wire                       \dut.dispatcher.take ;
 
   // Groups of pairs where they must be, each a rank further every cycle, and how many pairs that makes.
   reg [2*RANKS-1:0] ranks;
@@ -92,6 +93,7 @@ module credits (
     begins_empty: assert (~\dut.control.begin_job | (busy & inside == 8'd0));
     idle_is_empty: assert (busy | inside == 8'd0);
     takes_a_line: assert (~\dut.feeder.take | \dut.collector.line_valid );
+    sends_a_line: assert (~\dut.dispatcher.take | \dut.dispatcher.stored != 0);
   end
   always @* if (begun & ~\dut.control.begin_job & ~rst) begin
     turn_is_an_scpu: assert (\dut.feeder.turn < 7'd2);

@@ -108,7 +108,7 @@ fn a_spoilt_netlist_is_found_out() {
     let profile: Profile = "e5f6".parse().expect("a profile");
     let unit = Unit::operator(Operator::AtMost, &profile, &DelayModel::default(), 200.0).expect("it can be cut");
     let latency = unit.latency.expect("a pipeline");
-    let inputs: Vec<Vector> = (0..200_u128).map(|i| vec![(i * 37 & 0xFFF, 12), (i * 91 & 0xFFF, 12)]).collect();
+    let inputs: Vec<Vector> = (0..200_u128).map(|i| vec![((i * 37) & 0xFFF, 12), ((i * 91) & 0xFFF, 12)]).collect();
     let good = simulate(&unit.module, &verilog(&unit.module, As::Printed), latency, &inputs);
     for wrong in ["result <= 1'b1 ^ ", "result <= 1'bx ^ "] {
         let files = verilog(&unit.module, As::Printed).spoilt("result <= ", wrong);

@@ -40,13 +40,16 @@ const FEEDER: Rows = &[
 const PACKER: Rows =
     &[("the last line goes out twice", "wire emptied = start | flush;", "wire emptied = start;", 12, "last_line_once")];
 
-const STORE: Rows = &[(
-    "a line counts as five",
-    "stored <= start ? 3'd0 : (left + {2'd0, line_valid});",
-    "stored <= start ? 3'd0 : (left + {line_valid, 1'b0, line_valid});",
-    12,
-    "fits",
-)];
+const STORE: Rows = &[
+    (
+        "a line counts as five",
+        "stored <= start ? 3'd0 : (left + {2'd0, line_valid});",
+        "stored <= start ? 3'd0 : (left + {line_valid, 1'b0, line_valid});",
+        12,
+        "fits",
+    ),
+    ("sends a line that has left", "ready <= ~start & |left;", "ready <= ~start & |stored;", 14, "sends_a_line"),
+];
 
 const TOP: Rows =
     &[("results are early", "group_answered <= group_out;", "group_answered <= feeder_issue_group;", 9, "comes_out")];
