@@ -193,3 +193,38 @@ fn no_file_makes_a_reader_panic_hang_or_take_memory() {
         assert!(accepted > 0 && accepted < count, "{}: {accepted} of {count} accepted", kind.name);
     }
 }
+
+/// A file that declares more than it holds: an error, and no memory for what is not there.
+#[test]
+fn declared_sizes_are_not_believed() {
+    let room = tempfile::tempdir().unwrap();
+    let path = room.path().join("huge.npy");
+    let mut tried = 0;
+    for rows in ["1", "3", "4294967295", "1152921504606846976", "2305843009213693952", "18446744073709551615", "-1"] {
+        for (kind, columns) in [("<f4", 8), ("<u4", 8), ("<u4", 9)] {
+            let header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({rows}, {columns}), }}\n");
+            for declared in [header.len(), 65_535] {
+                let mut text = b"\x93NUMPY\x01\x00".to_vec();
+                text.extend((declared as u16).to_le_bytes());
+                text.extend(header.bytes().chain([0; 64]));
+                fs::write(&path, &text).unwrap();
+                for read in
+                    [|path: &Path| pairs::read_pairs(path).is_ok(), |path: &Path| pairs::read_contacts(path).is_ok()]
+                {
+                    let before = USED.load(Relaxed);
+                    MOST.store(before, Relaxed);
+                    let accepted = read(&path);
+                    let bytes = MOST.load(Relaxed).saturating_sub(before);
+                    assert!(!accepted && bytes < 1 << 20, "{rows} rows of {kind}: accepted {accepted}, {bytes} bytes");
+                    tried += 1;
+                }
+            }
+        }
+    }
+    assert_eq!(tried, 7 * 3 * 2 * 2);
+    // The same header with what it declares is right.
+    let header = "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 8), }\n";
+    let length = (header.len() as u16).to_le_bytes();
+    fs::write(&path, [&b"\x93NUMPY\x01\x00"[..], &length[..], header.as_bytes(), &[0; 64][..]].concat()).unwrap();
+    assert_eq!(pairs::read_pairs(&path).unwrap().len(), 2);
+}
