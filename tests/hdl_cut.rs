@@ -9,13 +9,14 @@ fn simple() -> DelayModel {
         register: 0.0,
         lut: 2.0,
         lut_inputs: 4,
+        gate: 1.0,
         mux: 3.0,
         carry: 2.0,
         carry_bit: 1.0,
         carry_out: 0.0,
         multiplier: 50.0,
         multiplier_bits: 18,
-        ..DelayModel::default()
+        ..DelayModel::guess()
     }
 }
 

@@ -4,7 +4,7 @@
 use assert_cmd::Command;
 use contact_afu::config::Profile;
 use contact_afu::hdl::DelayModel;
-use contact_afu::operator::Operator;
+use contact_afu::operator::{Operator, Values};
 use contact_afu::synth::{Figures, Options, Target, Trimmed, Unit, synthesise};
 
 fn afu(arguments: &[&str], environment: &[(&str, &str)]) -> std::process::Output {
@@ -14,7 +14,7 @@ fn afu(arguments: &[&str], environment: &[(&str, &str)]) -> std::process::Output
 
 fn unit(operator: Operator, profile: &str, clock_mhz: f64) -> Unit {
     let profile: Profile = profile.parse().expect("a profile");
-    Unit::operator(operator, &profile, &DelayModel::default(), clock_mhz).expect("it can be cut")
+    Unit::operator(operator, &profile, Values::Any, &DelayModel::default(), clock_mhz).expect("it can be cut")
 }
 
 #[test]

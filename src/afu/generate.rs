@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::hdl::verilog::{self, Style};
-use crate::hdl::{DelayModel, Errors, Module};
+use crate::hdl::{Errors, Module};
 use crate::pipeline::{Settings, sphere_kernel};
 
 use super::scpu::scpu;
@@ -51,7 +51,7 @@ impl Afu {
             record: spec.config.profile.arithmetic().record(),
             fields: spec.config.contact,
             clock_mhz: spec.config.clock_mhz,
-            model: DelayModel::default(),
+            model: spec.delays.clone(),
         })?;
         Self::around(spec, kernel)
     }

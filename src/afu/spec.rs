@@ -1,7 +1,7 @@
 //! What an accelerator is generated from: the configuration, and what only proofs and integrators change.
 
 use crate::config::Config;
-use crate::hdl::Reset;
+use crate::hdl::{DelayModel, Reset};
 
 use super::{COUNT_BITS, Layout};
 
@@ -20,6 +20,8 @@ pub struct Spec {
     pub max_outstanding: u32,
     /// Cycles that results may wait for their write requests before pairs wait for room: 16; less for proofs.
     pub dispatch_cycles: u32,
+    /// How long the target takes for each operation.
+    pub delays: DelayModel,
 }
 
 /// Why a specification was refused.
@@ -51,6 +53,7 @@ impl From<Config> for Spec {
             word_bits: 32,
             max_outstanding: 64,
             dispatch_cycles: 16,
+            delays: DelayModel::default(),
         }
     }
 }

@@ -3,9 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use contact_afu::afu::BuildError;
 use contact_afu::config::Config;
-use contact_afu::hdl::DelayModel;
-use contact_afu::operator::Operator;
+use contact_afu::kernel::Fields;
+use contact_afu::operator::{Operator, Values};
+use contact_afu::pipeline::is_normal;
 use contact_afu::report::{operators, synth as report};
 use contact_afu::synth::{self, Figures, SynthError, Target, Unit, synthesise};
 
@@ -16,7 +18,7 @@ use super::{output, progress};
 
 #[derive(Args, Debug)]
 pub struct Synth {
-    /// Operators, a list: add, sub, mul, div, recip, sqrt, halve, greater, at_most, root_exceeds, from_record, to_record,
+    /// Operators, a list: add, sub, add_magnitudes, mul, square, div, recip, sqrt, halve, greater, at_most, root_exceeds, from_record, to_record,
     /// or all
     #[arg(long, value_name = "NAMES", value_delimiter = ',', conflicts_with = "kernel")]
     operator: Vec<String>,
@@ -59,7 +61,7 @@ pub fn run(options: &Synth) -> Result<(), Failure> {
     let config = options.one.config_for_any_target()?;
     let seeds = if options.no_route { Vec::new() } else { options.seeds.0.clone() };
     let how = synth::Options { target, seeds };
-    let units = units(options, &config)?;
+    let units = units(options, &config, target)?;
     let spinner = progress::spinner("");
     let mut all = Vec::new();
     for unit in &units {
@@ -111,27 +113,37 @@ fn fit(file: &Path, target: Target, seeds: &[u32]) -> Result<(), Failure> {
     output::json(file, &fit)
 }
 
-fn units(options: &Synth, config: &Config) -> Result<Vec<Unit>, Failure> {
+fn units(options: &Synth, config: &Config, target: Target) -> Result<Vec<Unit>, Failure> {
     if options.kernel {
-        return Ok(vec![Unit::scpu(config)?]);
+        return Ok(vec![Unit::scpu_for(config, target)?]);
     }
     if options.operator.is_empty() {
-        return Ok(vec![Unit::afu(config)?]);
+        return Ok(vec![Unit::afu(config, target)?]);
     }
     let names: Vec<&str> = match options.operator.as_slice() {
         [all] if all == "all" => OPERATORS.to_vec(),
         names => names.iter().map(String::as_str).collect(),
     };
-    let model = DelayModel::default();
+    let model = target.delays();
+    let is_normal =
+        is_normal(config.profile.arithmetic(), Fields::ALL).map_err(BuildError::from).map_err(SynthError::from)?;
     let unit = |name: &str| {
         let (operator, profile) = operator(name, config)?;
-        let unit = Unit::operator(operator, &profile, &model, config.clock_mhz)?;
+        // As the kernel of the profile has it.
+        let values = match name {
+            "from_record" => Values::Finite,
+            _ if is_normal => Values::Normal,
+            _ => Values::Any,
+        };
+        let unit = Unit::operator(operator, &profile, values, &model, config.clock_mhz)?;
         Ok(Unit { name: name.to_owned(), ..unit })
     };
     names.into_iter().map(unit).collect()
 }
 
-const OPERATORS: [&str; 12] = [
+const OPERATORS: [&str; 14] = [
+    "square",
+    "add_magnitudes",
     "add",
     "sub",
     "mul",
@@ -153,6 +165,8 @@ fn operator(name: &str, config: &Config) -> Result<(Operator, contact_afu::confi
         "add" => Operator::Add,
         "sub" => Operator::Sub,
         "mul" => Operator::Mul,
+        "square" => Operator::Square,
+        "add_magnitudes" => Operator::AddMagnitudes,
         "div" => Operator::Div,
         "recip" => Operator::Recip,
         "sqrt" => Operator::Sqrt,

@@ -14,6 +14,6 @@ mod wire;
 
 pub use kernel::Kernel;
 pub use report::{KernelReport, OperatorUse};
-pub use sphere::{Settings, sphere_kernel};
+pub use sphere::{Settings, is_normal, sphere_kernel};
 pub use trace::{Ports, trace};
 pub use wire::{Bit, Wire};

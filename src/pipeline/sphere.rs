@@ -39,6 +39,17 @@ pub fn sphere_kernel(settings: &Settings) -> Result<Arc<Module>, Errors> {
     kernel.pipeline(&settings.model, settings.clock_mhz)
 }
 
+/// Whether the values of the kernel never come near the ends of the exponent range, so that its operators are those of
+/// [`crate::operator::Values::Normal`].
+///
+/// # Errors
+/// What a graph recorded.
+pub fn is_normal(arithmetic: Arithmetic, fields: Fields) -> Result<bool, Errors> {
+    let settings =
+        Settings { arithmetic, record: arithmetic.record(), fields, clock_mhz: 100.0, model: DelayModel::default() };
+    Ok(trace("sphere_kernel", |ports| read(ports, &settings))?.not_normal().is_none())
+}
+
 fn read(ports: &Ports, settings: &Settings) {
     let Settings { arithmetic, record, fields, .. } = *settings;
     ports.about(format!("contact of two spheres: {fields}"));

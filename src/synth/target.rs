@@ -6,6 +6,7 @@ use std::str::FromStr;
 use serde::{Deserialize, Serialize};
 
 use super::Area;
+use crate::hdl::{DelayModel, Primitive};
 
 /// An FPGA family.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -66,6 +67,16 @@ impl Target {
         match self {
             Self::Ecp5 => Some(Area { luts: 83_640, ffs: 83_640, dsps: 156, brams: 208 }),
             Self::Ice40 | Self::Cyclonev | Self::Xilinx => None,
+        }
+    }
+
+    /// How long it takes for each operation, and what its multiplier blocks are written as. That of the ECP5 is fitted to
+    /// its router; it serves the others too, whose synthesis finds the multiplier blocks' registers.
+    pub fn delays(self) -> DelayModel {
+        match self {
+            Self::Ecp5 => DelayModel::ecp5().with_registered_multipliers(Some(Primitive::Mult18x18d)),
+            Self::Ice40 => DelayModel::ecp5(),
+            Self::Cyclonev | Self::Xilinx => DelayModel::ecp5().with_registered_multipliers(None),
         }
     }
 

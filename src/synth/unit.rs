@@ -6,9 +6,9 @@ use crate::afu::{Afu, Spec};
 use crate::config::{Config, Profile};
 use crate::hdl::verilog::{Style, emit};
 use crate::hdl::{DelayModel, Errors, Module};
-use crate::operator::{Operator, pipelined};
+use crate::operator::{Domain, Operator, Values, pipelined};
 
-use super::SynthError;
+use super::{SynthError, Target};
 
 /// A module to be measured.
 #[derive(Clone, Debug)]
@@ -26,17 +26,18 @@ pub struct Unit {
 }
 
 impl Unit {
-    /// An operator of a profile, cut for a clock.
+    /// An operator of a profile, for the given values, cut for a clock.
     ///
     /// # Errors
     /// A clock it cannot be cut for.
     pub fn operator(
         operator: Operator,
         profile: &Profile,
+        values: Values,
         model: &DelayModel,
         clock_mhz: f64,
     ) -> Result<Self, SynthError> {
-        let module = pipelined(operator, profile.format(), model, clock_mhz)?;
+        let module = pipelined(operator, Domain::new(profile.format(), values), model, clock_mhz)?;
         Ok(Self::pipeline(operator.name(), profile, clock_mhz, module))
     }
 
@@ -51,7 +52,19 @@ impl Unit {
     /// # Errors
     /// A configuration that cannot be generated.
     pub fn scpu(config: &Config) -> Result<Self, SynthError> {
-        let afu = Afu::generate(Spec::from(config.clone()))?;
+        Self::scpu_with(config, DelayModel::default())
+    }
+
+    /// [`Unit::scpu`] cut for a target by its own delays ([`Target::delays`]), its multiplier blocks in its own way.
+    ///
+    /// # Errors
+    /// A configuration that cannot be generated.
+    pub fn scpu_for(config: &Config, target: Target) -> Result<Self, SynthError> {
+        Self::scpu_with(config, target.delays())
+    }
+
+    fn scpu_with(config: &Config, delays: DelayModel) -> Result<Self, SynthError> {
+        let afu = Self::generate(config, delays)?;
         let module = afu.top().hierarchy().into_iter().find(|module| module.name == "scpu");
         let module = module.unwrap_or_else(|| afu.kernel().clone());
         let latency = Some(afu.kernel().latency);
@@ -62,8 +75,12 @@ impl Unit {
     ///
     /// # Errors
     /// A configuration that cannot be generated.
-    pub fn afu(config: &Config) -> Result<Self, SynthError> {
-        Ok(Self::of(config, &Afu::generate(Spec::from(config.clone()))?))
+    pub fn afu(config: &Config, target: Target) -> Result<Self, SynthError> {
+        Ok(Self::of(config, &Self::generate(config, target.delays())?))
+    }
+
+    fn generate(config: &Config, delays: DelayModel) -> Result<Afu, SynthError> {
+        Ok(Afu::generate(Spec { delays, ..Spec::from(config.clone()) })?)
     }
 
     fn of(config: &Config, afu: &Afu) -> Self {

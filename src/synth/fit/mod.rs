@@ -111,7 +111,10 @@ pub fn fit(target: Target, seeds: &[u32], mut progress: impl FnMut(&str)) -> Res
         let fitted = (0..samples.len()).filter(|index| samples[*index].fitted);
         fitted.map(|index| period(&model, index) / measured[index] - 1.0).collect()
     });
-    let model = DelayModel { name: target.name().to_owned(), ..start.with_parameters(&found) };
+    let model = DelayModel {
+        name: target.name().to_owned(),
+        ..start.with_parameters(&found.iter().map(thousandths).collect::<Vec<_>>())
+    };
     let point = |(index, sample): (usize, &Sample)| Point {
         graph: sample.name(),
         fitted: sample.fitted,
@@ -121,6 +124,11 @@ pub fn fit(target: Target, seeds: &[u32], mut progress: impl FnMut(&str)) -> Res
     let points = samples.iter().enumerate().map(point).collect();
     let tools = [yosys.version().to_owned(), nextpnr.version().to_owned()];
     Ok(Some(Fit { schema: SCHEMA.to_owned(), target, tools, seeds: seeds.to_vec(), model, points }))
+}
+
+/// To a picosecond: more is noise.
+fn thousandths(time: &f64) -> f64 {
+    (time * 1000.0).round() / 1000.0
 }
 
 /// Samples in the order of their delays, cut where it has grown by the spread.
