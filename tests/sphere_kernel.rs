@@ -17,7 +17,8 @@ fn kernel(arithmetic: Format, fields: Fields) -> Arc<Module> {
 
 fn kernel_of(arithmetic: Arithmetic, fields: Fields) -> Arc<Module> {
     let model = DelayModel::default();
-    sphere_kernel(&Settings { arithmetic, record: arithmetic.record(), fields, clock_mhz: 200.0, model }).unwrap()
+    let record = arithmetic.record();
+    sphere_kernel(&Settings { arithmetic, record, fields, radius: None, clock_mhz: 200.0, model }).unwrap()
 }
 
 /// What the pipeline gives for the pairs, one in every cycle.

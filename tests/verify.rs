@@ -2,6 +2,7 @@
 #![cfg(feature = "cosim")]
 
 use contact_afu::config::{Config, Results, Shell};
+use contact_afu::kernel::PairRecord;
 use contact_afu::link::LinkModel;
 use contact_afu::pairs::Set;
 use contact_afu::verify::{Bench, Verdict};
@@ -21,6 +22,34 @@ fn the_diamond_comes_back_right_and_at_the_link_s_speed() {
     assert!(verdict.outcome.efficiency() > 0.95, "{:?}", verdict.outcome.cycles);
     let verdict = bench.run(&Set::Random(20_000).pairs(3), &LinkModel::ideal(), 1).expect("it finishes");
     good(&verdict, "random");
+}
+
+/// Spheres of one radius: it is in no record, and not in the hardware's ports; the bits are the same.
+#[test]
+fn one_radius_is_in_no_record_and_changes_no_bit() {
+    let sphere = |i: u32, f: f32| [(i % 5) as f32 * f, (i % 3) as f32, (i % 2) as f32, 0.375];
+    let pairs: Vec<_> = (0..150).map(|i| PairRecord::from_spheres(sphere(0, 0.0), sphere(i, 0.25))).collect();
+    for (profile, contact, shell) in
+        [("e8f3z", "depth,normal,position", Shell::Spl2), ("wide", "hit", Shell::Line), ("exact", "depth", Shell::Line)]
+    {
+        let [profile, contact] = [profile.to_owned(), contact.to_owned()];
+        let config = Config {
+            scpus: 3,
+            profile: profile.parse().expect("a profile"),
+            contact: contact.parse().expect("fields"),
+            radius: Some(0.375),
+            shell,
+            ..Config::default()
+        };
+        let bench = Bench::new(&config).expect("a model");
+        let verdict = bench.run(&pairs, &LinkModel::shuffled(), 1).expect("it finishes");
+        good(&verdict, &profile);
+        assert!((10..140).contains(&verdict.outcome.contacts), "{profile}: {}", verdict.outcome.contacts);
+        let mut other = pairs.clone();
+        other[7].0[7] = 0.5_f32.to_bits();
+        let error = bench.run(&other, &LinkModel::ideal(), 1).expect_err("another radius").to_string();
+        assert!(error.starts_with("pair 7: its r2 is 0.5, and this AFU computes with radius 0.375"), "{error}");
+    }
 }
 
 /// Only contacts, below the paper's platform: as many lines as there are contacts.

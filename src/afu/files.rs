@@ -95,13 +95,17 @@ impl Afu {
     }
 
     /// What a port means beyond [`meaning`] in an AFU that differs from the default one.
-    fn more(&self, name: &str) -> &'static str {
-        match (self.spec().config.results, name) {
-            (Results::Hits, "error") => ", 6 more lines of contacts than `destination_lines`",
-            (Results::Hits, "capability") => ", 24 set: only contacts come back",
-            (Results::Hits, "contacts") => ": as many records, each beginning with its pair's number",
+    fn more(&self, name: &str) -> String {
+        let config = &self.spec().config;
+        let of_hits = match name {
+            "error" => ", 6 more lines of contacts than `destination_lines`",
+            "capability" => ", 24 set: only contacts come back",
+            "contacts" => ": as many records, each beginning with its pair's number",
             _ => "",
-        }
+        };
+        let hits = Some(of_hits.to_owned()).filter(|_| config.results == Results::Hits);
+        let radius = config.radius.map(|radius| format!(", 25 set: every sphere's radius is {radius}"));
+        [hits, radius.filter(|_| name == "capability")].into_iter().flatten().collect()
     }
 
     fn manifest(&self, files: &[(String, String)]) -> String {

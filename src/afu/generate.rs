@@ -50,6 +50,7 @@ impl Afu {
             arithmetic: spec.config.profile.arithmetic(),
             record: spec.config.profile.arithmetic().record(),
             fields: spec.config.contact,
+            radius: spec.config.radius,
             clock_mhz: spec.config.clock_mhz,
             model: spec.delays.clone(),
         })?;

@@ -1,7 +1,7 @@
 //! Where records lie in lines: computed once, read by hardware, host and files alike.
 
 use crate::config::{Config, Results};
-use crate::kernel::Fields;
+use crate::kernel::{Fields, PAIR_FIELDS, PairRecord};
 
 /// The record layout of a configuration. A record is its words in use, padded to a power of two; a line holds as many
 /// as fit. With no field asked for, a contact is one bit. Where only contacts come back, each begins with its pair's
@@ -12,20 +12,34 @@ pub struct Layout {
     word_bits: u32,
     fields: Fields,
     results: Results,
+    /// The word that every radius is, where records have none.
+    radius: Option<u32>,
 }
 
-/// Words of a pair: x y z r of each sphere.
-const PAIR_WORDS: u32 = 8;
+/// A pair of spheres that an AFU of one radius cannot be given.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("pair {pair}: its {field} is {found}, and this AFU computes with radius {radius} for every sphere (--radius): leave --radius out, or send spheres of that radius")]
+pub struct OtherRadius {
+    /// The pair's number.
+    pub pair: usize,
+    /// r1 or r2.
+    pub field: &'static str,
+    /// What it is.
+    pub found: f32,
+    /// What it is taken for.
+    pub radius: f32,
+}
 
 impl Layout {
     /// The layout of full pairs and of a contact with `fields` for each, in lines of `line_bits` (a power of two) bits.
     pub fn new(line_bits: u32, fields: Fields) -> Self {
-        Self { line_bits, word_bits: 32, fields, results: Results::All }
+        Self { line_bits, word_bits: 32, fields, results: Results::All, radius: None }
     }
 
     /// The layout of a configuration, in lines of `line_bits` (a power of two) bits.
     pub fn of(line_bits: u32, config: &Config) -> Self {
-        Self { results: config.results, ..Self::new(line_bits, config.contact) }
+        let radius = config.radius.map(f32::to_bits);
+        Self { results: config.results, radius, ..Self::new(line_bits, config.contact) }
     }
 
     /// The fields of a contact.
@@ -43,9 +57,36 @@ impl Layout {
         self.line_bits
     }
 
+    /// Which of a pair's eight words are in the record, in order: all but radii that are the hardware's.
+    pub fn pair_words(&self) -> Vec<usize> {
+        (0..PAIR_FIELDS.len()).filter(|word| self.radius.is_none() || word % 4 != 3).collect()
+    }
+
+    /// The pair whose words of the record are these; a radius that is the hardware's is put in its place.
+    pub fn pair(&self, words: &[u32]) -> PairRecord {
+        let mut pair = PairRecord([self.radius.unwrap_or(0); 8]);
+        self.pair_words().into_iter().zip(words).for_each(|(word, value)| pair.0[word] = *value);
+        pair
+    }
+
+    /// Whether records say everything of these pairs.
+    ///
+    /// # Errors
+    /// The first pair with another radius than the hardware's.
+    pub fn check(&self, pairs: &[PairRecord]) -> Result<(), OtherRadius> {
+        let Some(radius) = self.radius.map(f32::from_bits) else { return Ok(()) };
+        for (pair, record) in pairs.iter().enumerate() {
+            let values = record.values();
+            if let Some(word) = [3, 7].into_iter().find(|&word| values[word].to_bits() != radius.to_bits()) {
+                return Err(OtherRadius { pair, field: PAIR_FIELDS[word], found: values[word], radius });
+            }
+        }
+        Ok(())
+    }
+
     /// Bits a pair takes in a line.
     pub fn pair_bits(&self) -> u32 {
-        (PAIR_WORDS * self.word_bits).next_power_of_two()
+        (self.pair_words().len() as u32 * self.word_bits).next_power_of_two()
     }
 
     /// Pairs a source line.

@@ -25,7 +25,7 @@ mod top;
 pub use control::JobError;
 pub use files::FILE_LIST;
 pub use generate::{Afu, BuildError, top_name};
-pub use layout::Layout;
+pub use layout::{Layout, OtherRadius};
 pub use spec::{Spec, SpecError};
 pub use timing::Timing;
 

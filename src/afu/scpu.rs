@@ -3,12 +3,10 @@
 use std::sync::Arc;
 
 use crate::hdl::{Errors, Graph, Module, Signal};
-use crate::kernel::Fields;
+use crate::kernel::{Fields, PAIR_FIELDS};
 
 use super::Spec;
 
-/// The words of a pair, in record order.
-const PAIR: [&str; 8] = ["x1", "y1", "z1", "r1", "x2", "y2", "z2", "r2"];
 /// The words of a full contact before its flags, in record order.
 const CONTACT: [&str; 7] = ["pos_x", "pos_y", "pos_z", "normal_x", "normal_y", "normal_z", "depth"];
 
@@ -20,12 +18,13 @@ pub(super) fn scpu(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>, Err
     graph.about(format!("one sphere collision processing unit: a pair every cycle, its record {latency} cycles later"));
     let layout = spec.layout();
     let pair = graph.input("pair", layout.pair_bits());
+    let names: Vec<&str> = layout.pair_words().into_iter().map(|word| PAIR_FIELDS[word]).collect();
     let words: Vec<Signal<'_>> =
-        PAIR.iter().zip(0..).map(|(name, index)| pair.slice(32 * index, 32).named(name)).collect();
+        names.iter().zip(0..).map(|(name, index)| pair.slice(32 * index, 32).named(name)).collect();
 
     // A NaN, an infinity or a negative radius (a negative zero is a radius) makes a pair invalid.
     let mut invalid = graph.constant(1, 0);
-    for (word, name) in words.iter().zip(PAIR) {
+    for (word, name) in words.iter().zip(&names) {
         invalid = invalid | word.slice(23, 8).all().named(&format!("{name}_not_finite"));
         if name.starts_with('r') {
             invalid = invalid | (word.msb() & word.low(31).any()).named(&format!("{name}_negative"));
@@ -33,7 +32,7 @@ pub(super) fn scpu(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>, Err
     }
     let invalid = invalid.named("invalid");
 
-    let mut inputs: Vec<(&str, Signal<'_>)> = PAIR.into_iter().zip(words).collect();
+    let mut inputs: Vec<(&str, Signal<'_>)> = names.into_iter().zip(words).collect();
     inputs.push(("valid", !invalid));
     let kernel = graph.instance("kernel", kernel, &inputs);
     let hit = kernel.output("hit").named("hit");

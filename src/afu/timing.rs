@@ -33,14 +33,17 @@ pub struct Timing {
 
 impl Afu {
     /// What the AFU says of itself in its capability word: bits 7:0 SCPUs, 15:8 interval, 19:16 contact fields (hit,
-    /// depth, normal, position from bit 16 up), 24 whether contacts alone come back, 43:32 latency of an SCPU in cycles.
+    /// depth, normal, position from bit 16 up), 24 whether contacts alone come back, 25 whether all
+    /// spheres have one radius, 43:32 latency of an SCPU in cycles.
     pub fn capability(&self) -> u64 {
         let config = &self.spec().config;
         let fields = [config.contact.position, config.contact.normal, config.contact.depth, true];
         let mask = fields.into_iter().fold(0, |mask, bit| mask << 1 | u64::from(bit));
         let only_hits = u64::from(config.results == Results::Hits);
+        let one_radius = u64::from(config.radius.is_some());
         let latency = u64::from(self.kernel().latency.min(0xfff));
         latency << 32
+            | one_radius << 25
             | only_hits << 24
             | mask << 16
             | u64::from(config.interval.min(0xff)) << 8

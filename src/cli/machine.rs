@@ -34,6 +34,9 @@ pub struct Machine {
     /// Which pairs come back: all, or hits (those that touch, each with its number) [default: all]
     #[arg(long, value_name = "WHICH")]
     pub results: Option<Results>,
+    /// One radius for all spheres, which is then part of the hardware and of no record [default: each its own]
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
+    pub radius: Option<f32>,
     /// What stands around the AFU's line port: spl2 (Intel HARP v1), line (nothing) [default: spl2]
     #[arg(long, value_name = "SHELL")]
     pub shell: Option<Shell>,
@@ -82,6 +85,7 @@ impl Machine {
         set(&mut config.contact, &self.contact);
         set(&mut config.input, &self.input);
         set(&mut config.results, &self.results);
+        config.radius = self.radius.or(config.radius);
         set(&mut config.shell, &self.shell);
         set(&mut config.clock_mhz, &self.clock);
         Ok(config)
@@ -136,6 +140,7 @@ impl One {
             ("--contact", m.contact.is_some()),
             ("--input", m.input.is_some()),
             ("--results", m.results.is_some()),
+            ("--radius", m.radius.is_some()),
             ("--shell", m.shell.is_some()),
             ("--clock", m.clock.is_some()),
             ("--target", m.target.is_some()),

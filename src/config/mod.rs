@@ -34,6 +34,10 @@ pub struct Config {
     pub input: Input,
     /// Which pairs come back.
     pub results: Results,
+    /// The one radius of every sphere, a length: it is then part of the hardware, and records have no radii. Without it
+    /// each sphere has its own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub radius: Option<f32>,
     /// The shell around the line port.
     pub shell: Shell,
     /// The clock that stages are cut for, in MHz; simulated time is told in it.
@@ -49,6 +53,7 @@ impl Default for Config {
             contact: Fields::ALL,
             input: Input::Direct,
             results: Results::All,
+            radius: None,
             shell: Shell::Spl2,
             clock_mhz: 200.0,
         }
@@ -74,6 +79,9 @@ pub enum Error {
         "profile exact with results hits: pairs that only the host can settle would not come back; ask for all results"
     )]
     ExactHits,
+    /// A radius that no sphere has.
+    #[error("radius {0}: give a finite length, not below 0")]
+    Radius(f32),
     /// Known to the design, not built yet.
     #[error("{option} {value}: not built yet; {instead}")]
     NotYet {
@@ -104,6 +112,11 @@ impl Config {
         if self.profile.is_exact() && self.results == Results::Hits {
             return Err(Error::ExactHits);
         }
+        if let Some(radius) = self.radius
+            && !(0.0..=f32::MAX).contains(&radius)
+        {
+            return Err(Error::Radius(radius));
+        }
         let not_yet = |option, value: String, instead| Err(Error::NotYet { option, value, instead });
         if self.interval != 1 {
             return not_yet("interval", self.interval.to_string(), "an SCPU takes a pair every cycle (1)");
@@ -129,6 +142,7 @@ impl Config {
     /// The options that give this configuration, those of the default left out.
     pub fn flags(&self) -> Vec<String> {
         let default = Self::default();
+        let radius = |config: &Self| config.radius.map_or(String::new(), |radius| radius.to_string());
         let pairs = [
             ("--scpus", self.scpus.to_string(), default.scpus.to_string()),
             ("--interval", self.interval.to_string(), default.interval.to_string()),
@@ -136,6 +150,7 @@ impl Config {
             ("--contact", self.contact.to_string(), default.contact.to_string()),
             ("--input", self.input.to_string(), default.input.to_string()),
             ("--results", self.results.to_string(), default.results.to_string()),
+            ("--radius", radius(self), radius(&default)),
             ("--shell", self.shell.to_string(), default.shell.to_string()),
             ("--clock", self.clock_mhz.to_string(), default.clock_mhz.to_string()),
         ];

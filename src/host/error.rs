@@ -1,10 +1,11 @@
 //! What can go wrong in a session, and what to do about it.
 
 use super::transport::TransportError;
+use crate::afu::OtherRadius;
 use crate::afu::spl2::map;
 
 /// Why a transaction has no results.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum HostError {
     /// No workspace is like that.
     #[error("a workspace of {0} pages of 2 MB: give it 1 to 1024")]
@@ -28,6 +29,9 @@ pub enum HostError {
         /// Pages that would hold them.
         pages: u64,
     },
+    /// A pair with another radius than the AFU's.
+    #[error(transparent)]
+    Radius(#[from] OtherRadius),
     /// The device never said who it is.
     #[error(
         "AFU_ID never seen in the DSM after {0} cycles: see that the FPGA holds this AFU and that its clock runs, then begin a \

@@ -9,11 +9,11 @@ const WORD: usize = 32;
 
 /// The source lines of pairs; what is unused of the last is zero.
 pub(crate) fn pack(layout: &Layout, pairs: &[PairRecord]) -> Vec<Line> {
-    let words = layout.pair_bits() as usize / WORD;
+    let (room, words) = (layout.pair_bits() as usize / WORD, layout.pair_words());
     let line = |pairs: &[PairRecord]| {
         let mut line: Line = [0; 16];
-        for (slot, pair) in line.chunks_mut(words).zip(pairs) {
-            slot[..pair.0.len()].copy_from_slice(&pair.0);
+        for (slot, pair) in line.chunks_mut(room).zip(pairs) {
+            slot.iter_mut().zip(&words).for_each(|(to, &word)| *to = pair.0[word]);
         }
         line
     };
@@ -24,7 +24,7 @@ pub(crate) fn pack(layout: &Layout, pairs: &[PairRecord]) -> Vec<Line> {
 pub(crate) fn unpack_pairs(layout: &Layout, lines: &[Line], count: usize) -> Vec<PairRecord> {
     let words = layout.pair_bits() as usize / WORD;
     let slots = lines.iter().flat_map(|line| line.chunks(words));
-    slots.take(count).map(|slot| PairRecord(std::array::from_fn(|word| slot[word]))).collect()
+    slots.take(count).map(|slot| layout.pair(slot)).collect()
 }
 
 /// The destination lines of contacts where each pair has one; what is unused of the last is zero.

@@ -44,6 +44,7 @@ impl Expected {
             ("an interval of", 8, 8),
             ("contact fields (a mask)", 16, 4),
             ("results (1: contacts alone)", 24, 1),
+            ("one radius for all spheres (1: yes)", 25, 1),
             ("an SCPU latency (another profile or clock) of", 32, 12),
         ];
         for (what, low, bits) in parts {

@@ -195,6 +195,7 @@ impl<'s, T: Transport> Transaction<'s, T, Pointed> {
     /// # Errors
     /// More pairs than the buffers hold; no AFU_ID, or not that of the AFU expected; what the device did wrong.
     pub fn send(mut self, pairs: &[PairRecord]) -> Result<Transaction<'s, T, Loaded>, HostError> {
+        self.open.session.workspace.layout().check(pairs)?;
         self.open.sent = pairs.to_vec();
         let Open { session, is_spl_started, report, pairs: sent, .. } = &mut self.open;
         let capacity = session.workspace.capacity();

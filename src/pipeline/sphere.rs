@@ -8,7 +8,7 @@ use super::trace::{Ports, trace};
 use super::wire::Wire;
 use crate::hdl::{DelayModel, Errors, Module};
 use crate::kernel::{Arithmetic, Fields, Filtered, PAIR_FIELDS, Pair, contact, exact};
-use crate::number::Format;
+use crate::number::{Format, Number};
 
 /// What decides the sphere kernel's bits and stages.
 #[derive(Clone, Debug)]
@@ -19,6 +19,8 @@ pub struct Settings {
     pub record: Format,
     /// The outputs asked for.
     pub fields: Fields,
+    /// The one radius of all spheres, if they have one: there are then no inputs for radii.
+    pub radius: Option<f32>,
     /// The clock that operators are cut for, in MHz.
     pub clock_mhz: f64,
     /// How long the target takes for each operation.
@@ -51,18 +53,26 @@ pub fn is_normal(arithmetic: Arithmetic, fields: Fields) -> Result<bool, Errors>
 }
 
 fn read(ports: &Ports, settings: &Settings) {
-    let Settings { arithmetic, record, fields, .. } = *settings;
+    let Settings { arithmetic, record, fields, radius, .. } = *settings;
     ports.about(format!("contact of two spheres: {fields}"));
     let computed_in = match arithmetic {
         Arithmetic::Rounded(format) => format!("{format}"),
         Arithmetic::Exact => format!("{} and exact squares, then {}", Format::DIFFERENCE, Format::TAIL),
     };
     ports.about(format!("computed in {computed_in}, words in {record}"));
-    let [x1, y1, z1, r1, x2, y2, z2, r2] = PAIR_FIELDS.map(|name| ports.input(name, record));
+    let sphere = |names: &[&'static str]| {
+        let centre = Vector3::new(names[0], names[1], names[2]).map(|name| ports.input(name, record));
+        let own = || ports.input(names[3], record);
+        (centre, radius.map_or_else(own, |radius| centre.x.constant(radius.into())))
+    };
+    let ((p1, r1), (p2, r2)) = (sphere(&PAIR_FIELDS[..4]), sphere(&PAIR_FIELDS[4..]));
     let valid = ports.input_bit("valid");
-    ports.promise_finite(valid, &[x1, y1, z1, x2, y2, z2], false);
-    ports.promise_finite(valid, &[r1, r2], true);
-    let pair = Pair { p1: Vector3::new(x1, y1, z1), r1, p2: Vector3::new(x2, y2, z2), r2 };
+    ports.promise_finite(valid, &[p1.x, p1.y, p1.z, p2.x, p2.y, p2.z], false);
+    match radius {
+        Some(radius) => ports.about(format!("every sphere's radius is {radius}")),
+        None => ports.promise_finite(valid, &[r1, r2], true),
+    }
+    let pair = Pair { p1, r1, p2, r2 };
     let contact = match arithmetic {
         Arithmetic::Rounded(format) => contact(pair, valid, format, record, fields),
         Arithmetic::Exact => {

@@ -142,6 +142,7 @@ impl Bench {
         mut progress: impl FnMut(u64),
     ) -> Result<Verdict, VerifyError> {
         let count = u32::try_from(pairs.len()).map_err(|_| VerifyError::Pairs(pairs.len()))?;
+        self.layout.check(pairs)?;
         let source = lines::pack(&self.layout, pairs);
         let mut job = Job::new(&source, count, self.layout.destination_lines(u64::from(count)));
         job.scpus = Some(self.config.scpus);

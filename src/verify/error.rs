@@ -1,6 +1,6 @@
 //! Why there is no verdict.
 
-use crate::afu::BuildError;
+use crate::afu::{BuildError, OtherRadius};
 use crate::config::ReadError;
 use crate::cosim::CosimError;
 use crate::cosim::drive::DriveError;
@@ -28,6 +28,9 @@ pub enum VerifyError {
     /// The same behind SPL2's port.
     #[error(transparent)]
     Machine(#[from] MachineError),
+    /// A pair with another radius than the AFU's.
+    #[error(transparent)]
+    Radius(#[from] OtherRadius),
     /// More pairs than a job's count can say.
     #[error("{0} pairs: a job has at most 4294967295")]
     Pairs(usize),
