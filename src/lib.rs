@@ -21,6 +21,7 @@ pub mod paper;
 pub mod pipeline;
 pub mod plot;
 pub mod report;
+pub mod scene;
 #[cfg(feature = "cosim")]
 pub mod sweep;
 pub mod synth;

@@ -26,6 +26,7 @@ mod progress;
 #[cfg(feature = "cosim")]
 mod replay;
 mod rtl;
+mod scene;
 #[cfg(feature = "cosim")]
 mod sweep;
 mod synth;
@@ -59,6 +60,7 @@ enum Command {
     Sweep(sweep::Sweep),
     #[cfg(feature = "cosim")]
     Paper(paper::Paper),
+    Scene(scene::Scene),
     /// Measure an operator, an SCPU or the AFU on an FPGA: cells by Yosys, the clock by nextpnr
     Synth(synth::Synth),
     #[cfg(feature = "cosim")]
@@ -90,6 +92,7 @@ fn run(program: &Program) -> Result<(), Failure> {
         Command::Sweep(options) => sweep::run(options),
         #[cfg(feature = "cosim")]
         Command::Paper(options) => paper::run(options),
+        Command::Scene(options) => scene::run(options),
         Command::Synth(options) => synth::run(options),
         #[cfg(feature = "cosim")]
         Command::Accuracy(options) => accuracy::run(options),

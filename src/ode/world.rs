@@ -2,6 +2,7 @@
 
 use super::contact::{Surface, Touch};
 use super::dcollide::dcollide;
+use super::effects::Plane;
 use super::numbers::{LARGEST, positive, signed, within};
 use super::{Collider, Contact, Error, Ode, sys};
 use std::any::Any;
@@ -22,11 +23,11 @@ impl Sphere {
 #[derive(Debug)]
 pub(super) struct Parts {
     pub(super) body: sys::dBodyID,
-    geom: sys::dGeomID,
+    pub(super) geom: sys::dGeomID,
     radius: f64,
 }
 
-/// Spheres, and nothing else, without gravity.
+/// Spheres, without gravity or anything else of [`World::set_gravity`] and what follows it unless asked for.
 ///
 /// Two worlds built and stepped alike give the same bits, however many others there are: each keeps its own place in
 /// the sequence of random numbers of ODE's solver.
@@ -39,6 +40,10 @@ pub struct World {
     space: sys::dSpaceID,
     joints: sys::dJointGroupID,
     pub(super) spheres: Vec<Parts>,
+    /// What spheres cannot pass.
+    pub(super) walls: Vec<Plane>,
+    /// Whether spheres fall asleep.
+    pub(super) spheres_sleep: bool,
     /// Where ODE's random numbers go on.
     seed: c_ulong,
     /// The last of all to go.
@@ -57,7 +62,11 @@ impl World {
         if id.is_null() || space.is_null() || joints.is_null() {
             return Err(Error::Memory);
         }
-        Ok(Self { id, space, joints, spheres: Vec::new(), seed: 0, ode: ode.clone() })
+        Ok(Self { id, space, joints, spheres: Vec::new(), walls: Vec::new(), spheres_sleep: false, seed: 0, ode: ode.clone() })
+    }
+
+    pub(super) fn id(&self) -> sys::dWorldID {
+        self.id
     }
 
     /// How many iterations ODE's QuickStep does; it begins with 20.
@@ -143,13 +152,17 @@ impl World {
         Ok(())
     }
 
-    /// The pairs that [`World::near`] visits.
+    /// The pairs that [`World::near`] visits, without those of two spheres that sleep.
     ///
     /// # Errors
     /// When a sphere is lost: see [`World::step`].
     pub fn candidates(&self) -> Result<Vec<[Sphere; 2]>, Error> {
         let mut pairs = Vec::new();
-        self.near(|first, second| pairs.push([first, second]))?;
+        self.near(|first, second| {
+            if !(self.spheres_sleep && self.is_asleep(first) && self.is_asleep(second)) {
+                pairs.push([first, second]);
+            }
+        })?;
         Ok(pairs)
     }
 
@@ -203,18 +216,33 @@ impl World {
         if !contact.is_plausible() {
             return Err(Error::Contact { first: first.0, second: second.0 });
         }
+        // SAFETY: both bodies live, and differ.
+        unsafe { self.attach(contact, surface, [one.geom, other.geom], [one.body, other.body]) }
+    }
+
+    /// A contact joint.
+    ///
+    /// # Safety
+    /// The bodies live and differ, or the second is null; the geoms live.
+    pub(super) unsafe fn attach(
+        &self,
+        contact: &Contact,
+        surface: &Surface,
+        [g1, g2]: [sys::dGeomID; 2],
+        [one, other]: [sys::dBodyID; 2],
+    ) -> Result<(), Error> {
         within("a friction", surface.friction, 0.0..=LARGEST)?;
         within("a bounce", surface.bounce, 0.0..=1.0)?;
         within("a bounce's speed", surface.bounce_speed, 0.0..=LARGEST)?;
         let contact =
-            sys::dContact { surface: surface.raw(), geom: contact.raw(one.geom, other.geom), fdir1: [0.0; 4] };
-        // SAFETY: world, joints and both bodies live; the bodies differ; ODE copies the contact.
+            sys::dContact { surface: surface.raw(), geom: contact.raw(g1, g2), fdir1: [0.0; 4] };
+        // SAFETY: world and joints live, for the rest the caller's word; ODE copies the contact.
         unsafe {
             let joint = sys::dJointCreateContact(self.id, self.joints, &contact);
             if joint.is_null() {
                 return Err(Error::Memory);
             }
-            sys::dJointAttach(joint, one.body, other.body);
+            sys::dJointAttach(joint, one, other);
         }
         Ok(())
     }
@@ -256,6 +284,7 @@ impl Drop for World {
         // its geoms, which do too, then the world with its bodies. ODE runs until `ode` is dropped, after this.
         unsafe {
             sys::dJointGroupDestroy(self.joints);
+            self.destroy_walls();
             sys::dSpaceDestroy(self.space);
             sys::dWorldDestroy(self.id);
         }

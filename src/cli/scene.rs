@@ -1,0 +1,207 @@
+//! `afu scene`: a scene with only what it calls for.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use contact_afu::config::Config;
+use contact_afu::kernel::Engine;
+use contact_afu::report::folder::{self, Folder};
+use contact_afu::scene::{self, Cost, Part, Plan, Results, Scene as Story, SceneError};
+
+use super::failure::{Classify, Failure, Kind};
+use super::{output, progress};
+
+/// Run a scene with only the effects it calls for, or say what it calls for
+///
+/// FILE is TOML (see docs/scene.md; examples/scenes has five). Every effect and every field of a contact is off unless a
+/// line of the scene calls for it: it is then not in the Verilog, not in a record, and its part of ODE is never called.
+#[derive(Args, Debug)]
+pub struct Scene {
+    /// The scene
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// Say what is on and off, and which line calls for it; run nothing
+    #[arg(long)]
+    plan: bool,
+    /// With this effect too: what changes, in the plan and in what it costs
+    #[arg(long, value_name = "EFFECT", conflicts_with = "without")]
+    with: Option<String>,
+    /// Without this effect: what changes, in the plan and in what it costs
+    #[arg(long, value_name = "EFFECT")]
+    without: Option<String>,
+    /// Who computes contacts: the simulated AFU in ODE's loop, or the same kernel in software
+    #[arg(long, value_name = "ENGINE", default_value = "ode")]
+    engine: Who,
+    /// Folder to write: report.html, manifest.json, and what is wanted (trajectories.csv, contacts.csv, energy.csv)
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Write into the folder even if afu did not make it; other files in it are left alone
+    #[arg(long, requires = "out")]
+    force: bool,
+    /// Write the run as JSON too (schema contact-afu/scene/1); - is standard output
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Count LUTs with Yosys for every configuration that is compared (some minutes, kept for the next time)
+    #[arg(long)]
+    luts: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Who {
+    /// The Verilated AFU; a scene that moves is stepped by the Open Dynamics Engine
+    Ode,
+    /// The reference kernel in software, of the same arithmetic
+    Reference,
+}
+
+pub fn run(options: &Scene) -> Result<(), Failure> {
+    let story = Story::read(&options.file)?;
+    let plan = Plan::of(&story)?;
+    let other = match (&options.with, &options.without) {
+        (Some(effect), _) => Some(story.switched(effect, true)?),
+        (_, Some(effect)) => Some(story.switched(effect, false)?),
+        _ => None,
+    };
+    if let Some(other) = other {
+        let other = Plan::of(&other)?;
+        let costs = (options.cost(&plan.config)?, options.cost(&other.config)?);
+        return output::show(&plan.difference(&other, &costs.0, &costs.1), false);
+    }
+    if options.plan {
+        let cost = options.cost(&plan.config)?;
+        return output::show(&format!("{}\n\n{}", plan.text(), cost.text()), false);
+    }
+    if let Some(out) = &options.out {
+        folder::check(out, options.force)?;
+    }
+    let mut results = options.results(&story, &plan)?;
+    if options.luts {
+        results.cost = options.cost(&plan.config)?;
+        results.everything = options.cost(&plan.everything())?;
+    }
+    if let Some(out) = &options.out {
+        let ladder = options.ladder(&story)?;
+        options.write(out, &plan, &results, &ladder)?;
+    }
+    let stdout_taken = options.json.as_deref().is_some_and(output::is_stdout);
+    output::show(&format!("{}\n\n{}", results.text(), results.costs()), stdout_taken)?;
+    match &options.json {
+        Some(path) => output::json(path, &results.json()),
+        None => Ok(()),
+    }
+}
+
+impl Scene {
+    fn cost(&self, config: &Config) -> Result<Cost, Failure> {
+        let mut cost = Cost::of(config)?;
+        if self.luts {
+            let spinner = progress::spinner("counting LUTs with Yosys");
+            let counted = cost.count(config);
+            spinner.finish_and_clear();
+            counted?;
+        }
+        Ok(cost)
+    }
+
+    /// The cost of touching alone, then with one effect of the scene after another.
+    fn ladder(&self, story: &Story) -> Result<Vec<(String, Cost)>, Failure> {
+        scene::ladder(story)?.into_iter().map(|(name, config)| Ok((name, self.cost(&config)?))).collect()
+    }
+
+    fn results(&self, story: &Story, plan: &Plan) -> Result<Results, Failure> {
+        match self.engine {
+            Who::Reference => {
+                let mut reference = plan.config.profile.reference(plan.config.contact);
+                self.go(story, plan, &mut reference, "the reference kernel in software")
+            }
+            Who::Ode => self.simulated(story, plan),
+        }
+    }
+
+    #[cfg(feature = "cosim")]
+    fn simulated(&self, story: &Story, plan: &Plan) -> Result<Results, Failure> {
+        use contact_afu::link::LinkModel;
+        use contact_afu::verify::{Bench, BenchEngine};
+        if !plan.has(Part::Hit) {
+            let mut nobody = plan.config.profile.reference(plan.config.contact);
+            return self.go(story, plan, &mut nobody, "nobody: nothing asks who touches whom");
+        }
+        let spinner = progress::spinner("building the AFU's model");
+        let bench = Bench::new(&plan.config);
+        spinner.finish_and_clear();
+        let bench = bench?;
+        let mut engine = BenchEngine::new(&bench, LinkModel::ideal(), 1);
+        let mut results = self.go(story, plan, &mut engine, "the simulated AFU")?;
+        results.summary.cycles = Some(engine.totals().cycles);
+        Ok(results)
+    }
+
+    #[cfg(not(feature = "cosim"))]
+    fn simulated(&self, _: &Story, _: &Plan) -> Result<Results, Failure> {
+        let message = "this program was built without simulation (feature `cosim`): give --engine reference";
+        Err(Failure::new(Kind::Tool, message))
+    }
+
+    fn go(&self, story: &Story, plan: &Plan, engine: &mut dyn Engine, name: &str) -> Result<Results, Failure> {
+        if Plan::moves(story) {
+            return moving(story, plan, engine, name);
+        }
+        Ok(scene::query(story, plan, engine, name)?)
+    }
+
+    fn write(
+        &self,
+        out: &std::path::Path,
+        plan: &Plan,
+        results: &Results,
+        ladder: &[(String, Cost)],
+    ) -> Result<(), Failure> {
+        let folder = Folder::begin(out, self.force)?;
+        let mut manifest = serde_json::to_vec_pretty(&results.json()).ends(Kind::Other)?;
+        manifest.push(b'\n');
+        folder.write("manifest.json", &manifest)?;
+        folder.write("report.html", scene::page(results, ladder).as_bytes())?;
+        let texts = [
+            (Part::Contacts, "contacts.csv", Results::contacts_csv as fn(&Results) -> String),
+            (Part::Trajectories, "trajectories.csv", Results::trajectories_csv),
+            (Part::Energy, "energy.csv", Results::energy_csv),
+        ];
+        for (part, name, text) in texts {
+            if plan.has(part) {
+                folder.write(name, text(results).as_bytes())?;
+            }
+        }
+        Ok(folder.commit()?)
+    }
+}
+
+#[cfg(feature = "ode")]
+fn moving(story: &Story, plan: &Plan, engine: &mut dyn Engine, name: &str) -> Result<Results, Failure> {
+    let bar = progress::bar("running the scene:", "steps", story.steps.value);
+    let results = scene::run(story, plan, engine, name, |steps| bar.set_position(steps));
+    bar.finish_and_clear();
+    Ok(results?)
+}
+
+#[cfg(not(feature = "ode"))]
+fn moving(_: &Story, _: &Plan, _: &mut dyn Engine, _: &str) -> Result<Results, Failure> {
+    let message = "this program was built without the Open Dynamics Engine, which moves the bodies of this scene; \
+                   ./scripts/setup --ode && cargo run --release --features ode -- scene FILE";
+    Err(Failure::new(Kind::Tool, message))
+}
+
+impl From<SceneError> for Failure {
+    fn from(error: SceneError) -> Self {
+        let kind = match error {
+            SceneError::Value { .. } | SceneError::Form { .. } | SceneError::Read { .. } | SceneError::Effect(..) => {
+                Kind::Usage
+            }
+            SceneError::Afu(error) => return error.into(),
+            SceneError::Synth(error) => return error.into(),
+            #[cfg(feature = "ode")]
+            SceneError::Ode(_) => Kind::Other,
+            SceneError::Engine(_) => Kind::Unmet,
+        };
+        Self::caused(kind, error)
+    }
+}

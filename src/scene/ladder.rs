@@ -1,0 +1,53 @@
+//! One effect after another: the AFU of touching alone, then what each line of a scene adds.
+
+use super::file::{Effects, Scene, Want};
+use super::plan::Plan;
+use super::SceneError;
+use crate::config::Config;
+
+/// The AFUs of a scene with more and more of what it calls for: by the name of what was added last. The first has
+/// touching alone, the last is the scene's own.
+///
+/// # Errors
+/// When a file of bodies cannot be read.
+pub fn ladder(scene: &Scene) -> Result<Vec<(String, Config)>, SceneError> {
+    let of_fields = [Want::Depth, Want::Normals, Want::ContactPoints];
+    let mut bare = scene.clone();
+    bare.effects = Effects::default();
+    bare.want = vec![(Want::Touching, 0)];
+    (bare.accuracy, bare.max_error) = (None, None);
+    let mut rungs = vec![("touching alone".to_owned(), Plan::of(&bare)?.config)];
+    for want in of_fields {
+        if let Some(wanted) = scene.want.iter().find(|(wanted, _)| *wanted == want) {
+            bare.want.push(*wanted);
+            rungs.push((want.name().to_owned(), Plan::of(&bare)?.config));
+        }
+    }
+    // Effects that call for no part of the AFU add nothing to it, and the table shows that.
+    for name in Scene::effect_names() {
+        let named = scene.switched(name, false)?.effects != scene.effects;
+        if named {
+            take(&mut bare.effects, &scene.effects, name);
+            rungs.push(((*name).to_owned(), Plan::of(&bare)?.config));
+        }
+    }
+
+    if scene.accuracy.is_some() || scene.max_error.is_some() {
+        rungs.push(("accuracy".to_owned(), Plan::of(scene)?.config));
+    }
+    Ok(rungs)
+}
+
+fn take(to: &mut Effects, from: &Effects, name: &str) {
+    match name {
+        "gravity" => to.gravity.clone_from(&from.gravity),
+        "pull" => to.pull.clone_from(&from.pull),
+        "bounce" => to.bounce.clone_from(&from.bounce),
+        "friction" => to.friction.clone_from(&from.friction),
+        "spin" => to.spin.clone_from(&from.spin),
+        "damping" => to.damping.clone_from(&from.damping),
+        "floor" => to.floor.clone_from(&from.floor),
+        "walls" => to.walls.clone_from(&from.walls),
+        _ => to.sleeping.clone_from(&from.sleeping),
+    }
+}

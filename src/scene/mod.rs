@@ -1,0 +1,33 @@
+//! Scenes: bodies, the effects that act on them and what is wanted of them; and of that, what must be built and run.
+//!
+//! A [`Scene`] is read from TOML ([`Scene::read`]). Its [`Plan`] says for every effect, every field of a contact and every
+//! part of the hardware whether it is on, and which lines call for it: see [`RULES`]. What nothing calls for costs
+//! nothing: it is not in the Verilog, not in a record, and its part of ODE is never called. [`run`](fn@run) then runs the
+//! scene with what the plan has, and nothing else.
+
+mod bodies;
+mod cost;
+mod demand;
+mod error;
+mod file;
+mod ladder;
+mod page;
+mod plan;
+mod query;
+mod results;
+#[cfg(feature = "ode")]
+mod run;
+mod text;
+
+pub use bodies::{Ball, balls};
+pub use cost::Cost;
+pub use demand::{Demand, Part, RULES};
+pub use error::SceneError;
+pub use file::{Effects, Given, Group, Pull, Scene, Shape, Want};
+pub use ladder::ladder;
+pub use page::page;
+pub use plan::{Call, Plan, Row};
+pub use query::{Query, query};
+pub use results::{Energy, Results, SCHEMA, Summary, Touching};
+#[cfg(feature = "ode")]
+pub use run::run;

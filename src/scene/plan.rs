@@ -1,0 +1,254 @@
+//! Of a scene's text, what must be built and run, and which line calls for it.
+
+use super::cost::Cost;
+use super::demand::{Demand, MOVING, Part, RULES};
+use super::file::{Given, Pull, Scene, Shape};
+use super::{SceneError, bodies};
+use crate::config::{Config, Profile, Results};
+use crate::kernel::Fields;
+
+/// A line that calls for something.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Call {
+    /// Its number, from 1.
+    pub line: usize,
+    /// Its text.
+    pub text: String,
+}
+
+/// A row of a plan.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// What it is about: a [`Part`]'s name, or a group of bodies.
+    pub name: String,
+    /// Whether it is built and run.
+    pub on: bool,
+    /// How much of it, where that can be said.
+    pub value: String,
+    /// The lines that call for it; none where it is off, or on for want of a line.
+    pub calls: Vec<Call>,
+}
+
+/// What a scene takes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// Row by row.
+    pub rows: Vec<Row>,
+    /// The AFU.
+    pub config: Config,
+}
+
+/// What `--with` and `--without` can name: an effect, and the value it has where a scene does not say one.
+const EFFECTS: [&str; 9] =
+    ["gravity", "pull", "bounce", "friction", "spin", "damping", "floor", "walls", "sleeping"];
+
+impl Plan {
+    /// Whether something sets the bodies of a scene going.
+    pub fn moves(scene: &Scene) -> bool {
+        MOVING.iter().any(|demand| !demand.lines(scene).is_empty())
+    }
+
+    /// The plan of a scene.
+    ///
+    /// # Errors
+    /// When a file of bodies cannot be read.
+    pub fn of(scene: &Scene) -> Result<Self, SceneError> {
+        let calls = |demands: &[Demand]| {
+            let mut lines: Vec<usize> = demands.iter().flat_map(|demand| demand.lines(scene)).collect();
+            lines.sort_unstable();
+            lines.dedup();
+            lines.into_iter().map(|line| call(scene, line)).collect::<Vec<_>>()
+        };
+        let on = |part: Part| !calls(part.demands()).is_empty();
+        let radius = one_radius(scene)?;
+        let profile = profile(scene);
+        let fields = Fields { depth: on(Part::Depth), normal: on(Part::Normal), position: on(Part::Position) };
+        // Records of one bit cannot say that a pair is unsettled, and the host must be told of those.
+        let exact = profile.is_exact();
+        let fields = if exact && fields == Fields::HIT { Fields { depth: true, ..fields } } else { fields };
+        let config = Config {
+            scpus: scene.scpus.value,
+            profile,
+            contact: fields,
+            results: if exact { Results::All } else { Results::Hits },
+            radius,
+            ..Config::default()
+        };
+        let mut rows: Vec<Row> = RULES
+            .iter()
+            .map(|&(part, demands)| {
+                let calls = calls(demands);
+                let (is_on, value) = match part {
+                    Part::Radii => match radius {
+                        Some(radius) => (false, format!("every radius is {radius}")),
+                        None => (true, "radii differ".to_owned()),
+                    },
+                    Part::Arithmetic => (true, config.profile.to_string()),
+                    Part::Misses => (exact, String::new()),
+                    Part::Scpus => (true, scene.scpus.value.to_string()),
+                    _ => (!calls.is_empty(), value(scene, part)),
+                };
+                Row { name: part.name().to_owned(), on: is_on, value, calls }
+            })
+            .collect();
+        rows.push(run(scene, calls(&[MOVING, &[Demand::Steps, Demand::TimeStep]].concat())));
+        let groups = [("bodies", &scene.bodies), ("queries", &scene.queries)];
+        for (key, group) in groups.into_iter().flat_map(|(key, groups)| groups.iter().map(move |group| (key, group))) {
+            rows.push(Row {
+                name: format!("{key} of line {}", group.lines.first().copied().unwrap_or(0)),
+                on: true,
+                value: describe(group),
+                calls: group.lines.iter().map(|&line| call(scene, line)).collect(),
+            });
+        }
+        Ok(Self { rows, config })
+    }
+
+    /// A row by its part.
+    pub fn row(&self, part: Part) -> Option<&Row> {
+        self.rows.iter().find(|row| row.name == part.name())
+    }
+
+    /// Whether a part is on.
+    pub fn has(&self, part: Part) -> bool {
+        self.row(part).is_some_and(|row| row.on)
+    }
+
+    /// The AFU that has everything: what the scene would take if nobody had asked what it calls for.
+    pub fn everything(&self) -> Config {
+        Config { contact: Fields::ALL, results: Results::All, radius: None, ..self.config.clone() }
+    }
+
+    /// What the AFU costs, without the tools that count LUTs.
+    ///
+    /// # Errors
+    /// When there is no such AFU.
+    pub fn cost(&self) -> Result<Cost, SceneError> {
+        Cost::of(&self.config)
+    }
+}
+
+impl Scene {
+    /// The scene with an effect that it does not name, at a usual value, or without one that it does.
+    ///
+    /// # Errors
+    /// When there is no such effect.
+    pub fn switched(&self, effect: &str, on: bool) -> Result<Self, SceneError> {
+        // The line of what no line calls for.
+        const ASKED: Option<usize> = Some(0);
+        fn set<T>(to: &mut Option<Given<T>>, on: bool, usual: T) {
+            *to = if on { to.take().or(Some(Given { value: usual, line: ASKED })) } else { None };
+        }
+        let mut scene = self.clone();
+        let effects = &mut scene.effects;
+        match effect {
+            "gravity" => set(&mut effects.gravity, on, [0.0, 0.0, -9.81]),
+            "pull" => set(&mut effects.pull, on, Pull { strength: 1.0, centre: [0.0; 3], steps: u64::MAX }),
+            "bounce" => set(&mut effects.bounce, on, 0.5),
+            "friction" => set(&mut effects.friction, on, 0.5),
+            "spin" => set(&mut effects.spin, on, true),
+            "damping" => set(&mut effects.damping, on, 0.01),
+            "floor" => set(&mut effects.floor, on, -100.0),
+            "walls" => set(&mut effects.walls, on, [[-100.0; 3], [100.0; 3]]),
+            "sleeping" => set(&mut effects.sleeping, on, 0.01),
+            _ => return Err(SceneError::Effect(effect.to_owned(), EFFECTS.join(", "))),
+        }
+        if !on && effect == "spin" {
+            scene.bodies.iter_mut().for_each(|group| group.turning = None);
+        }
+        Ok(scene)
+    }
+
+    /// The effects that `--with` and `--without` can name.
+    pub const fn effect_names() -> &'static [&'static str] {
+        &EFFECTS
+    }
+}
+
+fn call(scene: &Scene, line: usize) -> Call {
+    let text = match line.checked_sub(1) {
+        None => "asked for on the command line".to_owned(),
+        Some(index) => scene.text.get(index).map_or_else(String::new, |text| text.trim().to_owned()),
+    };
+    Call { line, text }
+}
+
+/// The radius, rounded to binary32 as records have it, if all spheres have the same.
+fn one_radius(scene: &Scene) -> Result<Option<f32>, SceneError> {
+    let groups = || scene.bodies.iter().chain(&scene.queries);
+    let first = groups().next().map_or(1.0, |group| group.radius.value as f32);
+    let from_files = groups().filter(|group| matches!(group.shape, Shape::File { .. }));
+    for group in from_files {
+        if bodies::balls(scene, std::slice::from_ref(group))?.iter().any(|ball| ball.radius as f32 != first) {
+            return Ok(None);
+        }
+    }
+    Ok(groups().all(|group| group.radius.value as f32 == first).then_some(first))
+}
+
+/// The arithmetic: the one that is named, or the narrowest that is known to err no more than it may.
+fn profile(scene: &Scene) -> Profile {
+    if let Some(named) = &scene.accuracy {
+        return named.value.clone();
+    }
+    scene.max_error.as_ref().map_or(Profile::WIDE, |bound| super::cost::narrowest(bound.value))
+}
+
+fn run(scene: &Scene, calls: Vec<Call>) -> Row {
+    let moves = Plan::moves(scene);
+    let value = if moves {
+        format!("{} steps of {}", scene.steps.value, scene.time_step.value)
+    } else {
+        "one query, no dynamics".to_owned()
+    };
+    Row { name: "run".to_owned(), on: true, value, calls }
+}
+
+/// What a scene says of a part.
+fn value(scene: &Scene, part: Part) -> String {
+    fn text<T: std::fmt::Debug>(given: &Option<Given<T>>) -> String {
+        given.as_ref().map_or_else(String::new, |given| format!("{:?}", given.value))
+    }
+    let effects = &scene.effects;
+    match part {
+        Part::Gravity => text(&effects.gravity),
+        Part::Pull => effects.pull.as_ref().map_or_else(String::new, |pull| {
+            let Pull { strength, centre, steps } = pull.value;
+            let until = if steps == u64::MAX { String::new() } else { format!(", in the first {steps} steps") };
+            format!("{strength} to {centre:?}{until}")
+        }),
+        Part::Bounce => text(&effects.bounce),
+        Part::Friction => text(&effects.friction),
+        Part::Damping => text(&effects.damping),
+        Part::Floor => text(&effects.floor),
+        Part::Walls => text(&effects.walls),
+        Part::Sleeping => text(&effects.sleeping),
+        _ => String::new(),
+    }
+}
+
+
+fn describe(group: &super::Group) -> String {
+    let shape = match &group.shape {
+        Shape::Diamond { layers } => format!("diamond of {layers} layers"),
+        Shape::Lattice { count: [x, y, z] } => format!("lattice {x} × {y} × {z}"),
+        Shape::Random { count, corners: [low, high], seed } => {
+            format!("{count} at random from {low:?} to {high:?}, seed {seed}")
+        }
+        Shape::Stack { count } => format!("stack of {count}"),
+        Shape::List { centres } => format!("{} centres {centres:?}", centres.len()),
+        Shape::File { path } => format!("those of {}", path.display()),
+    };
+    let more = |what: &str, given: &Option<Given<[f64; 3]>>| {
+        given.as_ref().map_or_else(String::new, |given| format!(", {what} {:?}", given.value))
+    };
+    format!(
+        "{shape}, gap {}, at {:?}, radius {}, mass {}{}{}",
+        group.gap,
+        group.at,
+        group.radius.value,
+        group.mass,
+        more("velocity", &group.velocity),
+        more("turning", &group.turning)
+    )
+}

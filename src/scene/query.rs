@@ -1,0 +1,147 @@
+//! Scenes in which nothing moves: one query, all of it collision detection.
+
+use std::collections::HashMap;
+use std::time::Instant;
+
+use super::bodies::{Ball, balls};
+use super::plan::Plan;
+use super::results::{Results, Touching};
+use super::{Part, Scene, SceneError};
+use crate::kernel::{Engine, PairRecord};
+
+/// What a query asks: which spheres of two sets, or of one.
+#[derive(Clone, Debug)]
+pub struct Query {
+    /// All spheres, those of `queries` last.
+    pub balls: Vec<Ball>,
+    /// How many are bodies.
+    pub bodies: usize,
+    /// The pairs that could touch: numbers of spheres.
+    pub candidates: Vec<[usize; 2]>,
+}
+
+impl Query {
+    /// The query of a scene: its bodies against its queries, or against each other where there are none.
+    ///
+    /// # Errors
+    /// When a file of bodies cannot be read.
+    pub fn of(scene: &Scene) -> Result<Self, SceneError> {
+        let mut all = balls(scene, &scene.bodies)?;
+        let bodies = all.len();
+        all.extend(balls(scene, &scene.queries)?);
+        let candidates = candidates(&all, bodies);
+        Ok(Self { balls: all, bodies, candidates })
+    }
+
+    /// The pairs as records: each number rounded to binary32 once.
+    pub fn pairs(&self) -> Vec<PairRecord> {
+        let sphere = |number: usize| {
+            let Ball { centre: [x, y, z], radius, .. } = self.balls[number];
+            [x, y, z, radius].map(|v| v as f32)
+        };
+        self.candidates.iter().map(|&[a, b]| PairRecord::from_spheres(sphere(a), sphere(b))).collect()
+    }
+
+    /// Pairs there are without asking who is in reach.
+    pub fn all_pairs(&self) -> u64 {
+        let (bodies, queries) = (self.bodies as u64, (self.balls.len() - self.bodies) as u64);
+        if queries > 0 { bodies * queries } else { bodies * bodies.saturating_sub(1) / 2 }
+    }
+}
+
+/// The pairs whose bounding boxes meet, by a grid of cells as wide as the widest box, in order of the first's number.
+///
+/// A box is a little wider than its sphere, so that the roundings to binary32 lose no pair that touches in records.
+fn candidates(balls: &[Ball], bodies: usize) -> Vec<[usize; 2]> {
+    let slack = |ball: &Ball| {
+        let size = ball.centre.iter().fold(ball.radius, |size, v| size.max(v.abs()));
+        ball.radius + 4.0 * f64::from(f32::EPSILON) * size
+    };
+    let reach: Vec<f64> = balls.iter().map(slack).collect();
+    let cell = 2.0 * reach.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+    let home = |ball: &Ball| ball.centre.map(|v| (v / cell).floor() as i64);
+    let against_itself = bodies == balls.len();
+    let others = if against_itself { 0..bodies } else { bodies..balls.len() };
+    let mut cells: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
+    for number in others {
+        cells.entry(home(&balls[number])).or_default().push(number);
+    }
+    let mut pairs = Vec::new();
+    let mut near = Vec::new();
+    for first in 0..bodies {
+        let [x, y, z] = home(&balls[first]);
+        near.clear();
+        for (dx, dy, dz) in (-1..=1).flat_map(|dx| (-1..=1).flat_map(move |dy| (-1..=1).map(move |dz| (dx, dy, dz)))) {
+            near.extend(cells.get(&[x + dx, y + dy, z + dz]).into_iter().flatten().copied());
+        }
+        near.retain(|&other| {
+            let sum = reach[first] + reach[other];
+            let meets = (0..3).all(|axis| (balls[first].centre[axis] - balls[other].centre[axis]).abs() <= sum);
+            meets && (!against_itself || other > first)
+        });
+        near.sort_unstable();
+        pairs.extend(near.iter().map(|&other| [first, other]));
+    }
+    pairs
+}
+
+/// Runs a scene's one query on an engine.
+///
+/// # Errors
+/// When bodies cannot be read, or the engine fails.
+pub fn query(scene: &Scene, plan: &Plan, engine: &mut dyn Engine, name: &str) -> Result<Results, SceneError> {
+    let query = Query::of(scene)?;
+    let mut results = Results::begin(scene, plan, name.to_owned())?;
+    let pairs = query.pairs();
+    let begun = Instant::now();
+    let contacts = if plan.has(Part::Hit) { engine.contacts(&pairs).map_err(SceneError::Engine)? } else { Vec::new() };
+    let summary = &mut results.summary;
+    summary.step_ns = begun.elapsed().as_nanos() as f64;
+    summary.bodies = query.balls.len();
+    summary.all_pairs = query.all_pairs();
+    summary.pairs = pairs.len() as u64;
+    summary.contacts = contacts.iter().filter(|contact| contact.is_contact()).count() as u64;
+    summary.bytes = results.cost.bytes(summary.pairs, summary.contacts);
+    summary.bytes_with_everything = results.everything.bytes(summary.all_pairs, summary.all_pairs);
+    results.radii = query.balls.iter().map(|ball| ball.radius).collect();
+    results.places = vec![query.balls.iter().map(|ball| ball.centre).collect()];
+    if plan.has(Part::Contacts) {
+        let touching = query.candidates.iter().zip(&contacts).filter(|(_, contact)| contact.is_contact());
+        let row = |(&bodies, contact): (&[usize; 2], &crate::kernel::ContactRecord)| Touching {
+            step: 0,
+            bodies,
+            words: std::array::from_fn(|word| f32::from_bits(contact.0[word])),
+        };
+        results.contacts = touching.map(row).collect();
+    }
+    Ok(results)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::Fields;
+
+    #[test]
+    fn no_pair_that_touches_is_left_out() {
+        let text = "scene = 1\nwant = [\"touching\"]\n[[bodies]]\nshape = \"random\"\ncount = 300\ncorners = [[-9.0, -9.0, -9.0], [9.0, 9.0, 9.0]]\n";
+        for queries in ["", "[[queries]]\nshape = \"random\"\ncount = 200\nradius = 0.25\nseed = 4\ncorners = [[-9.0, -9.0, -9.0], [9.0, 9.0, 9.0]]\n"] {
+            let scene = Scene::parse("test", &format!("{text}{queries}")).unwrap();
+            let query = Query::of(&scene).unwrap();
+            let mut every = Query { candidates: Vec::new(), ..query.clone() };
+            let others = if queries.is_empty() { 0..300 } else { 300..500 };
+            for first in 0..300 {
+                every.candidates.extend(others.clone().filter(|&other| other > first).map(|other| [first, other]));
+            }
+            assert_eq!(every.candidates.len() as u64, query.all_pairs());
+            let reference = Plan::of(&scene).unwrap().config.profile.reference(Fields::HIT);
+            let touching = |query: &Query| {
+                let contacts = reference.run_all(&query.pairs());
+                query.candidates.iter().zip(contacts).filter(|(_, c)| c.is_contact()).map(|(pair, _)| *pair).collect::<Vec<_>>()
+            };
+            let found = touching(&query);
+            assert_eq!(found, touching(&every));
+            assert!(!found.is_empty() && query.candidates.len() < every.candidates.len() / 4);
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! What a run of a scene gives.
+
+use serde::Serialize;
+
+use super::plan::{Plan, Row};
+use super::{Cost, Scene};
+use crate::config::Config;
+
+/// The schema of a scene's JSON.
+pub const SCHEMA: &str = "contact-afu/scene/1";
+
+/// Two bodies that touched, after so many steps. Fields that nothing called for are zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Touching {
+    /// Steps done before.
+    pub step: u64,
+    /// The bodies' numbers.
+    pub bodies: [usize; 2],
+    /// The contact's words as the engine gave them: position, normal, depth.
+    pub words: [f32; 7],
+}
+
+/// Energy and momentum after a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Energy {
+    /// Kinetic energy, of travel and of spin: mass · length² / time².
+    pub kinetic: f64,
+    /// In the field of gravity, of z = 0 and so on: none without gravity.
+    pub potential: f64,
+    /// Mass · length / time.
+    pub momentum: [f64; 3],
+}
+
+/// The counts of a run.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Summary {
+    /// Bodies, queries among them.
+    pub bodies: usize,
+    /// Steps done.
+    pub steps: u64,
+    /// Pairs of bodies that there are.
+    pub all_pairs: u64,
+    /// Pairs sent to the engine: those that could reach each other, and did not both sleep. Of all steps.
+    pub pairs: u64,
+    /// Pairs left out since both slept.
+    pub asleep: u64,
+    /// Contacts among them.
+    pub contacts: u64,
+    /// Contacts with walls, ODE's.
+    pub wall_contacts: u64,
+    /// Clock cycles of the simulated AFU, all jobs; none of the reference engine.
+    pub cycles: Option<u64>,
+    /// Bytes over the link, by the layout.
+    pub bytes: f64,
+    /// The same had everything been on.
+    pub bytes_with_everything: f64,
+    /// The median step's time on this host, nanoseconds, the engine's part of it left out for a simulated AFU.
+    pub step_ns: f64,
+}
+
+/// A run.
+#[derive(Clone, Debug)]
+pub struct Results {
+    /// The scene's name.
+    pub name: String,
+    /// The plan's rows.
+    pub rows: Vec<Row>,
+    /// The AFU.
+    pub config: Config,
+    /// What it costs.
+    pub cost: Cost,
+    /// What one with everything costs.
+    pub everything: Cost,
+    /// Who computed the contacts.
+    pub engine: String,
+    /// The counts.
+    pub summary: Summary,
+    /// Radii of the bodies.
+    pub radii: Vec<f64>,
+    /// Where every body is, at first and after each step; at first alone where trajectories are not wanted.
+    pub places: Vec<Vec<[f64; 3]>>,
+    /// Contacts, if wanted.
+    pub contacts: Vec<Touching>,
+    /// Energy before the first step and after each, if wanted.
+    pub energy: Vec<Energy>,
+}
+
+#[derive(Serialize)]
+struct Document<'a> {
+    schema: &'static str,
+    version: &'static str,
+    name: &'a str,
+    engine: &'a str,
+    config: &'a Config,
+    plan: Vec<PlanRow<'a>>,
+    cost: &'a Cost,
+    everything: &'a Cost,
+    summary: &'a Summary,
+}
+
+#[derive(Serialize)]
+struct PlanRow<'a> {
+    name: &'a str,
+    on: bool,
+    value: &'a str,
+    lines: Vec<usize>,
+}
+
+impl<'a> From<&'a Row> for PlanRow<'a> {
+    fn from(row: &'a Row) -> Self {
+        let lines = row.calls.iter().map(|call| call.line).collect();
+        Self { name: &row.name, on: row.on, value: &row.value, lines }
+    }
+}
+
+impl Results {
+    pub(super) fn begin(scene: &Scene, plan: &Plan, engine: String) -> Result<Self, super::SceneError> {
+        Ok(Self {
+            name: scene.name.value.clone(),
+            rows: plan.rows.clone(),
+            config: plan.config.clone(),
+            cost: plan.cost()?,
+            everything: Cost::of(&plan.everything())?,
+            engine,
+            summary: Summary::default(),
+            radii: Vec::new(),
+            places: Vec::new(),
+            contacts: Vec::new(),
+            energy: Vec::new(),
+        })
+    }
+
+    /// The run as JSON.
+    pub fn json(&self) -> impl Serialize {
+        Document {
+            schema: SCHEMA,
+            version: env!("CARGO_PKG_VERSION"),
+            name: &self.name,
+            engine: &self.engine,
+            config: &self.config,
+            plan: self.rows.iter().map(PlanRow::from).collect(),
+            cost: &self.cost,
+            everything: &self.everything,
+            summary: &self.summary,
+        }
+    }
+}

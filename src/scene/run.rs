@@ -1,0 +1,192 @@
+//! Scenes that move: ODE's steps, with an engine in the place of its collider of two spheres, and what the plan has.
+
+use std::time::{Duration, Instant};
+
+use super::bodies::{Ball, balls};
+use super::demand::Part;
+use super::plan::Plan;
+use super::results::{Energy, Results, Touching};
+use super::{Scene, SceneError};
+use crate::kernel::{ContactRecord, Engine, EngineError, Fields, PairRecord};
+use crate::ode::{Collider, Ode, Sleep, Sphere, Surface, World};
+
+/// Runs a scene: each step's pairs through `engine`, which has the plan's fields. After each step `progress` gets the
+/// number of those done.
+///
+/// # Errors
+/// When bodies cannot be read, ODE refuses them or loses one, or the engine fails.
+pub fn run(
+    scene: &Scene,
+    plan: &Plan,
+    engine: &mut dyn Engine,
+    name: &str,
+    mut progress: impl FnMut(u64),
+) -> Result<Results, SceneError> {
+    let bodies = balls(scene, &scene.bodies)?;
+    let ode = Ode::start(Collider::Engine)?;
+    let mut world = World::new(&ode)?;
+    let spheres = set_up(&mut world, scene, plan, &bodies)?;
+    let forces = forces(scene, &bodies);
+    let surface = surface(scene);
+    let mut results = Results::begin(scene, plan, name.to_owned())?;
+    let mut engine = Timed { inner: engine, fields: plan.config.contact, spent: Duration::ZERO, pairs: 0 };
+    let mut step_times = Vec::new();
+    let count = bodies.len() as u64;
+    results.radii = bodies.iter().map(|ball| ball.radius).collect();
+    record(&mut results, plan, scene, &world, &bodies, true);
+    for step in 0..scene.steps.value {
+        let begun = Instant::now();
+        engine.spent = Duration::ZERO;
+        if let Some(forces) = forces.as_ref().filter(|forces| step < forces.steps) {
+            for (&sphere, &force) in spheres.iter().zip(&forces.each) {
+                world.add_force(sphere, force)?;
+            }
+        }
+        // Without anything that asks for it, nobody looks who touches whom.
+        let touches = if plan.has(Part::Hit) { world.contacts_by(&mut engine)? } else { Vec::new() };
+        if plan.has(Part::Response) {
+            for touch in &touches {
+                world.join(touch, &surface)?;
+            }
+        }
+        if plan.has(Part::Floor) || plan.has(Part::Walls) {
+            let walls = world.wall_contacts();
+            for touch in &walls {
+                world.join_wall(touch, &surface)?;
+            }
+            results.summary.wall_contacts += walls.len() as u64;
+        }
+        world.step(scene.time_step.value)?;
+        step_times.push(begun.elapsed().saturating_sub(engine.spent));
+        let summary = &mut results.summary;
+        summary.steps += 1;
+        summary.contacts += touches.len() as u64;
+        if plan.has(Part::Sleeping) {
+            let asleep = spheres.iter().filter(|&&sphere| world.is_asleep(sphere)).count() as u64;
+            summary.asleep += asleep * asleep.saturating_sub(1) / 2;
+        }
+        if plan.has(Part::Contacts) {
+            results.contacts.extend(touches.iter().map(|touch| {
+                let c = &touch.contact;
+                let [[x, y, z], [nx, ny, nz]] = [c.position, c.normal];
+                let words = [x, y, z, nx, ny, nz, c.depth].map(|v| v as f32);
+                Touching { step, bodies: [touch.first.index(), touch.second.index()], words }
+            }));
+        }
+        record(&mut results, plan, scene, &world, &bodies, false);
+        progress(step + 1);
+    }
+    let summary = &mut results.summary;
+    summary.bodies = bodies.len();
+    summary.all_pairs = count * count.saturating_sub(1) / 2;
+    summary.pairs = engine.pairs;
+    summary.bytes = results.cost.bytes(summary.pairs, summary.contacts);
+    summary.bytes_with_everything = results.everything.bytes(summary.pairs, summary.pairs);
+    step_times.sort_unstable();
+    summary.step_ns = step_times.get(step_times.len() / 2).map_or(0.0, |time| time.as_nanos() as f64);
+    Ok(results)
+}
+
+/// The bodies, and those effects that the plan has.
+fn set_up(world: &mut World, scene: &Scene, plan: &Plan, bodies: &[Ball]) -> Result<Vec<Sphere>, SceneError> {
+    let effects = &scene.effects;
+    if let Some(gravity) = effects.gravity.as_ref().filter(|_| plan.has(Part::Gravity)) {
+        world.set_gravity(gravity.value)?;
+    }
+    if let Some(damping) = &effects.damping {
+        world.set_damping(damping.value)?;
+    }
+    if let Some(speed) = &effects.sleeping {
+        world.set_sleep(&Sleep { speed: speed.value, turning: speed.value, ..Sleep::USUAL })?;
+    }
+    if let Some(height) = &effects.floor {
+        world.add_wall([0.0, 0.0, 1.0], height.value)?;
+    }
+    if let Some(corners) = &effects.walls {
+        let [low, high] = corners.value;
+        for axis in 0..3 {
+            let unit = |sign: f64| std::array::from_fn(|i| if i == axis { sign } else { 0.0 });
+            world.add_wall(unit(1.0), low[axis])?;
+            world.add_wall(unit(-1.0), -high[axis])?;
+        }
+    }
+    // A bounce of 1 keeps energy only if no overlap is pushed apart on top of it.
+    if effects.bounce.as_ref().is_some_and(|bounce| bounce.value == 1.0) {
+        world.set_stiffness(0.0, 0.0)?;
+    }
+    let mut spheres = Vec::with_capacity(bodies.len());
+    for ball in bodies {
+        let volume = 4.0 / 3.0 * std::f64::consts::PI * ball.radius.powi(3);
+        let sphere = world.add_sphere(ball.centre, ball.radius, ball.mass / volume)?;
+        if ball.velocity != [0.0; 3] || ball.turning != [0.0; 3] {
+            world.set_velocity(sphere, ball.velocity, ball.turning)?;
+        }
+        spheres.push(sphere);
+    }
+    if !plan.has(Part::Spin) {
+        world.forbid_turning();
+    }
+    Ok(spheres)
+}
+
+/// The pull on every body: from where it is at the start to the centre, as in the paper's diamond.
+struct Forces {
+    each: Vec<[f64; 3]>,
+    steps: u64,
+}
+
+fn forces(scene: &Scene, bodies: &[Ball]) -> Option<Forces> {
+    let pull = scene.effects.pull.as_ref()?.value;
+    let force = |ball: &Ball| {
+        let to: [f64; 3] = std::array::from_fn(|axis| pull.centre[axis] - ball.centre[axis]);
+        let distance = to.iter().map(|v| v * v).sum::<f64>().sqrt();
+        if distance > 0.0 { to.map(|v| v / distance * pull.strength) } else { [0.0; 3] }
+    };
+    Some(Forces { each: bodies.iter().map(force).collect(), steps: pull.steps })
+}
+
+fn surface(scene: &Scene) -> Surface {
+    let value = |given: &Option<super::Given<f64>>| given.as_ref().map_or(0.0, |given| given.value);
+    Surface { friction: value(&scene.effects.friction), bounce: value(&scene.effects.bounce), bounce_speed: 0.0 }
+}
+
+fn record(results: &mut Results, plan: &Plan, scene: &Scene, world: &World, bodies: &[Ball], is_first: bool) {
+    if is_first || plan.has(Part::Trajectories) {
+        results.places.push(world.spheres().map(|sphere| world.position(sphere)).collect());
+    }
+    if plan.has(Part::Energy) {
+        let motion = world.motion();
+        let gravity = scene.effects.gravity.as_ref().map_or([0.0; 3], |gravity| gravity.value);
+        let potential = world.spheres().zip(bodies).map(|(sphere, ball)| {
+            let place = world.position(sphere);
+            -ball.mass * (0..3).map(|axis| gravity[axis] * place[axis]).sum::<f64>()
+        });
+        let potential = potential.sum();
+        results.energy.push(Energy { kinetic: motion.energy, potential, momentum: motion.momentum });
+    }
+}
+
+/// The engine, its time told apart from the host's, its pairs counted, and what it does not compute filled in.
+struct Timed<'a> {
+    inner: &'a mut dyn Engine,
+    fields: Fields,
+    spent: Duration,
+    pairs: u64,
+}
+
+impl Engine for Timed<'_> {
+    fn contacts(&mut self, pairs: &[PairRecord]) -> Result<Vec<ContactRecord>, EngineError> {
+        let begun = Instant::now();
+        let mut contacts = self.inner.contacts(pairs)?;
+        self.spent += begun.elapsed();
+        self.pairs += pairs.len() as u64;
+        if !self.fields.position {
+            // A force along the normal goes through both centres, so it has no lever arm there, and the position changes
+            // nothing.
+            for (contact, pair) in contacts.iter_mut().zip(pairs).filter(|(contact, _)| contact.is_contact()) {
+                contact.0[..3].copy_from_slice(&pair.0[..3]);
+            }
+        }
+        Ok(contacts)
+    }
+}

@@ -1,0 +1,155 @@
+//! Plans and runs as text.
+
+use super::cost::Cost;
+use super::plan::{Plan, Row};
+use super::results::Results;
+use crate::report::table::{grouped, table};
+
+impl Plan {
+    /// The plan as a table: what is on, how much of it, and which lines call for it.
+    pub fn text(&self) -> String {
+        table(&["", "", "value", "called for by"], self.rows.iter().map(row))
+    }
+
+    /// What another plan has otherwise: rows that differ, then costs side by side.
+    ///
+    /// # Errors
+    /// When there is no such AFU.
+    pub fn difference(&self, other: &Self, mine: &Cost, theirs: &Cost) -> String {
+        let differs = |row: &&Row| self.rows.iter().find(|mine| mine.name == row.name) != Some(*row);
+        let rows: Vec<[String; 4]> = other.rows.iter().filter(differs).map(row).collect();
+        let mut out = if rows.is_empty() {
+            "no row of the plan changes".to_owned()
+        } else {
+            table(&["changes to", "", "value", "called for by"], rows)
+        };
+        out += "\n\n";
+        out += &costs(&[("as it is", mine), ("then", theirs)]);
+        out
+    }
+}
+
+fn row(row: &Row) -> [String; 4] {
+    let calls: Vec<String> = row.calls.iter().map(|call| match call.line {
+        0 => call.text.clone(),
+        line => format!("{line}: {}", call.text),
+    }).collect();
+    let none = if row.on { "(usual)" } else { "nothing" };
+    let calls = if calls.is_empty() { none.to_owned() } else { calls.join("\n") };
+    [row.name.clone(), if row.on { "on" } else { "off" }.to_owned(), row.value.clone(), calls]
+}
+
+impl Cost {
+    /// The cost as a table.
+    pub fn text(&self) -> String {
+        costs(&[("", self)])
+    }
+}
+
+/// Costs side by side.
+pub(super) fn costs(all: &[(&str, &Cost)]) -> String {
+    let heading: Vec<&str> = std::iter::once("").chain(all.iter().map(|(name, _)| *name)).collect();
+    table(&heading, cost_rows(&all.iter().map(|(_, cost)| *cost).collect::<Vec<_>>()))
+}
+
+/// Rows of a table of costs: the figure's name, then each cost's.
+pub(super) fn cost_rows(all: &[&Cost]) -> Vec<Vec<String>> {
+    let row = |name: &str, figure: &dyn Fn(&Cost) -> String| {
+        std::iter::once(name.to_owned()).chain(all.iter().map(|cost| figure(cost))).collect::<Vec<_>>()
+    };
+    let counted = |count: Option<u64>| count.map_or_else(|| "not counted".to_owned(), grouped);
+    let mut rows = vec![
+        row("modules of the AFU", &|cost| cost.modules.to_string()),
+        row("cycles from a pair to its contact", &|cost| cost.latency_cycles.to_string()),
+        row("bytes sent for a pair", &|cost| cost.bytes_sent.to_string()),
+        row("bytes that come back", &|cost| {
+            let who = if cost.returns_misses { "for every pair" } else { "for a contact alone" };
+            format!("{} {who}", cost.bytes_returned)
+        }),
+        row("LUTs of an SCPU", &|cost| counted(cost.luts)),
+        row("DSP blocks of an SCPU", &|cost| counted(cost.dsps)),
+    ];
+    let mut names: Vec<&String> = all.iter().flat_map(|cost| cost.operators.keys()).collect();
+    names.sort();
+    names.dedup();
+    for name in names {
+        rows.push(row(name, &|cost| cost.operators.get(name).map_or_else(|| "none".to_owned(), ToString::to_string)));
+    }
+    rows
+}
+
+impl Results {
+    /// What a run came to.
+    pub fn text(&self) -> String {
+        let s = &self.summary;
+        let mut rows = vec![
+            ("bodies".to_owned(), grouped(s.bodies as u64)),
+            ("steps".to_owned(), grouped(s.steps)),
+            ("pairs of bodies there are".to_owned(), grouped(s.all_pairs)),
+            ("pairs sent, all steps".to_owned(), grouped(s.pairs)),
+            ("contacts, all steps".to_owned(), grouped(s.contacts)),
+            ("contacts with walls".to_owned(), grouped(s.wall_contacts)),
+            ("bytes over the link".to_owned(), grouped(s.bytes as u64)),
+            ("with everything on".to_owned(), grouped(s.bytes_with_everything as u64)),
+            ("host, a step, µs".to_owned(), format!("{:.1}", s.step_ns / 1000.0)),
+        ];
+        if let Some(cycles) = s.cycles {
+            rows.push(("cycles of the AFU, all steps".to_owned(), grouped(cycles)));
+        }
+        let mut out = format!("{} by {}\n", self.name, self.engine);
+        out += &table(&["", ""], rows.into_iter().map(|(name, value)| [name, value]));
+        if let (Some(first), Some(last)) = (self.energy.first(), self.energy.last()) {
+            let sum = |e: &super::Energy| e.kinetic + e.potential;
+            out += &format!("\nenergy {:.6} at first, {:.6} in the end", sum(first), sum(last));
+        }
+        out
+    }
+
+    /// Costs: what was called for beside everything.
+    pub fn costs(&self) -> String {
+        costs(&[("what the scene calls for", &self.cost), ("everything", &self.everything)])
+    }
+
+    /// The contacts as CSV: only fields that were computed have columns.
+    pub fn contacts_csv(&self) -> String {
+        let fields = self.config.contact;
+        let asked = [
+            (fields.position, 0..3, ["pos_x", "pos_y", "pos_z"].as_slice()),
+            (fields.normal, 3..6, ["normal_x", "normal_y", "normal_z"].as_slice()),
+            (fields.depth, 6..7, ["depth"].as_slice()),
+        ];
+        let asked: Vec<_> = asked.into_iter().filter(|(asked, ..)| *asked).collect();
+        let mut out = "step,first,second".to_owned();
+        asked.iter().flat_map(|(_, _, names)| names.iter()).for_each(|name| out += &format!(",{name}"));
+        out.push('\n');
+        for contact in &self.contacts {
+            out += &format!("{},{},{}", contact.step, contact.bodies[0], contact.bodies[1]);
+            for (_, words, _) in &asked {
+                contact.words[words.clone()].iter().for_each(|word| out += &format!(",{word}"));
+            }
+            out.push('\n');
+        }
+        out
+    }
+
+    /// The bodies' ways as CSV.
+    pub fn trajectories_csv(&self) -> String {
+        let mut out = "step,body,x,y,z\n".to_owned();
+        for (step, places) in self.places.iter().enumerate() {
+            for (body, [x, y, z]) in places.iter().enumerate() {
+                out += &format!("{step},{body},{x},{y},{z}\n");
+            }
+        }
+        out
+    }
+
+    /// Energy and momentum as CSV.
+    pub fn energy_csv(&self) -> String {
+        let mut out = "step,kinetic,potential,momentum_x,momentum_y,momentum_z\n".to_owned();
+        for (step, e) in self.energy.iter().enumerate() {
+            let [x, y, z] = e.momentum;
+            out += &format!("{step},{},{},{x},{y},{z}\n", e.kinetic, e.potential);
+        }
+        out
+    }
+}
