@@ -79,7 +79,7 @@ fn a_product_of_one_block_has_its_registers_inside() {
     let operands: Vec<(u128, u128)> = (0..100).map(|t| (t * 37 % 4096, t * 4099 % (1 << 18))).collect();
     for cycle in 0..operands.len() + pipeline.latency as usize {
         if let Some(&(a, b)) = cycle.checked_sub(pipeline.latency as usize).map(|then| &operands[then]) {
-            let y = ((((a + 1) % 4096 * b) >> 12) + 1) % (1 << 18) ^ b;
+            let y = (((((a + 1) % 4096 * b) >> 12) + 1) % (1 << 18)) ^ b;
             let whole = a << 18 | b;
             assert_eq!((run.get("y"), run.get("z"), run.get("square")), (y, whole * whole, a * a), "{a} {b}");
         }

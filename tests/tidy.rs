@@ -37,10 +37,7 @@ const HOUSE: &[(&str, &[&str])] = &[
         "paper",
         &["report", "plot", "verify", "host", "cosim", "config", "ode", "afu", "link", "pairs", "kernel", "number"],
     ),
-    (
-        "scene",
-        &["report", "plot", "synth", "ode", "config", "afu", "pipeline", "kernel", "pairs", "number"],
-    ),
+    ("scene", &["report", "plot", "synth", "ode", "config", "afu", "pipeline", "kernel", "pairs", "number"]),
     ("sweep", &["report", "verify", "host", "cosim", "config", "afu", "link", "pairs", "kernel", "number"]),
 ];
 

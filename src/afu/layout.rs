@@ -18,7 +18,9 @@ pub struct Layout {
 
 /// A pair of spheres that an AFU of one radius cannot be given.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("pair {pair}: its {field} is {found}, and this AFU computes with radius {radius} for every sphere (--radius): leave --radius out, or send spheres of that radius")]
+#[error(
+    "pair {pair}: its {field} is {found}, and this AFU computes with radius {radius} for every sphere (--radius): leave --radius out, or send spheres of that radius"
+)]
 pub struct OtherRadius {
     /// The pair's number.
     pub pair: usize,

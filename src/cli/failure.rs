@@ -76,7 +76,9 @@ impl From<contact_afu::verify::VerifyError> for Failure {
         use contact_afu::verify::VerifyError;
         let kind = match error {
             VerifyError::Generate(error) => return error.into(),
-            VerifyError::Manifest(_) | VerifyError::Link(_) | VerifyError::Pairs(_) | VerifyError::Radius(_) => Kind::Usage,
+            VerifyError::Manifest(_) | VerifyError::Link(_) | VerifyError::Pairs(_) | VerifyError::Radius(_) => {
+                Kind::Usage
+            }
             VerifyError::Model(CosimError::MissingTool { .. }) => Kind::Tool,
             VerifyError::Model(CosimError::Source(_)) => Kind::Usage,
             VerifyError::Drive(_) | VerifyError::Machine(_) if error.is_the_job_s() => Kind::Unmet,

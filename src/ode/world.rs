@@ -62,7 +62,16 @@ impl World {
         if id.is_null() || space.is_null() || joints.is_null() {
             return Err(Error::Memory);
         }
-        Ok(Self { id, space, joints, spheres: Vec::new(), walls: Vec::new(), spheres_sleep: false, seed: 0, ode: ode.clone() })
+        Ok(Self {
+            id,
+            space,
+            joints,
+            spheres: Vec::new(),
+            walls: Vec::new(),
+            spheres_sleep: false,
+            seed: 0,
+            ode: ode.clone(),
+        })
     }
 
     pub(super) fn id(&self) -> sys::dWorldID {
@@ -234,8 +243,7 @@ impl World {
         within("a friction", surface.friction, 0.0..=LARGEST)?;
         within("a bounce", surface.bounce, 0.0..=1.0)?;
         within("a bounce's speed", surface.bounce_speed, 0.0..=LARGEST)?;
-        let contact =
-            sys::dContact { surface: surface.raw(), geom: contact.raw(g1, g2), fdir1: [0.0; 4] };
+        let contact = sys::dContact { surface: surface.raw(), geom: contact.raw(g1, g2), fdir1: [0.0; 4] };
         // SAFETY: world and joints live, for the rest the caller's word; ODE copies the contact.
         unsafe {
             let joint = sys::dJointCreateContact(self.id, self.joints, &contact);

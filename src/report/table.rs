@@ -11,10 +11,28 @@ where
     R: IntoIterator<Item = C>,
     C: IntoIterator<Item = String>,
 {
+    aligned_from(1, heading, rows)
+}
+
+/// A table of nothing but text.
+pub fn words<R, C>(heading: &[&str], rows: R) -> String
+where
+    R: IntoIterator<Item = C>,
+    C: IntoIterator<Item = String>,
+{
+    aligned_from(usize::MAX, heading, rows)
+}
+
+/// Columns from `figures` on are on the right.
+fn aligned_from<R, C>(figures: usize, heading: &[&str], rows: R) -> String
+where
+    R: IntoIterator<Item = C>,
+    C: IntoIterator<Item = String>,
+{
     let mut table = Table::new();
     table.load_style(STYLE);
     let aligned = |(column, text): (usize, String)| {
-        let side = if column == 0 { CellAlignment::Left } else { CellAlignment::Right };
+        let side = if column < figures { CellAlignment::Left } else { CellAlignment::Right };
         Cell::new(text).set_alignment(side)
     };
     table.set_header(heading.iter().map(|text| (*text).to_owned()).enumerate().map(aligned));

@@ -67,9 +67,8 @@ fn octahedron(reach: i64) -> Vec<[f64; 3]> {
 /// A lattice about its centre.
 fn grid([x, y, z]: [u64; 3]) -> Vec<[f64; 3]> {
     let place = |i: u64, count: u64| i as f64 - (count - 1) as f64 / 2.0;
-    let points = (0..x).flat_map(|i| {
-        (0..y).flat_map(move |j| (0..z).map(move |k| [place(i, x), place(j, y), place(k, z)]))
-    });
+    let points =
+        (0..x).flat_map(|i| (0..y).flat_map(move |j| (0..z).map(move |k| [place(i, x), place(j, y), place(k, z)])));
     points.collect()
 }
 
@@ -88,7 +87,8 @@ fn file(scene: &Scene, group: &Group, path: &Path, radius: f64) -> Result<Vec<([
     let name = path.display().to_string();
     let text = std::fs::read_to_string(path).map_err(|error| SceneError::Read { file: name.clone(), error })?;
     let wrong = |line: usize, why: String| SceneError::Form { file: name.clone(), line, why };
-    let (columns, first, rows) = if text.starts_with("ply") { ply(&text, &wrong)? } else { csv_columns(&text, &wrong)? };
+    let (columns, first, rows) =
+        if text.starts_with("ply") { ply(&text, &wrong)? } else { csv_columns(&text, &wrong)? };
     let find = |key: &str| columns.iter().position(|column| column == key);
     let [Some(x), Some(y), Some(z)] = ["x", "y", "z"].map(find) else {
         return Err(wrong(1, format!("no columns x, y, z: there are {}", columns.join(", "))));
@@ -99,10 +99,12 @@ fn file(scene: &Scene, group: &Group, path: &Path, radius: f64) -> Result<Vec<([
         if spheres.len() == MOST {
             return Err(wrong(index + 1, format!("more than {MOST} spheres")));
         }
-        let cells: Vec<&str> = line.split(|c: char| c == ',' || c.is_whitespace()).filter(|cell| !cell.is_empty()).collect();
+        let cells: Vec<&str> =
+            line.split(|c: char| c == ',' || c.is_whitespace()).filter(|cell| !cell.is_empty()).collect();
         let number = |column: usize| -> Result<f64, SceneError> {
             let cell = cells.get(column).ok_or_else(|| wrong(index + 1, format!("{} is missing", columns[column])))?;
-            let value: f64 = cell.parse().map_err(|_| wrong(index + 1, format!("{} is `{cell}`: not a number", columns[column])))?;
+            let value: f64 =
+                cell.parse().map_err(|_| wrong(index + 1, format!("{} is `{cell}`: not a number", columns[column])))?;
             if value.abs() <= 134_217_728.0 {
                 return Ok(value);
             }
@@ -143,7 +145,10 @@ fn ply(text: &str, wrong: &dyn Fn(usize, String) -> SceneError) -> Result<Column
             ["element", name, count] => {
                 of_vertices = name == "vertex" && rows.is_none();
                 if !of_vertices && rows.is_none() {
-                    return Err(wrong(index + 1, format!("element {name} before the vertices: put the vertices first")));
+                    return Err(wrong(
+                        index + 1,
+                        format!("element {name} before the vertices: put the vertices first"),
+                    ));
                 }
                 if of_vertices {
                     rows = Some(count.parse().map_err(|_| wrong(index + 1, format!("`{count}` is no count")))?);

@@ -102,7 +102,9 @@ mod tests {
             let (narrow, wide) = (profile.reference(Fields::ALL), Profile::EXACT.reference(Fields::ALL));
             let mut worst: f64 = 0.0;
             for (one, other) in narrow.settled(&pairs).0.iter().zip(wide.settled(&pairs).0).zip(&pairs).filter_map(
-                |((one, other), pair)| (one.is_contact() && other.is_contact()).then_some((worth(one, pair), worth(&other, pair))),
+                |((one, other), pair)| {
+                    (one.is_contact() && other.is_contact()).then_some((worth(one, pair), worth(&other, pair)))
+                },
             ) {
                 let size = one.0;
                 let errors = one.1.iter().zip(other.1).map(|(a, b)| (a - b).abs() / size);

@@ -343,7 +343,11 @@ impl Scene {
         };
         let max_error = source.number("max_error", raw.max_error, 0.0)?;
         if let (Some(_), Some(bound)) = (&accuracy, &max_error) {
-            return Err(source.wrong(bound.line, "max_error", "accuracy names a profile already: leave one of them out"));
+            return Err(source.wrong(
+                bound.line,
+                "max_error",
+                "accuracy names a profile already: leave one of them out",
+            ));
         }
         let effects = effects(&source, raw.effects)?;
         let groups = |key: &str, raw: Vec<Spanned<RawGroup>>| {
@@ -374,24 +378,38 @@ impl Scene {
             return Err(source.wrong(None, "bodies", "there are none: give at least one [[bodies]]"));
         }
         if self.want.is_empty() {
-            return Err(source.wrong(None, "want", "nothing is wanted: list some of touching, depth, normals, contact-points, trajectories, energy"));
+            return Err(source.wrong(
+                None,
+                "want",
+                "nothing is wanted: list some of touching, depth, normals, contact-points, trajectories, energy",
+            ));
         }
         let moves = super::Plan::moves(self);
         let of_motion = self.want.iter().find(|(want, _)| matches!(want, Want::Trajectories | Want::Energy));
         if let (false, Some((want, line))) = (moves, of_motion) {
-            let why = format!("{} of bodies that nothing moves: give a velocity, gravity or a pull, or leave it out", want.name());
+            let why = format!(
+                "{} of bodies that nothing moves: give a velocity, gravity or a pull, or leave it out",
+                want.name()
+            );
             return Err(source.wrong(Some(*line), "want", why));
         }
         if moves && !self.queries.is_empty() {
             let line = self.queries[0].lines.first().copied();
-            return Err(source.wrong(line, "queries", "bodies that move meet each other: leave queries or the motion out"));
+            return Err(source.wrong(
+                line,
+                "queries",
+                "bodies that move meet each other: leave queries or the motion out",
+            ));
         }
         let most = if moves { MOST_MOVING } else { MOST };
         let mut all = 0;
-        for (key, group) in self.bodies.iter().map(|group| ("bodies", group)).chain(self.queries.iter().map(|group| ("queries", group))) {
+        for (key, group) in
+            self.bodies.iter().map(|group| ("bodies", group)).chain(self.queries.iter().map(|group| ("queries", group)))
+        {
             all += group.shape.count();
             if all > most {
-                let why = format!("{all} spheres by now: {most} at most{}", if moves { " where bodies move" } else { "" });
+                let why =
+                    format!("{all} spheres by now: {most} at most{}", if moves { " where bodies move" } else { "" });
                 return Err(source.wrong(group.lines.first().copied(), key, why));
             }
             if group.turning.is_some() && self.effects.spin.as_ref().is_none_or(|spin| !spin.value) {
@@ -456,7 +474,8 @@ fn group(source: &Source, key: &str, raw: Spanned<RawGroup>) -> Result<Group, Sc
     macro_rules! need {
         ($field:ident) => {{
             let why = concat!("a ", "shape of this kind needs `", stringify!($field), "`");
-            let given = raw.$field.map(|value| source.given(value)).ok_or_else(|| source.wrong(kind.line, "shape", why))?;
+            let given =
+                raw.$field.map(|value| source.given(value)).ok_or_else(|| source.wrong(kind.line, "shape", why))?;
             lines.extend(given.line);
             used.push(stringify!($field));
             given

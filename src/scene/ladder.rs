@@ -1,8 +1,8 @@
 //! One effect after another: the AFU of touching alone, then what each line of a scene adds.
 
+use super::SceneError;
 use super::file::{Effects, Scene, Want};
 use super::plan::Plan;
-use super::SceneError;
 use crate::config::Config;
 
 /// The AFUs of a scene with more and more of what it calls for: by the name of what was added last. The first has

@@ -82,8 +82,7 @@ fn picture(results: &Results) -> Markup {
 
 fn plan(results: &Results) -> Markup {
     let row = |row: &super::Row| {
-        let calls: Vec<String> = row.calls.iter().map(|call| format!("line {}: {}", call.line, call.text)).collect();
-        let calls = if calls.is_empty() { if row.on { "(usual)" } else { "nothing" }.to_owned() } else { calls.join("; ") };
+        let calls = row.called_for_by().join("; ");
         vec![row.name.clone(), if row.on { "on" } else { "off" }.to_owned(), row.value.clone(), calls]
     };
     table("", &["", "", "value", "called for by"], 4, &results.rows.iter().map(row).collect::<Vec<_>>())
@@ -127,7 +126,13 @@ fn energy(results: &Results) -> Markup {
     }
     let points = |figure: fn(&super::Energy) -> f64| {
         let every = results.energy.len().div_ceil(500);
-        results.energy.iter().enumerate().step_by(every).map(move |(step, e)| (step as f64, figure(e))).collect::<Vec<_>>()
+        results
+            .energy
+            .iter()
+            .enumerate()
+            .step_by(every)
+            .map(move |(step, e)| (step as f64, figure(e)))
+            .collect::<Vec<_>>()
     };
     let plot = Plot::new("Energy", Axis::new("step", Scale::Linear), Axis::new("energy", Scale::Linear))
         .with(Series::new("kinetic", 0, points(|e| e.kinetic)))

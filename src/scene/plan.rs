@@ -39,8 +39,7 @@ pub struct Plan {
 }
 
 /// What `--with` and `--without` can name: an effect, and the value it has where a scene does not say one.
-const EFFECTS: [&str; 9] =
-    ["gravity", "pull", "bounce", "friction", "spin", "damping", "floor", "walls", "sleeping"];
+const EFFECTS: [&str; 9] = ["gravity", "pull", "bounce", "friction", "spin", "damping", "floor", "walls", "sleeping"];
 
 impl Plan {
     /// Whether something sets the bodies of a scene going.
@@ -227,7 +226,6 @@ fn value(scene: &Scene, part: Part) -> String {
     }
 }
 
-
 fn describe(group: &super::Group) -> String {
     let shape = match &group.shape {
         Shape::Diamond { layers } => format!("diamond of {layers} layers"),
@@ -236,7 +234,9 @@ fn describe(group: &super::Group) -> String {
             format!("{count} at random from {low:?} to {high:?}, seed {seed}")
         }
         Shape::Stack { count } => format!("stack of {count}"),
-        Shape::List { centres } => format!("{} centres {centres:?}", centres.len()),
+        Shape::List { centres } => {
+            format!("{} centres, the first {:?}", centres.len(), centres.first().unwrap_or(&[0.0; 3]))
+        }
         Shape::File { path } => format!("those of {}", path.display()),
     };
     let more = |what: &str, given: &Option<Given<[f64; 3]>>| {

@@ -125,7 +125,10 @@ mod tests {
     #[test]
     fn no_pair_that_touches_is_left_out() {
         let text = "scene = 1\nwant = [\"touching\"]\n[[bodies]]\nshape = \"random\"\ncount = 300\ncorners = [[-9.0, -9.0, -9.0], [9.0, 9.0, 9.0]]\n";
-        for queries in ["", "[[queries]]\nshape = \"random\"\ncount = 200\nradius = 0.25\nseed = 4\ncorners = [[-9.0, -9.0, -9.0], [9.0, 9.0, 9.0]]\n"] {
+        for queries in [
+            "",
+            "[[queries]]\nshape = \"random\"\ncount = 200\nradius = 0.25\nseed = 4\ncorners = [[-9.0, -9.0, -9.0], [9.0, 9.0, 9.0]]\n",
+        ] {
             let scene = Scene::parse("test", &format!("{text}{queries}")).unwrap();
             let query = Query::of(&scene).unwrap();
             let mut every = Query { candidates: Vec::new(), ..query.clone() };
@@ -137,7 +140,13 @@ mod tests {
             let reference = Plan::of(&scene).unwrap().config.profile.reference(Fields::HIT);
             let touching = |query: &Query| {
                 let contacts = reference.run_all(&query.pairs());
-                query.candidates.iter().zip(contacts).filter(|(_, c)| c.is_contact()).map(|(pair, _)| *pair).collect::<Vec<_>>()
+                query
+                    .candidates
+                    .iter()
+                    .zip(contacts)
+                    .filter(|(_, c)| c.is_contact())
+                    .map(|(pair, _)| *pair)
+                    .collect::<Vec<_>>()
             };
             let found = touching(&query);
             assert_eq!(found, touching(&every));

@@ -3,12 +3,12 @@
 use super::cost::Cost;
 use super::plan::{Plan, Row};
 use super::results::Results;
-use crate::report::table::{grouped, table};
+use crate::report::table::{grouped, table, words};
 
 impl Plan {
     /// The plan as a table: what is on, how much of it, and which lines call for it.
     pub fn text(&self) -> String {
-        table(&["", "", "value", "called for by"], self.rows.iter().map(row))
+        words(&["", "", "value", "called for by"], self.rows.iter().map(row))
     }
 
     /// What another plan has otherwise: rows that differ, then costs side by side.
@@ -21,7 +21,7 @@ impl Plan {
         let mut out = if rows.is_empty() {
             "no row of the plan changes".to_owned()
         } else {
-            table(&["changes to", "", "value", "called for by"], rows)
+            words(&["changes to", "", "value", "called for by"], rows)
         };
         out += "\n\n";
         out += &costs(&[("as it is", mine), ("then", theirs)]);
@@ -30,19 +30,31 @@ impl Plan {
 }
 
 fn row(row: &Row) -> [String; 4] {
-    let calls: Vec<String> = row.calls.iter().map(|call| match call.line {
-        0 => call.text.clone(),
-        line => format!("{line}: {}", call.text),
-    }).collect();
-    let none = if row.on { "(usual)" } else { "nothing" };
-    let calls = if calls.is_empty() { none.to_owned() } else { calls.join("\n") };
-    [row.name.clone(), if row.on { "on" } else { "off" }.to_owned(), row.value.clone(), calls]
+    [row.name.clone(), if row.on { "on" } else { "off" }.to_owned(), row.value.clone(), row.called_for_by().join("\n")]
 }
 
 impl Cost {
     /// The cost as a table.
     pub fn text(&self) -> String {
         costs(&[("", self)])
+    }
+}
+
+impl Row {
+    /// The lines that call for it, or that there are none; of a group of bodies only which lines.
+    pub fn called_for_by(&self) -> Vec<String> {
+        match self.calls.as_slice() {
+            [] if self.on => vec!["(usual)".to_owned()],
+            [] => vec!["nothing".to_owned()],
+            [first, .., last] if self.calls.len() > 4 => vec![format!("lines {} to {}", first.line, last.line)],
+            calls => calls
+                .iter()
+                .map(|call| match call.line {
+                    0 => call.text.clone(),
+                    line => format!("{line}: {}", call.text),
+                })
+                .collect(),
+        }
     }
 }
 
