@@ -67,7 +67,7 @@ fn whole(title: &str, body: &Markup, script: Option<&str>) -> String {
 }
 
 /// Bytes in base 64 (RFC 4648, section 4), as policies have hashes.
-fn base64(bytes: &[u8]) -> String {
+pub fn base64(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::new();
     for three in bytes.chunks(3) {

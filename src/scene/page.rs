@@ -6,7 +6,7 @@ use super::cost::Cost;
 use super::results::Results;
 use super::text::cost_rows;
 use crate::plot::{Axis, Plot, Scale, Series};
-use crate::report::page::{interactive, table};
+use crate::report::page::{base64, scripted, table};
 
 /// Frames at most, and numbers in all of them.
 const FRAMES: usize = 600;
@@ -35,7 +35,7 @@ pub fn page(results: &Results, ladder: &[(String, Cost)]) -> String {
         (summary(results))
         (energy(results))
     };
-    interactive(&format!("Scene: {}", results.name), &body, SCRIPT)
+    scripted(&format!("Scene: {}", results.name), &body, SCRIPT)
 }
 
 /// The bodies' places as 16-bit numbers between the scene's corners, frame after frame, in base 64.
@@ -138,32 +138,4 @@ fn energy(results: &Results) -> Markup {
         .with(Series::new("kinetic", 0, points(|e| e.kinetic)))
         .with(Series::new("with the field's", 1, points(|e| e.kinetic + e.potential)));
     html! { figure { (plot.figure()) } }
-}
-
-fn base64(bytes: &[u8]) -> String {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for group in bytes.chunks(3) {
-        let word = (0..3).fold(0_u32, |word, i| word << 8 | u32::from(group.get(i).copied().unwrap_or(0)));
-        for digit in 0..4 {
-            let is_there = digit <= group.len();
-            let value = DIGITS[(word >> (18 - 6 * digit) & 63) as usize];
-            out.push(if is_there { char::from(value) } else { '=' });
-        }
-    }
-    out
-}
-
-#[cfg(test)]
-mod tests {
-    use super::base64;
-
-    /// RFC 4648, section 10.
-    #[test]
-    fn base64_is_the_standard_s() {
-        let pairs = [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")];
-        for (plain, coded) in pairs {
-            assert_eq!(base64(plain.as_bytes()), coded);
-        }
-    }
 }
