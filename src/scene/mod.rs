@@ -14,6 +14,7 @@ mod ladder;
 mod page;
 mod plan;
 mod query;
+mod read;
 mod results;
 #[cfg(feature = "ode")]
 mod run;
