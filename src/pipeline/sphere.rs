@@ -47,8 +47,14 @@ pub fn sphere_kernel(settings: &Settings) -> Result<Arc<Module>, Errors> {
 /// # Errors
 /// What a graph recorded.
 pub fn is_normal(arithmetic: Arithmetic, fields: Fields) -> Result<bool, Errors> {
-    let settings =
-        Settings { arithmetic, record: arithmetic.record(), fields, clock_mhz: 100.0, model: DelayModel::default() };
+    let settings = Settings {
+        arithmetic,
+        record: arithmetic.record(),
+        fields,
+        radius: None,
+        clock_mhz: 100.0,
+        model: DelayModel::default(),
+    };
     Ok(trace("sphere_kernel", |ports| read(ports, &settings))?.not_normal().is_none())
 }
 
