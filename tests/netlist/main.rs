@@ -11,7 +11,7 @@ use contact_afu::afu::Layout;
 use contact_afu::config::{Config, Profile, Shell};
 use contact_afu::hdl::{DelayModel, Module};
 use contact_afu::kernel::PairRecord;
-use contact_afu::operator::Operator;
+use contact_afu::operator::{Operator, Values};
 use contact_afu::pairs::{self, Set};
 use contact_afu::synth::Unit;
 use rand::{RngExt, SeedableRng};
@@ -34,7 +34,7 @@ fn check(what: &str, module: &Arc<Module>, forms: &[As], latency: u32, inputs: &
 fn operator(operator: Operator, profile: &str, forms: &[As], count: usize) {
     let profile: Profile = profile.parse().expect("a profile");
     let format = profile.format();
-    let unit = Unit::operator(operator, &profile, &DelayModel::default(), 200.0).expect("it can be cut");
+    let unit = Unit::operator(operator, &profile, Values::Any, &DelayModel::default(), 200.0).expect("it can be cut");
     let mut random = Xoshiro256PlusPlus::seed_from_u64(3);
     let corners = [0, 1, format.sign_mask(), format.sign_mask() - 1, format.sign_mask() >> 1, format.sign_mask() >> 2];
     let mut word = |i: usize| match i % 3 {
@@ -106,7 +106,8 @@ fn every_profile_in_four_states() {
 #[test]
 fn a_spoilt_netlist_is_found_out() {
     let profile: Profile = "e5f6".parse().expect("a profile");
-    let unit = Unit::operator(Operator::AtMost, &profile, &DelayModel::default(), 200.0).expect("it can be cut");
+    let unit =
+        Unit::operator(Operator::AtMost, &profile, Values::Any, &DelayModel::default(), 200.0).expect("it can be cut");
     let latency = unit.latency.expect("a pipeline");
     let inputs: Vec<Vector> = (0..200_u128).map(|i| vec![((i * 37) & 0xFFF, 12), ((i * 91) & 0xFFF, 12)]).collect();
     let good = simulate(&unit.module, &verilog(&unit.module, As::Printed), latency, &inputs);
