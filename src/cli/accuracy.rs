@@ -39,6 +39,9 @@ pub struct Accuracy {
     /// Configurations worked on at a time [default: one a processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256))]
     jobs: Option<u32>,
+    /// Neighbours of the front that the full study adds, at most
+    #[arg(long, value_name = "N", default_value_t = 12, requires = "out")]
+    neighbours: usize,
     /// Only these profiles: a list of half, bfloat, paper, wide, exact, eXfY
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     profile: Vec<Profile>,
@@ -62,6 +65,9 @@ pub fn run(options: &Accuracy) -> Result<(), Failure> {
         plan.only(&options.profile);
     }
     plan.synthesis = !options.no_synth;
+    if size == Size::Full {
+        plan.neighbours = options.neighbours;
+    }
     if options.no_route || options.no_synth {
         plan.placer_seeds.clear();
     }

@@ -59,7 +59,7 @@ fn ulps(results: &Results, point: &Point, which: usize) -> Option<f64> {
 }
 
 /// All of them.
-pub(super) const COLUMNS: [Column; 25] = [
+pub(super) const COLUMNS: [Column; 26] = [
     column("wrong", "wrong decisions", Show::Count, |_, p| Some(p.wrong() as f64)),
     column("missed", "missed", Show::Count, |_, p| Some(p.tally().missed as f64)),
     column("false", "false", Show::Count, |_, p| Some(p.tally().false_hits as f64)),
@@ -86,5 +86,6 @@ pub(super) const COLUMNS: [Column; 25] = [
     column("dsps", "DSPs", Show::Count, |_, p| area(p, |a| a.dsps)),
     column("brams", "memories", Show::Count, |_, p| area(p, |a| a.brams)),
     column("software_ns", "software, ns a pair", Show::Time, |_, p| p.software_ns),
+    column("drift", "diamond after 300 steps, radii off", Show::Error, |_, p| p.drift.map(|drift| drift.mean)),
     column("asked_mhz", "clock asked, MHz", Show::Count, |_, p| Some(p.config.clock_mhz.round())),
 ];

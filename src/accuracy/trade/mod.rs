@@ -16,6 +16,7 @@ mod plan;
 mod point;
 mod results;
 mod run;
+mod scene;
 mod software;
 mod table;
 
@@ -30,4 +31,5 @@ pub use plan::{Named, Plan, Size};
 pub use point::Point;
 pub use results::{Results, ResultsError, SCHEMA, SetFigures, committed};
 pub use run::{TradeError, Work, run};
+pub use scene::{Drift, GAP, LAYERS, STEPS};
 pub use table::table;

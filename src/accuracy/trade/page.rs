@@ -2,7 +2,7 @@
 
 use super::columns::COLUMNS;
 use super::front::{Time, front, step};
-use super::{Point, Results, picture};
+use super::{GAP, LAYERS, Point, Results, STEPS, picture};
 use crate::report::page;
 use crate::report::table::grouped;
 use maud::{Markup, html};
@@ -105,6 +105,10 @@ fn method(results: &Results) -> Markup {
                         @if number > 0 { ", " }
                         (format!("{ns:.2}")) " ns a pair (" (name) ")"
                     } "." }
+            }
+            @if results.points.iter().any(|point| point.drift.is_some()) {
+                li { "The diamond: " (LAYERS) " layers with gaps of " (GAP) ", " (STEPS) " steps with each arithmetic in the place of ODE’s collider; how far "
+                    "its spheres are, on average, from where ODE in f64 has them, in radii. The scene is chaotic." }
             }
             @for what in &results.left_out { li { "Left out: " (what) "." } }
         }

@@ -1,6 +1,7 @@
 //! A configuration with all that was measured of it.
 
 use super::cost::{Cycles, Hardware};
+use super::scene::Drift;
 use crate::accuracy::{Errors, Row, Tally};
 use crate::config::Config;
 use crate::synth::{Area, Target};
@@ -30,6 +31,8 @@ pub struct Point {
     pub hardware: Option<Hardware>,
     /// Nanoseconds a pair of the same arithmetic in software, on one thread of this machine.
     pub software_ns: Option<f64>,
+    /// Where it leads the diamond's spheres; none without ODE, or where it gives what is no contact.
+    pub drift: Option<Drift>,
 }
 
 impl Point {

@@ -8,6 +8,8 @@ use super::software;
 use super::{Plan, Point, Results, ResultsError};
 use crate::accuracy::{Contenders, Failed, Profiled, Row, measure};
 use crate::config::Config;
+#[cfg(feature = "ode")]
+use crate::kernel::Fields;
 use crate::link::LinkError;
 use crate::synth::{SynthError, Unit};
 use crate::verify::{Bench, VerifyError, rtl_sha256};
@@ -64,6 +66,8 @@ pub fn run(plan: &Plan, folder: Option<(&Path, bool)>, mut progress: impl FnMut(
         add(plan, &more, &mut results, &mut store, &mut progress)?;
     }
     route(plan, &mut results, &mut store, &mut progress)?;
+    progress(Work::Begun("the diamond".to_owned()));
+    drift(&mut results)?;
     // Last of all, when nothing else runs.
     progress(Work::Begun("software".to_owned()));
     let pairs = plan.sets.iter().rfind(|set| set.is_scene).map_or(&[][..], |set| &set.pairs);
@@ -72,6 +76,29 @@ pub fn run(plan: &Plan, folder: Option<(&Path, bool)>, mut progress: impl FnMut(
         point.software_ns = software::of_profile(&point.config.profile, pairs);
     }
     Ok(results)
+}
+
+/// Where each arithmetic leads the diamond's spheres: an arithmetic once.
+#[cfg(feature = "ode")]
+fn drift(results: &mut Results) -> Result<(), TradeError> {
+    let fail = |error: crate::ode::Error| Failed { contender: "the diamond".to_owned(), error: error.into() };
+    let scene = super::scene::Scene::new().map_err(fail)?;
+    for index in 0..results.points.len() {
+        let (known, rest) = results.points.split_at_mut(index);
+        let Some(point) = rest.first_mut() else { break };
+        let profile = &point.config.profile;
+        point.drift = match known.iter().find(|known| known.config.profile.arithmetic() == profile.arithmetic()) {
+            Some(known) => known.drift,
+            None => scene.drift(&mut profile.reference(Fields::ALL)).map_err(fail)?,
+        };
+    }
+    Ok(())
+}
+
+#[cfg(not(feature = "ode"))]
+fn drift(results: &mut Results) -> Result<(), TradeError> {
+    results.left_out.push(super::scene::ABSENT.to_owned());
+    Ok(())
 }
 
 /// Configurations a step from those on a front that are not there yet: as many as the plan has, those of each in turn.
@@ -150,6 +177,7 @@ fn add(
             cycles: cost.cycles,
             hardware: cost.hardware,
             software_ns: None,
+            drift: None,
         });
     }
     Ok(())
