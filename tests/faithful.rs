@@ -13,7 +13,7 @@ fn check(function: Function, fraction_bits: u32, odd: u32, fraction: u64) -> Res
     let (faithful, exact) = match function {
         Function::Reciprocal => {
             let whole = 1_u128 << (2 * fraction_bits + 1);
-            (low * m < whole && whole < high * m, whole % m != 0 || value_wide * m == whole)
+            (low * m < whole && whole < high * m, !whole.is_multiple_of(m) || value_wide * m == whole)
         }
         Function::Root => {
             let radicand = m << (fraction_bits + odd);
