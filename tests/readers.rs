@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 
 use contact_afu::link::{Description, Link, LinkModel};
+use contact_afu::scene::{Plan, Scene};
 use contact_afu::{config, pairs};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -88,6 +89,13 @@ fn kinds() -> Vec<Kind> {
             name: "contacts.npy",
             seeds: vec![written("c.npy", &|path| pairs::write_contacts(path, &contacts).unwrap())],
             read: |path| pairs::read_contacts(path).is_ok(),
+        },
+        Kind {
+            name: "scene.toml",
+            seeds: ["diamond", "billiards", "column", "touching", "gas"]
+                .map(|name| file(&format!("examples/scenes/{name}.toml")))
+                .to_vec(),
+            read: |path| Scene::read(path).is_ok_and(|scene| Plan::of(&scene).is_ok()),
         },
         Kind { name: "manifest.json", seeds: vec![file("rtl/manifest.json")], read: |path| config::read(path).is_ok() },
         Kind { name: "link.json", seeds: models, read: link },

@@ -41,9 +41,15 @@ pub struct Scene {
     /// Write the run as JSON too (schema contact-afu/scene/1); - is standard output
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Count LUTs with Yosys for every configuration that is compared (some minutes, kept for the next time)
+    /// Have trajectories as npy (f64, steps × bodies × 3) instead of CSV
+    #[arg(long)]
+    npy: bool,
+    /// Count LUTs with Yosys (a minute a configuration, kept for the next time)
     #[arg(long)]
     luts: bool,
+    /// With --with and --without, which count LUTs where Yosys is installed: leave it
+    #[arg(long, conflicts_with = "luts")]
+    no_luts: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -63,9 +69,10 @@ pub fn run(options: &Scene) -> Result<(), Failure> {
         _ => None,
     };
     if let Some(other) = other {
-        let other = Plan::of(&other)?;
-        let costs = (options.cost(&plan.config)?, options.cost(&other.config)?);
-        return output::show(&plan.difference(&other, &costs.0, &costs.1), false);
+        let other_plan = Plan::of(&other)?;
+        let mut costs = (options.compared(&plan.config)?, options.compared(&other_plan.config)?);
+        (costs.0.host_step_ns, costs.1.host_step_ns) = (host_step(&story, &plan)?, host_step(&other, &other_plan)?);
+        return output::show(&plan.difference(&other_plan, &costs.0, &costs.1), false);
     }
     if options.plan {
         let cost = options.cost(&plan.config)?;
@@ -95,6 +102,18 @@ impl Scene {
     fn cost(&self, config: &Config) -> Result<Cost, Failure> {
         let mut cost = Cost::of(config)?;
         if self.luts {
+            let spinner = progress::spinner("counting LUTs with Yosys");
+            let counted = cost.count(config);
+            spinner.finish_and_clear();
+            counted?;
+        }
+        Ok(cost)
+    }
+
+    /// The cost for a comparison, which counts LUTs wherever that can be done.
+    fn compared(&self, config: &Config) -> Result<Cost, Failure> {
+        let mut cost = self.cost(config)?;
+        if !self.no_luts && cost.luts.is_none() && contact_afu::tools::Program::yosys().is_ok() {
             let spinner = progress::spinner("counting LUTs with Yosys");
             let counted = cost.count(config);
             spinner.finish_and_clear();
@@ -166,8 +185,10 @@ impl Scene {
             (Part::Trajectories, "trajectories.csv", Results::trajectories_csv),
             (Part::Energy, "energy.csv", Results::energy_csv),
         ];
-        for (part, name, text) in texts {
-            if plan.has(part) {
+        for (part, name, text) in texts.into_iter().filter(|(part, ..)| plan.has(*part)) {
+            if self.npy && part == Part::Trajectories {
+                folder.write("trajectories.npy", &results.trajectories_npy())?;
+            } else {
                 folder.write(name, text(results).as_bytes())?;
             }
         }
@@ -181,6 +202,24 @@ fn moving(story: &Story, plan: &Plan, engine: &mut dyn Engine, name: &str) -> Re
     let results = scene::run(story, plan, engine, name, |steps| bar.set_position(steps));
     bar.finish_and_clear();
     Ok(results?)
+}
+
+/// What a step takes on this host, the engine's part left out: the median of the first hundred.
+#[cfg(feature = "ode")]
+fn host_step(story: &Story, plan: &Plan) -> Result<Option<f64>, Failure> {
+    if !Plan::moves(story) {
+        return Ok(None);
+    }
+    let mut story = story.clone();
+    story.steps.value = story.steps.value.min(100);
+    let mut reference = plan.config.profile.reference(plan.config.contact);
+    let results = scene::run(&story, plan, &mut reference, "", |_| {})?;
+    Ok(Some(results.summary.step_ns))
+}
+
+#[cfg(not(feature = "ode"))]
+fn host_step(_: &Story, _: &Plan) -> Result<Option<f64>, Failure> {
+    Ok(None)
 }
 
 #[cfg(not(feature = "ode"))]

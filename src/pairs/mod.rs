@@ -19,4 +19,5 @@ pub use file::{
     LoadError, check_name, load, read_contacts, read_hits, read_pairs, write_contacts, write_hits, write_pairs,
 };
 pub use hard::{CATEGORIES, Category};
+pub use npy::numbers as npy_of_numbers;
 pub use set::{Set, SetError};

@@ -36,6 +36,13 @@ fn parse<const W: usize>(bytes: &[u8], descr: &str) -> Result<Vec<[u32; W]>, Pro
     Ok(records.iter().map(|record| record.map(u32::from_le_bytes)).collect())
 }
 
+/// An array of f64, the last index fastest.
+pub fn numbers(shape: Vec<u64>, values: impl Iterator<Item = f64>) -> Vec<u8> {
+    let mut bytes = Header { descr: "<f8".to_owned(), fortran_order: false, shape }.bytes();
+    bytes.extend(values.flat_map(f64::to_le_bytes));
+    bytes
+}
+
 /// Writes records as elements of the type `descr`.
 pub fn write<const W: usize>(
     out: &mut impl Write,

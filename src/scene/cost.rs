@@ -29,6 +29,8 @@ pub struct Cost {
     pub luts: Option<u64>,
     /// DSP blocks of an SCPU, likewise.
     pub dsps: Option<u64>,
+    /// Host time of a step, all but the engine's part, nanoseconds; nothing where it was not measured.
+    pub host_step_ns: Option<f64>,
 }
 
 impl Cost {
@@ -50,6 +52,7 @@ impl Cost {
             returns_misses: config.results == crate::config::Results::All,
             luts: None,
             dsps: None,
+            host_step_ns: None,
         })
     }
 

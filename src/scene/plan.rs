@@ -235,7 +235,7 @@ fn describe(group: &super::Group) -> String {
         }
         Shape::Stack { count } => format!("stack of {count}"),
         Shape::List { centres } => {
-            format!("{} centres, the first {:?}", centres.len(), centres.first().unwrap_or(&[0.0; 3]))
+            format!("centres: {}, the first {:?}", centres.len(), centres.first().unwrap_or(&[0.0; 3]))
         }
         Shape::File { path } => format!("those of {}", path.display()),
     };

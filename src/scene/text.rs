@@ -3,6 +3,7 @@
 use super::cost::Cost;
 use super::plan::{Plan, Row};
 use super::results::Results;
+use crate::pairs::npy_of_numbers;
 use crate::report::table::{grouped, table, words};
 
 impl Plan {
@@ -46,12 +47,14 @@ impl Row {
         match self.calls.as_slice() {
             [] if self.on => vec!["(usual)".to_owned()],
             [] => vec!["nothing".to_owned()],
-            [first, .., last] if self.calls.len() > 4 => vec![format!("lines {} to {}", first.line, last.line)],
+            [first, .., last] if self.calls.len() > 4 && last.line - first.line < self.calls.len() => {
+                vec![format!("lines {} to {}", first.line, last.line)]
+            }
             calls => calls
                 .iter()
                 .map(|call| match call.line {
                     0 => call.text.clone(),
-                    line => format!("{line}: {}", call.text),
+                    line => format!("{line}: {}", call.text.trim_end_matches(',')),
                 })
                 .collect(),
         }
@@ -80,6 +83,9 @@ pub(super) fn cost_rows(all: &[&Cost]) -> Vec<Vec<String>> {
         }),
         row("LUTs of an SCPU", &|cost| counted(cost.luts)),
         row("DSP blocks of an SCPU", &|cost| counted(cost.dsps)),
+        row("host time a step, µs", &|cost| {
+            cost.host_step_ns.map_or_else(|| "not measured".to_owned(), |ns| format!("{:.1}", ns / 1000.0))
+        }),
     ];
     let mut names: Vec<&String> = all.iter().flat_map(|cost| cost.operators.keys()).collect();
     names.sort();
@@ -153,6 +159,12 @@ impl Results {
             }
         }
         out
+    }
+
+    /// The bodies' ways as npy: f64, steps × bodies × 3.
+    pub fn trajectories_npy(&self) -> Vec<u8> {
+        let shape = vec![self.places.len() as u64, self.radii.len() as u64, 3];
+        npy_of_numbers(shape, self.places.iter().flatten().flatten().copied())
     }
 
     /// Energy and momentum as CSV.

@@ -131,27 +131,34 @@ fn what_both_compute_is_the_same_bits() {
     }
 }
 
-/// The touching-only AFU, simulated: it finds what the reference with everything finds, and the bytes over the link are
-/// those of the plan.
+/// Each example's AFU, simulated: it finds what the reference with everything finds, and the bytes over the link are
+/// those of the plan. Bytes do not depend on the arithmetic, so it is a small one where the scene is not of touching alone.
 #[cfg(feature = "cosim")]
 #[test]
 fn the_bytes_over_the_link_are_the_plan_s() {
-    let scene = scene("touching");
-    let plan = Plan::of(&scene).unwrap();
-    let query = Query::of(&scene).unwrap();
-    let pairs: Vec<PairRecord> = query.pairs().into_iter().chain(Set::Random(400).pairs(2)).collect();
-    // The line port itself: a shell reads and writes lines of its own too.
-    let config = Config { shell: Shell::Line, ..plan.config.clone() };
-    let verdict = Bench::new(&config).unwrap().run(&pairs, &LinkModel::ideal(), 1).unwrap();
-    assert!(verdict.is_good(), "{:?}", verdict.unmet);
-    let everything = plan.config.profile.reference(Fields::ALL).run_all(&pairs);
-    let hits: Vec<bool> = everything.iter().map(|contact| contact.is_contact()).collect();
-    assert_eq!(verdict.by_pair().iter().map(|contact| contact.is_contact()).collect::<Vec<_>>(), hits);
-    let contacts = hits.iter().filter(|hit| **hit).count() as u64;
-    let cost = plan.cost().unwrap();
-    // Whole lines go over the link.
-    let lines = |bytes: f64| (bytes / 64.0).ceil() as u64 * 64;
-    assert_eq!(verdict.outcome.bytes_read, lines(cost.bytes_sent * pairs.len() as f64));
-    assert_eq!(verdict.outcome.bytes_written, lines(cost.bytes_returned * contacts as f64));
-    assert!(contacts > 20 && contacts < pairs.len() as u64 / 2, "{contacts}");
+    for example in crate::EXAMPLES {
+        let scene = scene(example);
+        let plan = Plan::of(&scene).unwrap();
+        let query = Query::of(&scene).unwrap();
+        let mut pairs: Vec<PairRecord> = query.pairs().into_iter().chain(Set::Random(400).pairs(2)).collect();
+        if let Some(radius) = plan.config.radius {
+            pairs.iter_mut().for_each(|pair| (pair.0[3], pair.0[7]) = (radius.to_bits(), radius.to_bits()));
+        }
+        let small = if example == "touching" { plan.config.profile.clone() } else { "e8f3z".parse().unwrap() };
+        // The line port itself: a shell reads and writes lines of its own too.
+        let config = Config { shell: Shell::Line, profile: small, ..plan.config.clone() };
+        let verdict = Bench::new(&config).unwrap().run(&pairs, &LinkModel::ideal(), 1).unwrap();
+        assert!(verdict.is_good(), "{example}: {:?}", verdict.unmet);
+        let everything = config.profile.reference(Fields::ALL).run_all(&pairs);
+        let hits: Vec<bool> = everything.iter().map(|contact| contact.is_contact()).collect();
+        let found: Vec<bool> = verdict.by_pair().iter().map(|contact| contact.is_contact()).collect();
+        assert_eq!(found, hits, "{example}");
+        let contacts = hits.iter().filter(|hit| **hit).count() as u64;
+        let cost = plan.cost().unwrap();
+        // Whole lines go over the link.
+        let lines = |bytes: f64| (bytes / 64.0).ceil() as u64 * 64;
+        assert_eq!(verdict.outcome.bytes_read, lines(cost.bytes_sent * pairs.len() as f64), "{example}");
+        assert_eq!(verdict.outcome.bytes_written, lines(cost.bytes_returned * contacts as f64), "{example}");
+        assert!(contacts > 20 && contacts < pairs.len() as u64, "{example}: {contacts}");
+    }
 }

@@ -29,12 +29,12 @@ fn a_plan_names_lines_and_an_effect_more_or_less_says_what_it_costs() {
     for row in ["position", "depth", "14: bounce = 0.0", "every radius is 0.5", "fp_sqrt_e10f23z_normal"] {
         assert!(plan.contains(row), "{row} in\n{plan}");
     }
-    let with = told(&afu(&[&diamond, "--plan", "--with", "friction"]).success());
-    for row in ["asked for on the command line", "fp_halve_e10f23z_normal", "position", "then"] {
+    let with = told(&afu(&[&diamond, "--plan", "--with", "friction", "--no-luts"]).success());
+    for row in ["asked for on the command line", "fp_halve_e10f23z_normal", "position", "then", "host time a step"] {
         assert!(with.contains(row), "{row} in\n{with}");
     }
     assert!(!with.contains("damping"), "{with}");
-    let without = told(&afu(&[&text(&path("billiards")), "--without", "spin"]).success());
+    let without = told(&afu(&[&text(&path("billiards")), "--without", "spin", "--no-luts"]).success());
     assert!(without.contains("spin"), "{without}");
     let error = afu(&[&diamond, "--with", "jelly"]).code(2);
     let error = String::from_utf8_lossy(&error.get_output().stderr).into_owned();
@@ -88,6 +88,17 @@ fn the_simulated_afu_moves_bodies_as_software_does() {
         serde_json::from_slice(&fs::read(simulated.join("manifest.json")).unwrap()).unwrap();
     assert!(manifest["summary"]["cycles"].as_u64().expect("simulated") > 1_000);
     assert!(manifest["summary"]["contacts"].as_u64().expect("a count") > 100);
+
+    let npy = room.path().join("npy");
+    afu(&[&text(&file), "--engine", "reference", "--npy", "--out", &text(&npy)]).success();
+    let bytes = fs::read(npy.join("trajectories.npy")).unwrap();
+    let array = npyz::NpyFile::new(&bytes[..]).expect("an array");
+    assert_eq!(array.shape(), [31, 25, 3]);
+    let values: Vec<f64> = array.into_vec().expect("of f64");
+    let csv = fs::read_to_string(software.join("trajectories.csv")).unwrap();
+    let last = csv.lines().last().unwrap().rsplit(',').next().unwrap().parse::<f64>().unwrap();
+    assert_eq!(values.last(), Some(&last));
+    assert!(!npy.join("trajectories.csv").exists());
 
     let opened = browser::open(&simulated.join("report.html"));
     assert!(opened.console.is_empty() && opened.fetched.is_empty(), "{opened:?}");
