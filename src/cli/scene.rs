@@ -124,7 +124,13 @@ impl Scene {
 
     /// The cost of touching alone, then with one effect of the scene after another.
     fn ladder(&self, story: &Story) -> Result<Vec<(String, Cost)>, Failure> {
-        scene::ladder(story)?.into_iter().map(|(name, config)| Ok((name, self.cost(&config)?))).collect()
+        let rung = |(name, story): (String, Story)| {
+            let plan = Plan::of(&story)?;
+            let mut cost = self.cost(&plan.config)?;
+            cost.host_step_ns = host_step(&story, &plan)?;
+            Ok((name, cost))
+        };
+        scene::ladder(story)?.into_iter().map(rung).collect()
     }
 
     fn results(&self, story: &Story, plan: &Plan) -> Result<Results, Failure> {

@@ -1,26 +1,24 @@
-//! One effect after another: the AFU of touching alone, then what each line of a scene adds.
+//! One effect after another: touching alone, then what each line of a scene adds.
 
 use super::SceneError;
 use super::file::{Effects, Scene, Want};
-use super::plan::Plan;
-use crate::config::Config;
 
-/// The AFUs of a scene with more and more of what it calls for: by the name of what was added last. The first has
-/// touching alone, the last is the scene's own.
+/// A scene with more and more of what it calls for, by the name of what was added last. The first asks for touching
+/// alone, the last is the scene's own.
 ///
 /// # Errors
-/// When a file of bodies cannot be read.
-pub fn ladder(scene: &Scene) -> Result<Vec<(String, Config)>, SceneError> {
+/// None that [`Scene::switched`] does not give.
+pub fn ladder(scene: &Scene) -> Result<Vec<(String, Scene)>, SceneError> {
     let of_fields = [Want::Depth, Want::Normals, Want::ContactPoints];
     let mut bare = scene.clone();
     bare.effects = Effects::default();
     bare.want = vec![(Want::Touching, 0)];
     (bare.accuracy, bare.max_error) = (None, None);
-    let mut rungs = vec![("touching alone".to_owned(), Plan::of(&bare)?.config)];
+    let mut rungs = vec![("touching alone".to_owned(), bare.clone())];
     for want in of_fields {
         if let Some(wanted) = scene.want.iter().find(|(wanted, _)| *wanted == want) {
             bare.want.push(*wanted);
-            rungs.push((want.name().to_owned(), Plan::of(&bare)?.config));
+            rungs.push((want.name().to_owned(), bare.clone()));
         }
     }
     // Effects that call for no part of the AFU add nothing to it, and the table shows that.
@@ -28,12 +26,12 @@ pub fn ladder(scene: &Scene) -> Result<Vec<(String, Config)>, SceneError> {
         let named = scene.switched(name, false)?.effects != scene.effects;
         if named {
             take(&mut bare.effects, &scene.effects, name);
-            rungs.push(((*name).to_owned(), Plan::of(&bare)?.config));
+            rungs.push(((*name).to_owned(), bare.clone()));
         }
     }
 
     if scene.accuracy.is_some() || scene.max_error.is_some() {
-        rungs.push(("accuracy".to_owned(), Plan::of(scene)?.config));
+        rungs.push(("accuracy".to_owned(), scene.clone()));
     }
     Ok(rungs)
 }

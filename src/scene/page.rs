@@ -97,9 +97,18 @@ fn ladder_of(ladder: &[(String, Cost)]) -> Markup {
             cost.luts.map_or_else(|| "not counted".to_owned(), crate::report::table::grouped),
             cost.bytes_sent.to_string(),
             cost.bytes_returned.to_string(),
+            cost.host_step_ns.map_or_else(|| "-".to_owned(), |ns| format!("{:.1}", ns / 1000.0)),
         ]
     };
-    let heading = ["with", "operators of an SCPU", "cycles", "LUTs of an SCPU", "bytes sent a pair", "bytes a contact"];
+    let heading = [
+        "with",
+        "operators of an SCPU",
+        "cycles",
+        "LUTs of an SCPU",
+        "bytes sent a pair",
+        "bytes a contact",
+        "host time a step, µs",
+    ];
     let points = |figure: fn(&Cost) -> f64| {
         (1..).zip(ladder).map(move |(step, (_, cost))| (f64::from(step), figure(cost))).collect::<Vec<_>>()
     };
