@@ -54,7 +54,7 @@ pub struct Summary {
     pub bytes: f64,
     /// The same had everything been on.
     pub bytes_with_everything: f64,
-    /// The median step's time on this host, nanoseconds, the engine's part of it left out for a simulated AFU.
+    /// The median step's time on this host without the engine's part, nanoseconds; of a query the engine's time.
     pub step_ns: f64,
 }
 

@@ -109,7 +109,10 @@ impl Results {
             ("contacts with walls".to_owned(), grouped(s.wall_contacts)),
             ("bytes over the link".to_owned(), grouped(s.bytes as u64)),
             ("with everything on".to_owned(), grouped(s.bytes_with_everything as u64)),
-            ("host, a step, µs".to_owned(), format!("{:.1}", s.step_ns / 1000.0)),
+            (
+                if s.steps > 0 { "host, a step, µs" } else { "the engine, µs" }.to_owned(),
+                format!("{:.1}", s.step_ns / 1000.0),
+            ),
         ];
         if let Some(cycles) = s.cycles {
             rows.push(("cycles of the AFU, all steps".to_owned(), grouped(cycles)));
