@@ -121,7 +121,7 @@ impl Results {
         out += &table(&["", ""], rows.into_iter().map(|(name, value)| [name, value]));
         if let (Some(first), Some(last)) = (self.energy.first(), self.energy.last()) {
             let sum = |e: &super::Energy| e.kinetic + e.potential;
-            out += &format!("\nenergy {:.6} at first, {:.6} in the end", sum(first), sum(last));
+            out += &format!("\nenergy {:.5e} at first, {:.5e} in the end", sum(first), sum(last));
         }
         out
     }
