@@ -105,4 +105,20 @@ fn the_simulated_afu_moves_bodies_as_software_does() {
     // The script drew: it says which frame the canvas shows.
     assert!(opened.dom.contains("data-frame=\""), "the canvas was never drawn");
     assert!(opened.dom.contains("id=\"play\"") && opened.dom.matches("<svg class=\"plot\"").count() == 2);
+
+    // A reader's hand: it scrubs to step 17, which stops the play, and plays again. Its script needs a policy without hash.
+    let made = fs::read_to_string(simulated.join("report.html")).unwrap();
+    let (before, rest) = made.split_once("script-src 'sha256-").expect("a policy");
+    let (_, after) = rest.split_once('\'').expect("the hash's end");
+    let free = format!("{before}script-src 'unsafe-inline{}{after}", '\'');
+    let hand = "<script>const at = document.getElementById('at'), play = document.getElementById('play');\
+        at.value = '17'; at.dispatchEvent(new Event('input'));\
+        const canvas = document.getElementById('scene');\
+        document.title = [canvas.dataset.frame, document.getElementById('step').value, play.textContent].join('|');\
+        play.click(); document.title += '|' + play.textContent; play.click(); document.title += '|' + play.textContent;\
+        </script></body>";
+    let page = room.path().join("hand.html");
+    fs::write(&page, free.replace("</body>", hand)).unwrap();
+    let opened = browser::open(&page);
+    assert!(opened.dom.contains("<title>17|step 17|Play|Pause|Play</title>"), "{:?}", opened.dom.get(..600));
 }
