@@ -18,6 +18,7 @@ mod share_delays;
 mod signal;
 mod state;
 pub mod verilog;
+mod wiring;
 
 pub use cut::{Timing, cut};
 pub use delay_model::DelayModel;

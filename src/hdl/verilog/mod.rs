@@ -3,6 +3,7 @@
 
 mod delay;
 mod expression;
+mod instances;
 mod lookup;
 mod names;
 mod primitive;
