@@ -12,7 +12,7 @@ const HOUSE: &[(&str, &[&str])] = &[
     ("kernel", &["number"]),
     ("config", &["number", "kernel"]),
     ("pairs", &["number", "kernel"]),
-    ("ode", &["kernel"]),
+    ("ode", &["pairs", "kernel"]),
     ("operator", &["hdl", "number"]),
     ("pipeline", &["operator", "kernel", "hdl", "number"]),
     ("afu", &["config", "pipeline", "operator", "kernel", "hdl", "number"]),

@@ -3,6 +3,7 @@
 use super::contact::{Surface, Touch};
 use super::numbers::{LARGEST, positive, within};
 use super::{Error, Ode, Sphere, World};
+use crate::pairs::octahedron;
 
 /// The most layers: beyond, the table of tested pairs in ODE's hash space outgrows a gigabyte.
 const MOST_LAYERS: u32 = 40;
@@ -72,15 +73,6 @@ impl Diamond {
         }
         Ok(Simulation { world, forces, diamond: *self, steps: 0 })
     }
-}
-
-/// The points with |x| + |y| + |z| ≤ `reach`, in lexicographic order.
-fn octahedron(reach: i32) -> impl Iterator<Item = [i32; 3]> {
-    let side = |rest: i32| -rest..=rest;
-    side(reach).flat_map(move |x| {
-        let rest = reach - x.abs();
-        side(rest).flat_map(move |y| side(rest - y.abs()).map(move |z| [x, y, z]))
-    })
 }
 
 /// A diamond on its way.

@@ -2,6 +2,15 @@
 
 use crate::kernel::PairRecord;
 
+/// The integer points with |x| + |y| + |z| ≤ `reach`, in lexicographic order: where the paper's diamond has its spheres.
+pub fn octahedron(reach: i32) -> impl Iterator<Item = [i32; 3]> {
+    let side = |rest: i32| -rest..=rest;
+    side(reach).flat_map(move |x| {
+        let rest = reach - x.abs();
+        side(rest).flat_map(move |y| side(rest - y.abs()).map(move |z| [x, y, z]))
+    })
+}
+
 /// Spheres of radius ½ on the integer points of the octahedron |x| + |y| + |z| ≤ layers − 1: neighbours along an
 /// axis touch exactly. A candidate is a pair whose bounding boxes touch, so whose centres differ by at most 1 along
 /// each axis. Each pair comes once, the lexicographically smaller centre first, in lexicographic order.
@@ -13,8 +22,8 @@ pub fn pairs(layers: u32) -> Vec<PairRecord> {
         [x, y, z, 0.5]
     };
     let mut pairs = Vec::new();
-    for centre in cube(reach).filter(|&c| inside(c)) {
-        for step in cube(1).filter(|&step| step > [0, 0, 0]) {
+    for centre in octahedron(reach) {
+        for step in NEXT {
             let other = std::array::from_fn(|axis| centre[axis] + step[axis]);
             if inside(other) {
                 pairs.push(PairRecord::from_spheres(sphere(centre), sphere(other)));
@@ -24,11 +33,22 @@ pub fn pairs(layers: u32) -> Vec<PairRecord> {
     pairs
 }
 
-/// The integer points with coordinates up to `reach`, in lexicographic order.
-fn cube(reach: i32) -> impl Iterator<Item = [i32; 3]> {
-    let side = move || -reach..=reach;
-    side().flat_map(move |x| side().flat_map(move |y| side().map(move |z| [x, y, z])))
-}
+/// The steps to neighbours whose boxes touch, of two opposite ones the lexicographically larger, in order.
+const NEXT: [[i32; 3]; 13] = [
+    [0, 0, 1],
+    [0, 1, -1],
+    [0, 1, 0],
+    [0, 1, 1],
+    [1, -1, -1],
+    [1, -1, 0],
+    [1, -1, 1],
+    [1, 0, -1],
+    [1, 0, 0],
+    [1, 0, 1],
+    [1, 1, -1],
+    [1, 1, 0],
+    [1, 1, 1],
+];
 
 #[cfg(test)]
 mod tests {

@@ -14,6 +14,7 @@ mod set;
 mod source;
 mod table;
 
+pub use diamond::octahedron;
 pub use error::FileError;
 pub use file::{
     LoadError, check_name, load, read_contacts, read_hits, read_pairs, write_contacts, write_hits, write_pairs,

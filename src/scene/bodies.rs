@@ -6,7 +6,8 @@ use rand::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::SceneError;
-use super::file::{Group, Scene, Shape};
+use super::file::{Group, LARGEST, Scene, Shape};
+use crate::pairs::octahedron;
 
 /// A sphere of a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,7 +35,9 @@ pub fn balls(scene: &Scene, groups: &[Group]) -> Result<Vec<Ball>, SceneError> {
         let pitch = 2.0 * radius + group.gap;
         let lattice = |points: Vec<[f64; 3]>| points.into_iter().map(|p| (p.map(|v| v * pitch), radius)).collect();
         let centres: Vec<([f64; 3], f64)> = match &group.shape {
-            Shape::Diamond { layers } => lattice(octahedron(*layers as i64 - 1)),
+            Shape::Diamond { layers } => {
+                lattice(octahedron(*layers as i32 - 1).map(|point| point.map(f64::from)).collect())
+            }
             Shape::Lattice { count } => lattice(grid(*count)),
             Shape::Stack { count } => lattice((0..*count).map(|i| [0.0, 0.0, i as f64]).collect()),
             Shape::Random { count, corners, seed } => {
@@ -52,16 +55,6 @@ pub fn balls(scene: &Scene, groups: &[Group]) -> Result<Vec<Ball>, SceneError> {
         }));
     }
     Ok(all)
-}
-
-/// The points with |x| + |y| + |z| ≤ `reach`, in lexicographic order, as the paper's diamond has them.
-fn octahedron(reach: i64) -> Vec<[f64; 3]> {
-    let side = |rest: i64| -rest..=rest;
-    let points = side(reach).flat_map(move |x| {
-        let rest = reach - x.abs();
-        side(rest).flat_map(move |y| side(rest - y.abs()).map(move |z| [x as f64, y as f64, z as f64]))
-    });
-    points.collect()
 }
 
 /// A lattice about its centre.
@@ -105,7 +98,7 @@ fn file(scene: &Scene, group: &Group, path: &Path, radius: f64) -> Result<Vec<([
             let cell = cells.get(column).ok_or_else(|| wrong(index + 1, format!("{} is missing", columns[column])))?;
             let value: f64 =
                 cell.parse().map_err(|_| wrong(index + 1, format!("{} is `{cell}`: not a number", columns[column])))?;
-            if value.abs() <= 134_217_728.0 {
+            if value.abs() <= LARGEST {
                 return Ok(value);
             }
             Err(wrong(index + 1, format!("{} is {value}: beyond ±2^27", columns[column])))

@@ -6,6 +6,9 @@ use serde::Deserialize;
 
 use crate::config::Profile;
 
+/// The largest coordinate, radius, mass or speed: what ODE's broad phase can hold, as `ode` has it too.
+pub(super) const LARGEST: f64 = 134_217_728.0;
+
 /// A value, and the line that gives it; no line if it is the default.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Given<T> {

@@ -22,30 +22,20 @@ pub fn ladder(scene: &Scene) -> Result<Vec<(String, Scene)>, SceneError> {
         }
     }
     // Effects that call for no part of the AFU add nothing to it, and the table shows that.
-    for name in Scene::effect_names() {
-        let named = scene.switched(name, false)?.effects != scene.effects;
-        if named {
-            take(&mut bare.effects, &scene.effects, name);
-            rungs.push(((*name).to_owned(), bare.clone()));
+    let names = Scene::effect_names();
+    for (place, name) in names.iter().enumerate() {
+        if scene.switched(name, false)?.effects == scene.effects {
+            continue;
         }
+        let mut so_far = scene.clone();
+        for later in &names[place + 1..] {
+            so_far = so_far.switched(later, false)?;
+        }
+        bare.effects = so_far.effects;
+        rungs.push(((*name).to_owned(), bare.clone()));
     }
-
     if scene.accuracy.is_some() || scene.max_error.is_some() {
         rungs.push(("accuracy".to_owned(), scene.clone()));
     }
     Ok(rungs)
-}
-
-fn take(to: &mut Effects, from: &Effects, name: &str) {
-    match name {
-        "gravity" => to.gravity.clone_from(&from.gravity),
-        "pull" => to.pull.clone_from(&from.pull),
-        "bounce" => to.bounce.clone_from(&from.bounce),
-        "friction" => to.friction.clone_from(&from.friction),
-        "spin" => to.spin.clone_from(&from.spin),
-        "damping" => to.damping.clone_from(&from.damping),
-        "floor" => to.floor.clone_from(&from.floor),
-        "walls" => to.walls.clone_from(&from.walls),
-        _ => to.sleeping.clone_from(&from.sleeping),
-    }
 }

@@ -6,7 +6,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::SceneError;
-use super::file::{Effects, Given, Group, Pull, Scene, Shape, Want};
+use super::file::{Effects, Given, Group, LARGEST, Pull, Scene, Shape, Want};
 
 /// The version this program reads: the key `scene`.
 const VERSION: i64 = 1;
@@ -132,9 +132,6 @@ impl Source<'_> {
         Err(self.wrong(given.line, key, "the first corner must lie below the second on every axis"))
     }
 }
-
-/// The largest coordinate, radius, mass or speed: what ODE's broad phase can hold.
-const LARGEST: f64 = 134_217_728.0;
 
 impl Scene {
     /// Reads a scene.

@@ -42,7 +42,7 @@ pub struct Summary {
     pub all_pairs: u64,
     /// Pairs sent to the engine: those that could reach each other, and did not both sleep. Of all steps.
     pub pairs: u64,
-    /// Pairs left out since both slept.
+    /// Pairs of two bodies that slept, in reach of each other or not: none of them is sent. Of all steps.
     pub asleep: u64,
     /// Contacts among them.
     pub contacts: u64,
