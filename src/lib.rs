@@ -7,6 +7,7 @@ pub mod afu;
 pub mod config;
 #[cfg(feature = "cosim")]
 pub mod cosim;
+pub mod files;
 pub mod hdl;
 pub mod host;
 pub mod kernel;

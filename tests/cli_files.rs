@@ -48,3 +48,26 @@ fn a_wrong_set_or_file_name_is_exit_2_and_writes_nothing() {
         assert_eq!(fs::read_dir(room.path()).expect("there").count(), 0, "{arguments:?}");
     }
 }
+
+/// A fault once: results for a device became a file in its place.
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_written_and_stays_one() {
+    use std::os::unix::fs::FileTypeExt;
+    let room = tempfile::tempdir().expect("a temporary folder");
+    for (name, arguments) in [
+        ("pairs.csv", &["pairs", "random:3", "--out", "pairs.csv"][..]),
+        ("found", &["choose", "--max-error", "1e-3", "--out", "found"]),
+    ] {
+        let pipe = room.path().join(name);
+        assert!(std::process::Command::new("mkfifo").arg(&pipe).status().expect("mkfifo runs").success());
+        let reader = std::thread::spawn({
+            let pipe = pipe.clone();
+            move || fs::read_to_string(pipe)
+        });
+        afu(room.path(), arguments).success();
+        assert!(fs::metadata(&pipe).expect("there").file_type().is_fifo(), "{arguments:?}");
+        let text = reader.join().expect("read").expect("text");
+        assert!(text.lines().count() > 3, "{arguments:?}: {text}");
+    }
+}

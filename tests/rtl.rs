@@ -6,6 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use contact_afu::afu::spl2::map;
 use contact_afu::afu::{Afu, Spec, top_name};
 use contact_afu::config::{Config, Results, Shell};
 use contact_afu::kernel::{PairRecord, Reference};
@@ -159,49 +160,105 @@ fn hex_line(words: &[u32]) -> String {
     padded.iter().rev().map(|word| format!("{word:08x}")).collect()
 }
 
-/// Runs pairs through the AFU in Icarus and gives the destination lines.
-fn icarus(verilog: &[PathBuf], scpus: u32, pairs: &[PairRecord], seed: u32) -> Vec<String> {
+/// Runs pairs through the AFU in Icarus, in the bench of that name, and gives what it says and the destination lines.
+fn icarus(bench: &str, verilog: &[PathBuf], scpus: u32, pairs: &[PairRecord], seed: u32) -> (String, Vec<String>) {
     let folder = tempfile::tempdir().unwrap();
-    let bench = folder.path().join("bench");
+    let program = folder.path().join("bench");
     let compiled = Command::new("iverilog")
-        .args(["-g2005", "-Wall", "-Wno-timescale", "-s", "contact_afu_tb", "-o"])
-        .arg(&bench)
-        .arg(format!("-Pcontact_afu_tb.SCPUS={scpus}"))
-        .arg(root().join("tb/contact_afu_tb.v"))
+        .args(["-g2005", "-Wall", "-Wno-timescale", "-s", bench, "-o"])
+        .arg(&program)
+        .arg(format!("-P{bench}.SCPUS={scpus}"))
+        .arg(root().join(format!("tb/{bench}.v")))
         .args(verilog)
         .output()
         .expect("needs Icarus: run scripts/setup --test");
-    assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
+    succeeded(bench, &compiled);
     let source: Vec<String> =
         pairs.chunks(2).map(|line| hex_line(&line.iter().flat_map(|pair| pair.0).collect::<Vec<_>>())).collect();
     fs::write(folder.path().join("source.hex"), source.join("\n") + "\n").unwrap();
     let ran = Command::new("vvp")
         .current_dir(folder.path())
-        .arg(&bench)
+        .arg(&program)
         .args(["+source=source.hex", "+destination=destination.hex"])
         .arg(format!("+count={}", pairs.len()))
         .arg(format!("+seed={seed}"))
         .output()
         .unwrap();
-    let text = String::from_utf8_lossy(&ran.stdout);
-    assert!(text.contains("done 1 error 0"), "{text}");
-    let lines = fs::read_to_string(folder.path().join("destination.hex")).unwrap();
-    lines.lines().map(str::to_owned).collect()
+    // Not there if the bench found a fault.
+    let lines = fs::read_to_string(folder.path().join("destination.hex")).unwrap_or_default();
+    (String::from_utf8(ran.stdout).unwrap(), lines.lines().map(str::to_owned).collect())
+}
+
+/// The destination lines that the reference gives, and its contacts, invalid pairs and the first of them.
+fn reference(config: &Config, pairs: &[PairRecord]) -> (Vec<String>, [i64; 3]) {
+    let records = Reference::new(config.profile.format(), config.contact).run_all(pairs);
+    let lines = records.chunks(2).map(|line| hex_line(&line.iter().flat_map(|record| record.0).collect::<Vec<_>>()));
+    let contacts = records.iter().filter(|record| record.is_contact()).count();
+    let invalid = pairs.iter().filter(|pair| !pair.is_valid()).count();
+    let first = pairs.iter().position(|pair| !pair.is_valid()).map_or(-1, |number| number as i64);
+    (lines.collect(), [contacts as i64, invalid as i64, first])
 }
 
 #[test]
 fn icarus_gives_the_reference_bits() {
     for (profile, scpus) in [("wide", 3), ("paper", 2)] {
-        // The bench in tb/ is one for the core; it takes the core out of whatever shell it is in.
+        // This bench is one for the core; it takes the core out of whatever shell it is in.
         let config = Config { profile: profile.parse().unwrap(), ..Config::default() };
-        let afu = generate(config.clone());
-        let (_folder, verilog) = write(&afu);
+        let (_folder, verilog) = write(&generate(config.clone()));
         let pairs = pairs::load("random:300", 7).unwrap();
-        let expected: Vec<String> = Reference::new(config.profile.format(), config.contact)
-            .run_all(&pairs)
-            .chunks(2)
-            .map(|line| hex_line(&line.iter().flat_map(|contact| contact.0).collect::<Vec<_>>()))
-            .collect();
-        assert_eq!(icarus(&verilog, scpus, &pairs, 5), expected, "{profile}");
+        let (said, lines) = icarus("contact_afu_tb", &verilog, scpus, &pairs, 5);
+        assert!(said.contains("done 1 error 0"), "{said}");
+        assert_eq!(lines, reference(&config, &pairs).0, "{profile}");
+    }
+}
+
+/// The committed AFU, shell and all: two jobs, and nothing that was never reset reaches a valid output.
+#[test]
+fn icarus_gives_the_reference_bits_below_spl2() {
+    let names = fs::read_dir(root().join("rtl")).unwrap().map(|entry| entry.unwrap().path());
+    let verilog: Vec<PathBuf> = names.filter(|path| path.extension().is_some_and(|kind| kind == "v")).collect();
+    let mut pairs = pairs::load("random:300", 7).unwrap();
+    pairs.extend(pairs::load("hard:101", 7).unwrap());
+    let (said, lines) = icarus("afu_top_tb", &verilog, 3, &pairs, 5);
+    let (expected, [contacts, invalid, first]) = reference(&Config::default(), &pairs);
+    assert!(contacts > 0 && invalid > 0, "all kinds");
+    assert_eq!(lines, expected);
+    let job = |sequence: u32| {
+        format!(
+            "done 1 error 0 sequence {sequence} contacts {contacts} invalid {invalid} first {first} written {}\n",
+            expected.len()
+        )
+    };
+    let identity = format!("identity {:032x} version {}\n", map::AFU_ID, map::VERSION);
+    assert_eq!(said, format!("{identity}{}{}no fault\n", job(1), job(2)));
+}
+
+/// The bench is able to fail: a register without its reset is seen, and so is a line that goes elsewhere.
+#[test]
+fn a_spoilt_shell_is_found_out() {
+    let pairs = pairs::load("random:20", 7).unwrap();
+    for (file, old, new, fault) in [
+        ("afu_top.v", "wire power_on = ~reset_n;", "wire power_on = 1'b0;", "a valid is unknown"),
+        (
+            "spl2_transmit.v",
+            "epoch <= ~power_on ? next_epoch : 6'd0;",
+            "epoch <= next_epoch;",
+            "a read's header is unknown",
+        ),
+        (
+            "contact_afu_packer.v",
+            "line <= merged[511:0];",
+            "line <= merged[511:0] ^ 512'dx;",
+            "a write's data is unknown",
+        ),
+        ("spl2_registers.v", "dsm_line <= {dsm_high,", "dsm_line <= {~dsm_high,", "a write elsewhere"),
+    ] {
+        let (folder, verilog) = write(&generate(Config::default()));
+        let path = folder.path().join(file);
+        let text = fs::read_to_string(&path).unwrap();
+        assert_eq!(text.matches(old).count(), 1, "{file}: one `{old}`");
+        fs::write(&path, text.replace(old, new)).unwrap();
+        let (said, _) = icarus("afu_top_tb", &verilog, 2, &pairs, 5);
+        assert!(said.contains(&format!("fault: {fault} in cycle ")) && !said.contains("no fault"), "{said}");
     }
 }

