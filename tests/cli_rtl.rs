@@ -75,7 +75,7 @@ fn a_folder_of_somebody_else_is_refused_without_force() {
 fn what_is_not_built_yet_or_out_of_range_is_one_line_and_exit_2() {
     let room = tempfile::tempdir().expect("a temporary folder");
     for (arguments, word) in [
-        (["--interval", "2"], "interval 2"),
+        (["--interval", "65"], "interval 65"),
         (["--interval", "auto"], "interval auto"),
         (["--interval", "fast"], "--interval fast"),
         (["--input", "indexed"], "input indexed"),

@@ -18,7 +18,7 @@ fn kernel(arithmetic: Format, fields: Fields) -> Arc<Module> {
 fn kernel_of(arithmetic: Arithmetic, fields: Fields) -> Arc<Module> {
     let model = DelayModel::default();
     let record = arithmetic.record();
-    sphere_kernel(&Settings { arithmetic, record, fields, radius: None, clock_mhz: 200.0, model }).unwrap()
+    sphere_kernel(&Settings { arithmetic, record, fields, radius: None, clock_mhz: 200.0, interval: 1, model }).unwrap()
 }
 
 /// What the pipeline gives for the pairs, one in every cycle.

@@ -1,10 +1,12 @@
 //! The feeder: takes pairs from lines and gives them to the SCPUs in turn, as many a cycle as there are pairs, turns
-//! and room for their results. Pair p of a job goes to SCPU p mod N.
+//! and room for their results. Pair p of a job goes to SCPU p mod N; at an interval above 1 in that one's
+//! [phase](super::rounds).
 
 use std::sync::Arc;
 
 use crate::hdl::{Errors, Graph, Module, Signal};
 
+use super::rounds::Rounds;
 use super::{COUNT_BITS, SCPU_BITS, Spec};
 
 /// From a line offered to a group of its pairs on their way to the slots: the line in hand, the group registered.
@@ -34,7 +36,8 @@ pub(super) fn feeder(spec: &Spec, room_bits: u32) -> Result<Arc<Module>, Errors>
     let turn = graph.register("turn", SCPU_BITS, 0);
 
     // Lane j carries a pair when all lanes before it do.
-    let mut going = run;
+    let rounds = Rounds::new(&graph, spec, scpus, turn.value());
+    let mut going = rounds.as_ref().map_or(run, |rounds| run & rounds.may_go);
     let mut go = Vec::new();
     for lane in 0..lanes {
         let reach = place.extend(place_bits + 1).plus(u128::from(lane)).named(&format!("reach_{lane}"));
@@ -42,7 +45,8 @@ pub(super) fn feeder(spec: &Spec, room_bits: u32) -> Result<Arc<Module>, Errors>
         let present = (*held_valid & (in_held | line_valid)).named(&format!("present_{lane}"));
         let wanted = more_than(remaining.value(), lane).named(&format!("wanted_{lane}"));
         let roomy = more_than(room, lane).named(&format!("roomy_{lane}"));
-        let unit = more_than(scpus, lane).named(&format!("unit_{lane}"));
+        let unit = rounds.as_ref().map_or_else(|| more_than(scpus, lane), |rounds| rounds.admits(lane));
+        let unit = unit.named(&format!("unit_{lane}"));
         going = (going & present & wanted & roomy & unit).named(&format!("go_{lane}"));
         go.push(going);
     }
@@ -72,10 +76,13 @@ pub(super) fn feeder(spec: &Spec, room_bits: u32) -> Result<Arc<Module>, Errors>
     remaining.next(start.select(count, remaining.value() - group.extend(COUNT_BITS)));
 
     let next_turn = (turn.extend(SCPU_BITS + 1) + group.extend(SCPU_BITS + 1)).named("next_turn");
-    let all = scpus.extend(SCPU_BITS + 1);
+    let all = rounds.as_ref().map_or(scpus, |rounds| rounds.scpus).extend(SCPU_BITS + 1);
     let turn_wraps = next_turn.at_least(all).named("turn_wraps");
     let turned = turn_wraps.select(next_turn - all, next_turn).named("turned");
     turn.next(start.select(turn.same(0), turned.low(SCPU_BITS)));
+    if let Some(rounds) = &rounds {
+        rounds.advance(start, group, turn_wraps);
+    }
 
     // Registered towards the slots.
     let group_out = graph.register("issue_group", group_bits, 0);

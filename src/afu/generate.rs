@@ -52,13 +52,15 @@ impl Afu {
             fields: spec.config.contact,
             radius: spec.config.radius,
             clock_mhz: spec.config.clock_mhz,
+            interval: spec.config.interval,
             model: spec.delays.clone(),
         })?;
         Self::around(spec, kernel)
     }
 
     /// The accelerator of a specification around a kernel of the caller's: a module of the ports of
-    /// [`crate::pipeline::sphere_kernel`] whose outputs follow its inputs by its `latency`, which is at least 1.
+    /// [`crate::pipeline::sphere_kernel`] at the specification's interval, whose outputs follow its inputs by its
+    /// `latency`, which is at least 1.
     ///
     /// # Errors
     /// What is out of range in `spec`; ports that do not fit.
@@ -76,7 +78,8 @@ impl Afu {
     }
 
     /// The accelerator of a specification around an SCPU of the caller's, which is its own kernel then: a module with the
-    /// input `pair` and the outputs `record`, `contact` and `invalid_pair`, which follow it by its `latency`, at least 1.
+    /// input `pair` and the outputs `record`, `contact` and `invalid_pair`, which follow it by its `latency`, at least 1;
+    /// and at an interval above 1 the input `take`, set in the cycle before a pair comes to stay for the interval.
     /// This is what the controller is proven with; there is no shell around it.
     ///
     /// # Errors

@@ -13,6 +13,7 @@ mod generate;
 mod layout;
 mod packer;
 mod results;
+mod rounds;
 mod scpu;
 mod sieve;
 mod slot;

@@ -1,4 +1,4 @@
-//! A Sphere Collision Processing Unit: raw words in, a contact record out, a pair every cycle.
+//! A Sphere Collision Processing Unit: raw words in, a contact record out, a pair every cycle or every few.
 
 use std::sync::Arc;
 
@@ -15,8 +15,16 @@ const CONTACT: [&str; 7] = ["pos_x", "pos_y", "pos_z", "normal_x", "normal_y", "
 pub(super) fn scpu(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>, Errors> {
     let graph = Graph::new("scpu");
     let latency = kernel.latency;
-    graph.about(format!("one sphere collision processing unit: a pair every cycle, its record {latency} cycles later"));
+    let every = match spec.config.interval {
+        0 | 1 => "cycle".to_owned(),
+        interval => format!("{interval} cycles"),
+    };
+    graph.about(format!(
+        "one sphere collision processing unit: a pair every {every}, its record {latency} cycles later"
+    ));
     let layout = spec.layout();
+    // Announces a pair that then stays for the interval.
+    let take = (spec.config.interval > 1).then(|| graph.input("take", 1));
     let pair = graph.input("pair", layout.pair_bits());
     let names: Vec<&str> = layout.pair_words().into_iter().map(|word| PAIR_FIELDS[word]).collect();
     let words: Vec<Signal<'_>> =
@@ -34,9 +42,14 @@ pub(super) fn scpu(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>, Err
 
     let mut inputs: Vec<(&str, Signal<'_>)> = names.into_iter().zip(words).collect();
     inputs.push(("valid", !invalid));
+    inputs.extend(take.map(|take| ("take", take)));
     let kernel = graph.instance("kernel", kernel, &inputs);
     let hit = kernel.output("hit").named("hit");
-    let invalid = invalid.delay(latency).named("invalid_out");
+    let invalid = match take {
+        Some(_) => kernel.output("invalid_pair"),
+        None => invalid.delay(latency),
+    };
+    let invalid = invalid.named("invalid_out");
     let record = if spec.config.contact == Fields::HIT {
         Some(hit).filter(|_| layout.result_bits() > 0)
     } else {

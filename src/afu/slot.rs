@@ -36,7 +36,17 @@ pub(super) fn slot(spec: &Spec, scpu: &Arc<Module>) -> Result<Arc<Module>, Error
         let here = in_lane.is(u128::from(number)).named(&format!("takes_lane_{number}"));
         chosen = here.select(pairs.slice(number * layout.pair_bits(), layout.pair_bits()), chosen);
     }
-    let unit = graph.instance("unit", scpu, &[("pair", chosen.delay(RANKS_BEFORE).named("pair"))]);
+    let unit = if spec.config.interval > 1 {
+        // The pair stays until the next one; the SCPU hears of it a cycle before.
+        let in_group = graph.input("in_group", group_bits);
+        let width = SCPU_BITS.max(group_bits);
+        let takes = in_lane.extend(width).less_than(in_group.extend(width)).named("takes");
+        let pair = graph.data_register("pair", layout.pair_bits());
+        pair.next_if(takes, chosen);
+        graph.instance("unit", scpu, &[("take", takes), ("pair", pair.value())])
+    } else {
+        graph.instance("unit", scpu, &[("pair", chosen.delay(RANKS_BEFORE).named("pair"))])
+    };
 
     // The lane of the result is known a cycle ahead, so that its gates follow a register.
     let out_lane = lane(index, out_turn, scpus).named("out_lane");

@@ -135,18 +135,17 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, E
     let group = feeder.output("issue_group");
     let turn = feeder.output("issue_turn");
     let (group_out, turn_out) = alongside(&graph, group, turn, slot_latency);
-    let slots = graph.array(
-        "slots",
-        &slot,
-        scpus,
-        &[
-            ("scpus", scpus),
-            ("in_turn", turn),
-            ("pairs", feeder.output("issue_pairs")),
-            ("out_group", group_out),
-            ("out_turn", turn_out),
-        ],
-    );
+    let mut slot_inputs = vec![
+        ("scpus", scpus),
+        ("in_turn", turn),
+        ("pairs", feeder.output("issue_pairs")),
+        ("out_group", group_out),
+        ("out_turn", turn_out),
+    ];
+    if spec.config.interval > 1 {
+        slot_inputs.push(("in_group", group));
+    }
+    let slots = graph.array("slots", &slot, scpus, &slot_inputs);
     // The slots' answers come a cycle after `group_out`, and are registered once more after the or.
     let group_done = register(&graph, "group_done", register(&graph, "group_answered", group_out));
     let kinds = ["record", "contact", "invalid"].into_iter().filter(|kind| has_records || *kind != "record");

@@ -98,7 +98,7 @@ pub struct One {
     /// Sphere Collision Processing Units, 1 to 64 [default: 10]
     #[arg(long, value_name = "N", help_heading = "The AFU")]
     pub scpus: Option<u32>,
-    /// Cycles from one pair to the next in one SCPU: 1 [default: 1]
+    /// Cycles from one pair to the next in one SCPU, 1 to 64: above 1 it has fewer operators [default: 1]
     #[arg(long, value_name = "II", help_heading = "The AFU")]
     pub interval: Option<String>,
     #[command(flatten)]

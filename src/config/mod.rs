@@ -15,6 +15,9 @@ use crate::kernel::Fields;
 /// The numbers of SCPUs an AFU can have.
 pub const SCPUS: std::ops::RangeInclusive<u32> = 1..=64;
 
+/// The intervals an SCPU can have, in cycles.
+pub const INTERVALS: std::ops::RangeInclusive<u32> = 1..=64;
+
 /// The configuration of an AFU. [`Config::default`] is the AFU whose Verilog lies in `rtl/`.
 ///
 /// In JSON it is the object `config` of a manifest; a key left out has its default, an unknown key is refused.
@@ -23,7 +26,9 @@ pub const SCPUS: std::ops::RangeInclusive<u32> = 1..=64;
 pub struct Config {
     /// Sphere Collision Processing Units. A Verilog parameter: it changes no other file than the top's default.
     pub scpus: u32,
-    /// Initiation interval: cycles from one pair to the next in one SCPU.
+    /// Initiation interval: cycles from one pair to the next in one SCPU, which has as few operators as that allows. SCPUs
+    /// beyond a full line of pairs a cycle (at two pairs a line, beyond the largest multiple of twice the interval) get
+    /// none.
     pub interval: u32,
     /// The arithmetic.
     pub profile: Profile,
@@ -66,6 +71,9 @@ pub enum Error {
     /// Outside [`SCPUS`].
     #[error("{0} SCPUs: an AFU has 1 to 64")]
     Scpus(u32),
+    /// Outside [`INTERVALS`].
+    #[error("interval {0}: an SCPU takes a pair every 1 to 64 cycles")]
+    Interval(u32),
     /// Not a frequency one can cut stages for.
     #[error("clock {0} MHz: give a frequency from 1 to 2000 MHz")]
     Clock(f64),
@@ -103,6 +111,9 @@ impl Config {
         if !SCPUS.contains(&self.scpus) {
             return Err(Error::Scpus(self.scpus));
         }
+        if !INTERVALS.contains(&self.interval) {
+            return Err(Error::Interval(self.interval));
+        }
         if !(1.0..=2000.0).contains(&self.clock_mhz) {
             return Err(Error::Clock(self.clock_mhz));
         }
@@ -118,9 +129,6 @@ impl Config {
             return Err(Error::Radius(radius));
         }
         let not_yet = |option, value: String, instead| Err(Error::NotYet { option, value, instead });
-        if self.interval != 1 {
-            return not_yet("interval", self.interval.to_string(), "an SCPU takes a pair every cycle (1)");
-        }
         if self.input != Input::Direct {
             return not_yet("input", self.input.to_string(), "pairs are given whole (direct)");
         }
@@ -203,7 +211,8 @@ mod tests {
             (Config { scpus: 0, ..Config::default() }, "0 SCPUs"),
             (Config { scpus: 65, ..Config::default() }, "65 SCPUs"),
             (Config { clock_mhz: f64::NAN, ..Config::default() }, "clock NaN"),
-            (Config { interval: 2, ..Config::default() }, "interval 2"),
+            (Config { interval: 0, ..Config::default() }, "interval 0"),
+            (Config { interval: 65, ..Config::default() }, "interval 65"),
             (
                 Config { profile: Profile::EXACT, contact: Fields::HIT, ..Config::default() },
                 "profile exact with contact",

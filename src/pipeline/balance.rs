@@ -9,7 +9,7 @@ use crate::hdl::{Errors, Module};
 
 /// How many levels of glue may stand one behind the other before a register comes between: a level is a two-way
 /// choice or a gate, and operators' outputs and inputs are registers.
-const LONGEST_GLUE: u32 = 3;
+pub(super) const LONGEST_GLUE: u32 = 3;
 
 /// A time table of a kernel. Cycle 0 is that of the inputs.
 pub(super) struct Schedule {

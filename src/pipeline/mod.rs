@@ -1,5 +1,5 @@
 //! Kernels as pipelines: mathematics read with [`Wire`] becomes a graph of operators, which is balanced into a module
-//! that takes new operands in every cycle and never stalls.
+//! that takes new operands in every cycle, or every few cycles with fewer operators, and never stalls.
 
 mod balance;
 mod emit;
@@ -8,6 +8,7 @@ mod kernel;
 mod names;
 mod range;
 mod report;
+mod share;
 mod sphere;
 mod trace;
 mod wire;

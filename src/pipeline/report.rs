@@ -26,7 +26,8 @@ pub struct KernelReport {
     pub clock_mhz: Option<f64>,
     /// The operators in use, by name.
     pub operators: Vec<OperatorUse>,
-    /// Bits kept in delays between operators: width times cycles, summed.
+    /// Bits kept in delays between operators: width times cycles, summed; at an interval above 1 those of registers and
+    /// memories.
     pub delay_bits: u64,
 }
 
@@ -49,11 +50,13 @@ impl KernelReport {
         operators.sort_by(|a, b| a.module.cmp(&b.module));
         let delay_bits = kernel.nodes.iter().map(|node| match node.op {
             Op::Delay { cycles } => u64::from(cycles) * u64::from(node.width),
+            Op::Register { .. } | Op::MemoryRead { .. } => u64::from(node.width),
             _ => 0,
         });
+        let words = kernel.memories.iter().map(|memory| u64::from(memory.depth) * u64::from(memory.width));
         let timings = kernel.instances.iter().filter_map(|instance| instance.module.timing.as_ref());
         let clock_mhz = timings.map(|timing| timing.clock_mhz).reduce(f64::min);
-        Self { latency: kernel.latency, clock_mhz, operators, delay_bits: delay_bits.sum() }
+        Self { latency: kernel.latency, clock_mhz, operators, delay_bits: delay_bits.chain(words).sum() }
     }
 }
 

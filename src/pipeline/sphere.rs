@@ -23,6 +23,8 @@ pub struct Settings {
     pub radius: Option<f32>,
     /// The clock that operators are cut for, in MHz.
     pub clock_mhz: f64,
+    /// Cycles from one pair to the next: 1, or more with fewer operators.
+    pub interval: u32,
     /// How long the target takes for each operation.
     pub model: DelayModel,
 }
@@ -34,11 +36,17 @@ pub struct Settings {
 /// finite and its radii not below zero. Without it, or without a hit, all outputs are zero. The kernel of exact squares
 /// has an output `unsettled` too, which may be set without a hit.
 ///
+/// At an interval above 1 it is [`Kernel::pipeline_every`](super::Kernel::pipeline_every): `take` announces the inputs,
+/// which stay for the interval; and the output `invalid_pair` is the complement of `valid`.
+///
 /// # Errors
 /// What a graph recorded, or a clock no operator can be cut for.
 pub fn sphere_kernel(settings: &Settings) -> Result<Arc<Module>, Errors> {
     let kernel = trace("sphere_kernel", |ports| read(ports, settings))?;
-    kernel.pipeline(&settings.model, settings.clock_mhz)
+    match settings.interval {
+        0 | 1 => kernel.pipeline(&settings.model, settings.clock_mhz),
+        interval => kernel.pipeline_every(&settings.model, settings.clock_mhz, interval),
+    }
 }
 
 /// Whether the values of the kernel never come near the ends of the exponent range, so that its operators are those of
@@ -53,6 +61,7 @@ pub fn is_normal(arithmetic: Arithmetic, fields: Fields) -> Result<bool, Errors>
         fields,
         radius: None,
         clock_mhz: 100.0,
+        interval: 1,
         model: DelayModel::default(),
     };
     Ok(trace("sphere_kernel", |ports| read(ports, &settings))?.not_normal().is_none())
@@ -88,6 +97,9 @@ fn read(ports: &Ports, settings: &Settings) {
         }
     };
 
+    if settings.interval > 1 {
+        ports.output_bit("invalid_pair", !valid);
+    }
     ports.output_bit("hit", contact.hit);
     ports.output_bit("grazing", contact.grazing);
     let vector = |asked: bool, names: [&str; 3], value: Vector3<Wire>| {

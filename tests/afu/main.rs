@@ -8,6 +8,7 @@
 mod bench;
 mod faults;
 mod hits;
+mod interval;
 mod matrix;
 mod ports;
 mod records;

@@ -1,0 +1,81 @@
+//! Turns at an interval above 1: an SCPU's pairs come a multiple of the interval apart, whatever made the feeder wait.
+//!
+//! A phase counter runs freely through the interval. Where a line has L pairs, SCPUs 0 to L − 1 take theirs in phase 0
+//! alone, the next L in phase 1, and so on round: a group stays within such a block. With N SCPUs an interval of II
+//! cycles takes N pairs; and where N is above L·II, turns go round the largest multiple of L·II that is not above N,
+//! since more than a line a cycle never comes.
+
+use crate::hdl::{Graph, Register, Signal};
+
+use super::{MAX_SCPUS, SCPU_BITS, Spec};
+
+/// The feeder's turns.
+pub(super) struct Rounds<'g> {
+    graph: &'g Graph,
+    interval: u32,
+    lanes: u32,
+    turn: Signal<'g>,
+    /// The phase in which the SCPU in turn takes a pair.
+    turn_phase: Register<'g>,
+    /// The SCPUs that turns go round.
+    pub scpus: Signal<'g>,
+    /// Whether it is that phase.
+    pub may_go: Signal<'g>,
+}
+
+impl<'g> Rounds<'g> {
+    /// Nothing at an interval of 1: every cycle will do then.
+    pub fn new(graph: &'g Graph, spec: &Spec, scpus: Signal<'g>, turn: Signal<'g>) -> Option<Self> {
+        let (interval, lanes) = (spec.config.interval, spec.lanes());
+        if interval <= 1 {
+            return None;
+        }
+        let bits = u32::BITS - (interval - 1).leading_zeros();
+        let phase = graph.register("phase", bits, 0);
+        phase.next(following(phase.value(), interval));
+        let turn_phase = graph.register("turn_phase", bits, 0);
+        let whole = lanes * interval;
+        let in_turn = (1..=MAX_SCPUS / whole).fold(scpus, |before, rounds| {
+            let many = scpus.same(u128::from(rounds * whole));
+            scpus.at_least(many).select(many, before)
+        });
+        let may_go = phase.equals(turn_phase.value()).named("may_go");
+        let scpus = in_turn.named("scpus_in_turn");
+        Some(Self { graph, interval, lanes, turn, turn_phase, scpus, may_go })
+    }
+
+    /// Whether a group from the present turn on may have a pair on that lane.
+    pub fn admits(&self, lane: u32) -> Signal<'g> {
+        let reach = self.turn.extend(SCPU_BITS + 1).plus(u128::from(lane));
+        let exists = reach.less_than(self.scpus.extend(SCPU_BITS + 1));
+        match self.within() {
+            Some(within) if lane > 0 => exists & within.at_most(within.same(u128::from(self.lanes - 1 - lane))),
+            _ => exists,
+        }
+    }
+
+    /// Takes the next turn's phase along: `wraps` when turns begin anew with this `group`.
+    pub fn advance(&self, start: Signal<'g>, group: Signal<'g>, wraps: Signal<'g>) {
+        let ends_block = match self.within() {
+            None => group.any(),
+            Some(within) => {
+                let width = group.width() + 1;
+                (within.extend(width) + group.extend(width)).is(u128::from(self.lanes))
+            }
+        };
+        let moved = ends_block.named("ends_block").select(following(*self.turn_phase, self.interval), *self.turn_phase);
+        let first = self.graph.constant(moved.width(), 0);
+        self.turn_phase.next((start | wraps).select(first, moved));
+    }
+
+    /// The turn's place in its block, if a block is more than one.
+    fn within(&self) -> Option<Signal<'g>> {
+        (self.lanes > 1).then(|| self.turn.low(self.lanes.ilog2()))
+    }
+}
+
+/// The phase after this one.
+fn following(phase: Signal<'_>, interval: u32) -> Signal<'_> {
+    let last = phase.is(u128::from(interval - 1));
+    last.select(phase.same(0), phase.plus(1))
+}

@@ -1,0 +1,38 @@
+//! What sharing costs and saves, in look-up tables of four inputs: an estimate to choose by, never a figure.
+
+use crate::hdl::{Module, Node, NodeId, Op};
+
+/// A multiplier block, in tables: as scarce as that many in the devices at hand.
+const BLOCK: u32 = 100;
+/// The widest operand of one.
+const BLOCK_BITS: u32 = 18;
+
+/// The tables of a module.
+pub(super) fn tables(module: &Module) -> u32 {
+    let nodes: u32 = module.nodes.iter().map(|node| of(module, node)).sum();
+    nodes + module.instances.iter().map(|instance| tables(&instance.module)).sum::<u32>()
+}
+
+/// A choice among so many words of `width` bits: trees of two-way choices, of which a table takes two.
+pub(super) fn choice(words: u32, width: u32) -> u32 {
+    words.saturating_sub(1) * width / 2
+}
+
+fn of(module: &Module, node: &Node) -> u32 {
+    let width = |id: &NodeId| module.node(*id).width;
+    let operand = || node.operands.first().map_or(0, width);
+    match node.op {
+        Op::Add | Op::Sub => node.width,
+        Op::Less => operand(),
+        Op::Equal => operand() * 2 / 3,
+        Op::Any | Op::All => operand() / 3,
+        Op::And | Op::Or | Op::Xor | Op::Mux => node.width.div_ceil(2),
+        Op::OneHot => node.width,
+        Op::Lookup(_) => node.width * (1 << operand().min(10)) / 16,
+        Op::Mul => {
+            let factors = node.operands.iter().map(|id| width(id).div_ceil(BLOCK_BITS));
+            factors.product::<u32>() * BLOCK
+        }
+        _ => 0,
+    }
+}

@@ -1,0 +1,191 @@
+//! A kernel with a time table as a module: instances that take turns, choices before them, and values that wait.
+
+use std::sync::Arc;
+
+use super::keep::{Keeper, Phases};
+use super::kinds::{Kind, Kinds};
+use super::mux::Chooser;
+use super::schedule::Plan;
+use crate::hdl::{Errors, Graph, Module, Register, Signal};
+use crate::operator::INPUTS;
+use crate::pipeline::kernel::{Kernel, Source, ValueId};
+use crate::pipeline::names::Names;
+
+/// # Errors
+/// What the graph recorded.
+pub(super) fn emit(kernel: &Kernel, kinds: &Kinds, plan: &Plan) -> Result<Arc<Module>, Errors> {
+    let graph = Graph::new(kernel.name.as_str());
+    kernel.about.iter().for_each(|line| graph.about(line.as_str()));
+    let Plan { interval, latency, .. } = *plan;
+    graph.about(format!("{latency} cycles from inputs to outputs, new inputs every {interval} cycles"));
+    graph.about("take comes a cycle before new inputs, which stay for as long");
+    let take = graph.input("take", 1);
+    let mut emitter = Emitter {
+        kernel,
+        kinds,
+        plan,
+        graph: &graph,
+        phases: Phases::new(&graph, interval, take),
+        names: Names::new(kernel),
+        values: vec![None; kernel.values.len()],
+    };
+    emitter.emit();
+    let mut module = graph.finish()?;
+    Arc::make_mut(&mut module).latency = latency;
+    Ok(module)
+}
+
+/// An instance that serves several operations.
+struct Shared<'g> {
+    instance: usize,
+    name: String,
+    operands: Vec<Register<'g>>,
+    result: Signal<'g>,
+}
+
+struct Emitter<'a, 'g> {
+    kernel: &'a Kernel,
+    kinds: &'a Kinds,
+    plan: &'a Plan,
+    graph: &'g Graph,
+    phases: Phases<'g>,
+    names: Names,
+    values: Vec<Option<Keeper<'g>>>,
+}
+
+impl<'g> Emitter<'_, 'g> {
+    fn emit(&mut self) {
+        let inputs = self.kernel.inputs.iter();
+        let inputs: Vec<_> =
+            inputs.map(|(name, id)| (*id, self.graph.input(name, self.kernel.value(*id).kind.width()))).collect();
+        let shared = self.shared();
+        for (index, wanted) in self.plan.wanted(self.kernel).iter().enumerate() {
+            let Some(ready) = self.plan.ready[index] else { continue };
+            let id = ValueId(index as u32);
+            let result = || shared.iter().find(|of| Some(of.instance) == self.plan.instance[index]).map(|of| of.result);
+            let input = || inputs.iter().find(|(input, _)| *input == id).map(|(_, signal)| *signal);
+            let Some(signal) = result().or_else(input).or_else(|| self.compute(id)) else { continue };
+            let name = self.names.signal(id).map_or_else(|| format!("value_{index}"), str::to_owned);
+            let times = [ready, self.plan.stays(self.kernel, index)];
+            self.values[index] = Some(Keeper::new(&mut self.phases, &name, signal, times, wanted));
+        }
+        let mut chooser = Chooser::new(self.graph);
+        shared.iter().for_each(|instance| self.connect(&mut chooser, instance));
+        for (name, id) in &self.kernel.outputs {
+            if let Some(signal) = self.at(*id, self.plan.latency) {
+                self.graph.output(name, signal);
+            }
+        }
+    }
+
+    fn kind(&self, instance: usize) -> &Kind {
+        &self.kinds.all[self.plan.instances[instance].kind]
+    }
+
+    /// Instances with registers before them, of which nothing is connected yet: results come back as operands.
+    fn shared(&self) -> Vec<Shared<'g>> {
+        let mut made: Vec<Shared<'g>> = Vec::new();
+        for (instance, of) in self.plan.instances.iter().enumerate() {
+            let kind = self.kind(instance);
+            if !kind.is_shared() || of.places.iter().all(Option::is_none) {
+                continue;
+            }
+            let operator = kind.unit.0.name();
+            let alike = self.plan.instances[..instance].iter();
+            let number = alike.filter(|other| self.kinds.all[other.kind].unit.0.name() == operator).count();
+            let name = format!("{operator}_unit_{number}");
+            let ports: Vec<&str> = INPUTS[..kind.unit.0.operands()].to_vec();
+            let width = |port: &str| kind.module.port(port).map_or(1, |(_, port)| port.width);
+            let operands: Vec<_> =
+                ports.iter().map(|port| self.graph.data_register(&format!("{name}_{port}"), width(port))).collect();
+            let inputs: Vec<_> = ports.into_iter().zip(operands.iter().map(|register| register.value())).collect();
+            let result = self.graph.instance(&name, &kind.module, &inputs).output("result");
+            let result = result.named(&format!("{name}_result"));
+            made.push(Shared { instance, name, operands, result });
+        }
+        made
+    }
+
+    /// Gives an instance the operands of each phase.
+    fn connect(&self, chooser: &mut Chooser<'g>, shared: &Shared<'g>) {
+        let places = &self.plan.instances[shared.instance].places;
+        for (position, register) in shared.operands.iter().enumerate() {
+            let mut known: Vec<(ValueId, Option<usize>, bool)> = Vec::new();
+            let mut signals = Vec::new();
+            let mut by_phase = vec![None; places.len()];
+            for (phase, index) in places.iter().enumerate() {
+                let Some(index) = *index else { continue };
+                let Some(start) = self.plan.start[index] else { continue };
+                let id = self.operand(index, position);
+                let negated = position == 1 && self.kinds.negated[index];
+                let form = self.values[id.index()].as_ref().and_then(|keeper| keeper.form(start));
+                let key = (id, form, negated);
+                let at = known.iter().position(|other| *other == key);
+                if at.is_none() {
+                    let Some(signal) = self.at(id, start) else { continue };
+                    known.push(key);
+                    signals.push(if negated { negate(signal) } else { signal });
+                }
+                by_phase[phase] = Some(at.unwrap_or(known.len() - 1));
+            }
+            let name = format!("{}_{}", shared.name, INPUTS[position]);
+            if let Some(chosen) = chooser.choose(&self.phases, &name, &by_phase, &signals) {
+                register.next(chosen);
+            }
+        }
+    }
+
+    /// A square's one operand is both of a product's.
+    fn operand(&self, index: usize, position: usize) -> ValueId {
+        let operands = &self.kernel.values[index].operands;
+        operands[position.min(operands.len() - 1)]
+    }
+
+    fn at(&self, id: ValueId, cycle: u32) -> Option<Signal<'g>> {
+        let value = self.kernel.value(id);
+        if let Source::Constant(bits) = value.source {
+            return Some(self.graph.constant(value.kind.width(), bits));
+        }
+        self.values[id.index()].as_ref()?.at(cycle)
+    }
+
+    /// A value that is not a shared instance's, of operands that meet when it begins.
+    fn compute(&mut self, id: ValueId) -> Option<Signal<'g>> {
+        let value = self.kernel.value(id);
+        let start = self.plan.start[id.index()]?;
+        let operands = value.operands.iter().map(|id| self.at(*id, start)).collect::<Option<Vec<_>>>()?;
+        let signal = match (value.source, operands.as_slice()) {
+            (Source::Operator(operator, _), _) => {
+                let kind = self.kind(self.plan.instance[id.index()]?);
+                let ports = &INPUTS[..kind.unit.0.operands()];
+                let last = operands.len() - 1;
+                let operand = |position: usize| {
+                    let signal = operands[position.min(last)];
+                    if position == 1 && self.kinds.negated[id.index()] { negate(signal) } else { signal }
+                };
+                let inputs: Vec<_> = ports.iter().enumerate().map(|(index, port)| (*port, operand(index))).collect();
+                let module = kind.module.clone();
+                let name = self.names.instance(id, operator);
+                self.graph.instance(&name, &module, &inputs).output("result")
+            }
+            (Source::Select, &[condition, yes, no]) => match (yes.as_constant(), no.as_constant()) {
+                (_, Some(0)) => yes.gate(condition),
+                (Some(0), _) => no.gate(!condition),
+                _ => condition.select(yes, no),
+            },
+            (Source::And, &[a, b]) => a & b,
+            (Source::Or, &[a, b]) => a | b,
+            (Source::Not, &[a]) => !a,
+            _ => return None,
+        };
+        Some(match self.names.signal(id) {
+            Some(name) => signal.named(name),
+            None => signal,
+        })
+    }
+}
+
+/// With the other sign.
+fn negate(number: Signal<'_>) -> Signal<'_> {
+    (!number.msb()).concat(number.low(number.width() - 1))
+}

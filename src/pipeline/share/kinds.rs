@@ -1,0 +1,107 @@
+//! Which operations can take turns in one instance, and how many instances there are.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::Library;
+use super::cost::{choice, tables};
+use crate::hdl::{Errors, Module};
+use crate::operator::Operator;
+use crate::pipeline::kernel::{Kernel, Source};
+use crate::pipeline::range::{Ranges, Unit};
+
+/// Operations of one module.
+pub(super) struct Kind {
+    /// What computes them.
+    pub unit: Unit,
+    pub module: Arc<Module>,
+    /// By value.
+    pub uses: Vec<usize>,
+    pub instances: u32,
+}
+
+impl Kind {
+    /// Whether some instance serves more than one operation: its operands are then chosen, and registered.
+    pub fn is_shared(&self) -> bool {
+        (self.instances as usize) < self.uses.len()
+    }
+
+    /// Cycles from operands to result.
+    pub fn latency(&self) -> u32 {
+        u32::from(self.is_shared()) + self.module.latency
+    }
+}
+
+/// All of a kernel's.
+pub(super) struct Kinds {
+    pub all: Vec<Kind>,
+    /// The kind of each value that is an operator's and that some output needs.
+    pub of: Vec<Option<usize>>,
+    /// A second operand with its sign inverted: a difference as a sum.
+    pub negated: Vec<bool>,
+}
+
+impl Kinds {
+    /// # Errors
+    /// What the library could not make.
+    pub fn of(kernel: &Kernel, interval: u32, library: &mut Library<'_>) -> Result<Self, Errors> {
+        let units = Ranges::of(kernel).units;
+        let live = kernel.live();
+        let mut negated = vec![false; units.len()];
+        let mut uses: BTreeMap<Unit, Vec<usize>> = BTreeMap::new();
+        for (index, unit) in units.into_iter().enumerate().filter(|(index, _)| live[*index]) {
+            let Source::Operator(operator, format) = kernel.values[index].source else { continue };
+            let (operator, domain) = unit.unwrap_or((operator, format.into()));
+            let sum = match operator {
+                Operator::Sub => Some(Operator::Add),
+                Operator::SubToOdd => Some(Operator::AddToOdd),
+                _ => None,
+            };
+            negated[index] = sum.is_some();
+            uses.entry((sum.unwrap_or(operator), domain)).or_default().push(index);
+        }
+        // What a more general operator can do as well.
+        for (special, general) in [(Operator::AddMagnitudes, Operator::Add), (Operator::Square, Operator::Mul)] {
+            merge(&mut uses, special, general, interval, library)?;
+        }
+        let mut this = Self { all: Vec::new(), of: vec![None; negated.len()], negated };
+        for (unit, mut uses) in uses {
+            uses.sort_unstable();
+            let module = library.module(unit)?;
+            let instances = instances(&module, uses.len() as u32, interval);
+            uses.iter().for_each(|&value| this.of[value] = Some(this.all.len()));
+            this.all.push(Kind { unit, module, uses, instances });
+        }
+        Ok(this)
+    }
+}
+
+/// As few as the interval allows, unless choosing the operands costs more than the operators it saves.
+fn instances(module: &Module, uses: u32, interval: u32) -> u32 {
+    let fewest = uses.div_ceil(interval);
+    let choices: u32 = module.ports.iter().filter(|port| !port.output).map(|port| choice(2, port.width)).sum();
+    if choices < tables(module) { fewest } else { uses }
+}
+
+/// Takes `special` into `general`, of the same values, where that is smaller.
+fn merge(
+    uses: &mut BTreeMap<Unit, Vec<usize>>,
+    special: Operator,
+    general: Operator,
+    interval: u32,
+    library: &mut Library<'_>,
+) -> Result<(), Errors> {
+    let domains: Vec<_> = uses.keys().filter(|unit| unit.0 == special).map(|unit| unit.1).collect();
+    for domain in domains {
+        let (few, many) = ((special, domain), (general, domain));
+        let Some(wide) = uses.get(&many).map(|uses| uses.len() as u32) else { continue };
+        let narrow = uses.get(&few).map_or(0, |uses| uses.len() as u32);
+        let (small, large) = (tables(&*library.module(few)?), tables(&*library.module(many)?));
+        let apart = narrow.div_ceil(interval) * small + wide.div_ceil(interval) * large;
+        if (narrow + wide).div_ceil(interval) * large < apart {
+            let moved = uses.remove(&few).unwrap_or_default();
+            uses.entry(many).or_default().extend(moved);
+        }
+    }
+    Ok(())
+}

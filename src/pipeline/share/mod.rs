@@ -1,0 +1,60 @@
+//! A kernel that takes a pair every few cycles: operators of one kind share as few instances as that allows.
+//!
+//! A pair's operations are placed once, by list scheduling modulo the interval: an operation that begins in cycle t
+//! takes its instance's place in phase t mod II, and since pairs come a multiple of II cycles apart, no other pair ever
+//! wants it. (B. R. Rau, "Iterative modulo scheduling", 1994; there is no recurrence here, so nothing is ever undone.)
+//! A value that waits is written down once in II cycles, not shifted in every one: that is where area falls.
+
+mod cost;
+mod emit;
+mod keep;
+mod kinds;
+mod mux;
+mod schedule;
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use kinds::Kinds;
+use schedule::Plan;
+
+use super::kernel::Kernel;
+use super::range::Unit;
+use crate::hdl::{DelayModel, Errors, Module};
+use crate::operator::pipelined;
+
+/// Makes each operator's module once.
+struct Library<'a> {
+    model: &'a DelayModel,
+    clock_mhz: f64,
+    modules: BTreeMap<Unit, Arc<Module>>,
+}
+
+impl Library<'_> {
+    fn module(&mut self, unit: Unit) -> Result<Arc<Module>, Errors> {
+        if let Some(module) = self.modules.get(&unit) {
+            return Ok(module.clone());
+        }
+        let module = pipelined(unit.0, unit.1, self.model, self.clock_mhz)?;
+        self.modules.insert(unit, module.clone());
+        Ok(module)
+    }
+}
+
+impl Kernel {
+    /// The kernel as a pipeline that takes new inputs every `interval` ≥ 2 cycles, with operators cut for `clock_mhz`.
+    ///
+    /// It has one more input, `take`: set in the cycle before new inputs come. They come a multiple of `interval` cycles
+    /// after those before them, since the last reset, and stay for `interval` cycles. Outputs are there for one cycle,
+    /// [`Module::latency`] cycles after the first in which the inputs are.
+    ///
+    /// # Errors
+    /// What a graph recorded, or a clock no operator can be cut for.
+    pub fn pipeline_every(&self, model: &DelayModel, clock_mhz: f64, interval: u32) -> Result<Arc<Module>, Errors> {
+        let interval = interval.max(2);
+        let mut library = Library { model, clock_mhz, modules: BTreeMap::new() };
+        let kinds = Kinds::of(self, interval, &mut library)?;
+        let plan = Plan::new(self, &kinds, interval);
+        emit::emit(self, &kinds, &plan)
+    }
+}
