@@ -10,6 +10,7 @@ mod div;
 mod domain;
 mod faithful;
 mod halve;
+mod iterative;
 mod mul;
 mod parts;
 mod recip;
@@ -19,6 +20,7 @@ mod square_excess;
 mod twin;
 
 pub use domain::{Domain, Values};
+pub use iterative::iterative;
 
 use std::sync::Arc;
 

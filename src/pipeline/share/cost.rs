@@ -13,6 +13,22 @@ pub(super) fn tables(module: &Module) -> u32 {
     nodes + module.instances.iter().map(|instance| tables(&instance.module)).sum::<u32>()
 }
 
+/// The tables of a module and half its register bits: a table comes with a register, and few stand alone.
+pub(super) fn area(module: &Module) -> u32 {
+    tables(module) + registers(module) / 2
+}
+
+fn registers(module: &Module) -> u32 {
+    let bits = |node: &Node| match node.op {
+        // A long delay is a memory of words of 16.
+        Op::Delay { cycles } => node.width * cycles.min(2 + cycles / 16),
+        Op::Register { .. } | Op::MemoryRead { .. } => node.width,
+        _ => 0,
+    };
+    let own: u32 = module.nodes.iter().map(bits).sum();
+    own + module.instances.iter().map(|instance| registers(&instance.module)).sum::<u32>()
+}
+
 /// A choice among so many words of `width` bits: trees of two-way choices, of which a table takes two.
 pub(super) fn choice(words: u32, width: u32) -> u32 {
     words.saturating_sub(1) * width / 2

@@ -35,6 +35,9 @@ pub(super) fn emit(kernel: &Kernel, kinds: &Kinds, plan: &Plan) -> Result<Arc<Mo
     Ok(module)
 }
 
+/// The input of an iterative operator.
+const PHASE: &str = "phase";
+
 /// An instance that serves several operations.
 struct Shared<'g> {
     instance: usize,
@@ -164,7 +167,11 @@ impl<'g> Emitter<'_, 'g> {
                     if position == 1 && self.kinds.negated[id.index()] { negate(signal) } else { signal }
                 };
                 let inputs: Vec<_> = ports.iter().enumerate().map(|(index, port)| (*port, operand(index))).collect();
+                let mut inputs = inputs;
                 let module = kind.module.clone();
+                if module.port(PHASE).is_some() {
+                    inputs.push((PHASE, self.phases.since(start)));
+                }
                 let name = self.names.instance(id, operator);
                 self.graph.instance(&name, &module, &inputs).output("result")
             }

@@ -39,6 +39,12 @@ impl<'g> Phases<'g> {
         self.now.len() as u32
     }
 
+    /// Bit k is set k cycles after that cycle of a pair.
+    pub fn since(&self, cycle: u32) -> Signal<'g> {
+        let bits: Vec<_> = (0..self.interval()).rev().map(|later| self.at(cycle + later)).collect();
+        Signal::join(&bits)
+    }
+
     /// Set in that cycle of a pair.
     fn at(&self, cycle: u32) -> Signal<'g> {
         self.now[(cycle % self.interval()) as usize]

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::Library;
-use super::cost::{choice, tables};
+use super::cost::{area, choice, tables};
 use crate::hdl::{Errors, Module};
 use crate::operator::Operator;
 use crate::pipeline::kernel::{Kernel, Source};
@@ -67,8 +67,14 @@ impl Kinds {
         let mut this = Self { all: Vec::new(), of: vec![None; negated.len()], negated };
         for (unit, mut uses) in uses {
             uses.sort_unstable();
-            let module = library.module(unit)?;
-            let instances = instances(&module, uses.len() as u32, interval);
+            let mut module = library.module(unit)?;
+            let count = uses.len() as u32;
+            let mut instances = instances(&module, count, interval);
+            if let Some(slow) = library.iterative(unit, interval)?
+                && count * area(&slow) < instances * area(&module)
+            {
+                (module, instances) = (slow, count);
+            }
             uses.iter().for_each(|&value| this.of[value] = Some(this.all.len()));
             this.all.push(Kind { unit, module, uses, instances });
         }

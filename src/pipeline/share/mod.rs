@@ -9,6 +9,8 @@ mod cost;
 mod emit;
 mod keep;
 mod kinds;
+#[cfg(test)]
+mod legality;
 mod mux;
 mod schedule;
 
@@ -21,7 +23,7 @@ use schedule::Plan;
 use super::kernel::Kernel;
 use super::range::Unit;
 use crate::hdl::{DelayModel, Errors, Module};
-use crate::operator::pipelined;
+use crate::operator::{iterative, pipelined};
 
 /// Makes each operator's module once.
 struct Library<'a> {
@@ -31,6 +33,11 @@ struct Library<'a> {
 }
 
 impl Library<'_> {
+    /// The one that does a number in an interval with less, if there is such.
+    fn iterative(&self, unit: Unit, interval: u32) -> Result<Option<Arc<Module>>, Errors> {
+        iterative(unit.0, unit.1, self.model, self.clock_mhz, interval, cost::area)
+    }
+
     fn module(&mut self, unit: Unit) -> Result<Arc<Module>, Errors> {
         if let Some(module) = self.modules.get(&unit) {
             return Ok(module.clone());

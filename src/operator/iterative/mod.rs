@@ -1,0 +1,46 @@
+//! Roots for numbers that come a few cycles apart: a digit recurrence of which one rank of registers does several steps,
+//! a step or a few a cycle, in place of a rank for each.
+
+mod rank;
+mod recip;
+mod recurrence;
+mod sqrt;
+
+use std::sync::Arc;
+
+use recip::Reciprocal;
+use recurrence::Recurrence;
+use sqrt::Root;
+
+use super::{Domain, Operator};
+use crate::hdl::{DelayModel, Errors, Module};
+use crate::number::Roots;
+
+/// A correctly rounded root, [`Operator::Recip`] or [`Operator::Sqrt`], for one number every `interval` cycles at most;
+/// nothing for other operators.
+///
+/// Beside `a` and `result` it has an input `phase` of `interval` bits: bit k is set k cycles after a number has come, and
+/// every `interval` cycles from then on. The result is there [`Module::latency`] cycles after the number, for one cycle;
+/// it is the [`pipelined`](super::pipelined) operator's, bit for bit. `area` says which of several is the smallest.
+///
+/// # Errors
+/// What a graph recorded, or a clock it cannot be cut for.
+pub fn iterative(
+    operator: Operator,
+    domain: impl Into<Domain>,
+    model: &DelayModel,
+    clock_mhz: f64,
+    interval: u32,
+    area: impl Fn(&Module) -> u32,
+) -> Result<Option<Arc<Module>>, Errors> {
+    let domain = domain.into();
+    if domain.format().roots() == Roots::Faithful || interval < 2 {
+        return Ok(None);
+    }
+    let recurrence: Box<dyn Recurrence> = match operator {
+        Operator::Recip => Box::new(Reciprocal { domain }),
+        Operator::Sqrt => Box::new(Root { domain }),
+        _ => return Ok(None),
+    };
+    rank::smallest(recurrence.as_ref(), operator, model, clock_mhz, interval, area).map(Some)
+}

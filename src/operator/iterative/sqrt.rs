@@ -1,0 +1,100 @@
+//! Square root: the state is the remainder, the root so far, and what is left of the radicand.
+
+use super::recurrence::Recurrence;
+use crate::hdl::Signal;
+use crate::operator::parts::{Operand, Rounding, Unrounded};
+use crate::operator::{Domain, sqrt};
+
+/// √a, as [`sqrt::sqrt`] has it.
+pub(super) struct Root {
+    pub domain: Domain,
+}
+
+impl Root {
+    fn digits(&self) -> u32 {
+        self.domain.significand_bits() + u32::from(self.domain.rounding() != Rounding::TowardZero)
+    }
+
+    /// Bits of the radicand behind its first two that are not zero by themselves, a step taking two.
+    fn rest_bits(&self) -> u32 {
+        (self.domain.significand_bits() - 1).next_multiple_of(2)
+    }
+}
+
+impl Recurrence for Root {
+    fn domain(&self) -> Domain {
+        self.domain
+    }
+
+    /// The first digit is always 1.
+    fn steps(&self) -> u32 {
+        self.digits() - 1
+    }
+
+    fn begin<'g>(&self, a: Signal<'g>) -> (Vec<Signal<'g>>, Vec<Signal<'g>>) {
+        let (exponent, significand) = Operand::unpack(a, self.domain, "a").normalised();
+        // The bias is odd, so an even biased exponent stands for an odd one, of which one goes into the radicand.
+        let is_odd = (!exponent.bits(1)).named("exponent_is_odd");
+        let width = significand.width() + 1;
+        let radicand = is_odd.select(significand.append_zeros(1), significand.extend(width)).named("radicand");
+        let remainder = radicand.high(2).minus(1);
+        let rest = radicand.low(width - 2).append_zeros(self.rest_bits() + 2 - width);
+        (vec![remainder, rest], Vec::new())
+    }
+
+    fn fit<'g>(&self, state: &[Signal<'g>], first: u32, end: u32) -> Vec<Signal<'g>> {
+        // Nobody hands on the first digit.
+        let one = [state[0], state[0].graph().constant(1, 1), state[1]];
+        let state = if first == 0 { &one } else { state };
+        let mut fitted = vec![state[0].extend(end + 2), state[1].extend(end + 1)];
+        let left = self.rest_bits().saturating_sub(2 * first);
+        fitted.extend(state.get(2).filter(|_| left > 0).map(|rest| rest.high(left)));
+        fitted
+    }
+
+    fn step<'g>(&self, state: &[Signal<'g>], _: &[Signal<'g>], index: u32) -> Vec<Signal<'g>> {
+        let (remainder, root, rest) = (state[0], state[1], state.get(2).copied());
+        let graph = root.graph();
+        // With the root so far r and the remainder m, a digit 1 takes 4r + 1 from 4m + the next two bits.
+        let shifted = remainder.concat(rest.map_or_else(|| graph.constant(2, 0), |rest| rest.high(2)));
+        let trial = root.concat(graph.constant(2, 1)).extend(shifted.width());
+        let difference = (shifted - trial).named(&format!("difference_{index}"));
+        let negative = difference.msb().named(&format!("borrow_{index}"));
+        let width = remainder.width();
+        let remainder = negative.select(shifted.low(width), difference.low(width)).named(&format!("remainder_{index}"));
+        let mut state = vec![remainder, root.low(root.width() - 1).concat(!negative)];
+        state.extend(rest.map(|rest| match rest.width() {
+            2 => graph.constant(2, 0),
+            width => rest.low(width - 2).append_zeros(2),
+        }));
+        state
+    }
+
+    fn outcome<'g>(&self, state: &[Signal<'g>]) -> Vec<Signal<'g>> {
+        vec![state[1], state[0]]
+    }
+
+    fn finish<'g>(&self, a: Signal<'g>, outcome: &[Signal<'g>]) -> Signal<'g> {
+        let domain = self.domain;
+        let operand = Operand::unpack(a, domain, "a");
+        let (a_exponent, _) = operand.normalised();
+        let exponent = a_exponent.offset(i64::from(domain.bias())).half().named("root_exponent");
+        let graph = a.graph();
+        let (root, remainder) = (outcome[0], outcome[1]);
+        let unrounded = if domain.rounding() == Rounding::TowardZero {
+            let zero = graph.constant(1, 0);
+            Unrounded { exponent, significand: root.named("significand"), guard: zero, sticky: zero, doubled: None }
+        } else {
+            // A normal result is never a tie; only a subnormal one asks whether anything is left.
+            let sticky = if exponent.min() > 0 { graph.constant(1, 1) } else { remainder.any() };
+            Unrounded {
+                exponent,
+                significand: root.drop_low(1).named("significand"),
+                guard: root.bit(0).named("guard"),
+                sticky: sticky.named("sticky"),
+                doubled: None,
+            }
+        };
+        sqrt::finish(domain, operand, unrounded)
+    }
+}
