@@ -56,6 +56,27 @@ fn a_manifest_is_a_configuration_and_flags_win_over_it() {
 }
 
 #[test]
+fn records_of_16_bits_are_told_of_everywhere() {
+    let room = tempfile::tempdir().expect("a temporary folder");
+    afu(room.path(), &["rtl", "--record", "bf16", "--out", "a"]).success();
+    let files = contents(&room.path().join("a"));
+    let manifest: serde_json::Value = serde_json::from_slice(&files["manifest.json"]).expect("JSON");
+    assert_eq!(manifest["config"]["record"], "bf16");
+    assert_eq!((&manifest["records"]["pair_bits"], &manifest["records"]["pairs_per_line"]), (&128.into(), &4.into()));
+    let ports = String::from_utf8_lossy(&files["PORTS.md"]).into_owned();
+    assert!(ports.contains("27:26 are 2: words of records are bf16"), "{ports}");
+    let top = String::from_utf8_lossy(&files["scpu.v"]).into_owned();
+    assert!(top.contains("--record bf16"), "{top}");
+    afu(room.path(), &["rtl", "--config", "a", "--record", "f32", "--out", "b"]).success();
+    afu(room.path(), &["rtl", "--out", "c"]).success();
+    assert_eq!(
+        contents(&room.path().join("b")),
+        contents(&room.path().join("c")),
+        "f32 is the default, and not told of"
+    );
+}
+
+#[test]
 fn a_folder_of_somebody_else_is_refused_without_force() {
     let room = tempfile::tempdir().expect("a temporary folder");
     let theirs = room.path().join("theirs");
@@ -87,12 +108,23 @@ fn what_is_not_built_yet_or_out_of_range_is_one_line_and_exit_2() {
         (["--clock", "0"], "clock 0"),
         (["--clock", "inf"], "clock inf"),
         (["--config", "absent.json"], "absent.json"),
+        (["--radius", "-1"], "radius -1"),
     ] {
         let refused = afu(room.path(), &[&["rtl", "--out", "out"][..], &arguments].concat()).code(2);
         let said = said(&refused);
         assert!(said.starts_with("afu: ") && said.lines().count() == 1 && said.contains(word), "{said}");
     }
-    for arguments in [["--profile", "exactly"], ["--contact", "mass"], ["--shell", "pcie"], ["--scpus", "ten"]] {
+    for (arguments, word) in [
+        (["--profile", "exact", "--record", "f16"], "profile exact with record f16"),
+        (["--radius", "1e6", "--record", "f16"], "radius 1000000: is infinite in records of f16"),
+    ] {
+        let refused = afu(room.path(), &[&["rtl", "--out", "out"][..], &arguments].concat()).code(2);
+        let said = said(&refused);
+        assert!(said.starts_with("afu: ") && said.lines().count() == 1 && said.contains(word), "{said}");
+    }
+    for arguments in
+        [["--record", "f8"], ["--profile", "exactly"], ["--contact", "mass"], ["--shell", "pcie"], ["--scpus", "ten"]]
+    {
         afu(room.path(), &[&["rtl", "--out", "out"][..], &arguments].concat()).code(2);
     }
     assert_eq!(fs::read_dir(room.path()).expect("there").count(), 0, "nothing is written");

@@ -1,12 +1,13 @@
 //! The sphere kernel's pipeline against the reference kernel, bit for bit, a new pair in every cycle.
 
 use contact_afu::hdl::{DelayModel, Evaluator, Module};
-use contact_afu::kernel::{Arithmetic, ContactRecord, Fields, Flow, PAIR_FIELDS, PairRecord, Reference};
+use contact_afu::kernel::{Arithmetic, ContactRecord, Fields, Flow, PAIR_FIELDS, PairRecord, Reference, narrow, widen};
 use contact_afu::number::Format;
 use contact_afu::pairs::Set;
 use contact_afu::pipeline::{KernelReport, Settings, sphere_kernel};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
+use std::ops::Range;
 use std::sync::Arc;
 
 const OUTPUTS: [&str; 7] = ["pos_x", "pos_y", "pos_z", "normal_x", "normal_y", "normal_z", "depth"];
@@ -16,13 +17,23 @@ fn kernel(arithmetic: Format, fields: Fields) -> Arc<Module> {
 }
 
 fn kernel_of(arithmetic: Arithmetic, fields: Fields) -> Arc<Module> {
+    kernel_in(arithmetic, fields, Format::BINARY32)
+}
+
+fn kernel_in(arithmetic: Arithmetic, fields: Fields, record: Format) -> Arc<Module> {
     let model = DelayModel::default();
-    let record = arithmetic.record();
+    let record = arithmetic.record(record);
     sphere_kernel(&Settings { arithmetic, record, fields, radius: None, clock_mhz: 200.0, interval: 1, model }).unwrap()
 }
 
 /// What the pipeline gives for the pairs, one in every cycle.
 fn run(module: &Arc<Module>, pairs: &[PairRecord]) -> Vec<ContactRecord> {
+    run_in(module, pairs, Format::BINARY32)
+}
+
+/// The same of a pipeline whose words are in `record`, widened.
+fn run_in(module: &Arc<Module>, pairs: &[PairRecord], record: Format) -> Vec<ContactRecord> {
+    let is_valid = |pair: &PairRecord| pair.rounded(record).is_valid();
     let mut evaluator = Evaluator::new(module, &[]).unwrap();
     let inputs = PAIR_FIELDS.map(|name| evaluator.pin(name).unwrap());
     let valid = evaluator.pin("valid").unwrap();
@@ -36,9 +47,9 @@ fn run(module: &Arc<Module>, pairs: &[PairRecord]) -> Vec<ContactRecord> {
             let pair = &pairs[cycle - latency];
             let mut words = [0; 8];
             for (word, pin) in words.iter_mut().zip(outputs) {
-                *word = pin.map_or(0, |pin| evaluator.read(pin) as u32);
+                *word = pin.map_or(0, |pin| widen(evaluator.read(pin) as u32, record));
             }
-            let flow = match (pair.is_valid(), evaluator.read(hit), evaluator.read(grazing)) {
+            let flow = match (is_valid(pair), evaluator.read(hit), evaluator.read(grazing)) {
                 (false, ..) => Flow::Invalid,
                 (true, 0, _) => Flow::Fake,
                 (true, _, 0) => Flow::Real,
@@ -54,8 +65,8 @@ fn run(module: &Arc<Module>, pairs: &[PairRecord]) -> Vec<ContactRecord> {
         }
         // After the last pair nonsense follows, which must not reach back.
         let pair = pairs.get(cycle).copied().unwrap_or(PairRecord([0x7FC0_0001; 8]));
-        inputs.iter().zip(pair.0).for_each(|(pin, word)| evaluator.write(*pin, word.into()));
-        evaluator.write(valid, pair.is_valid().into());
+        inputs.iter().zip(pair.0).for_each(|(pin, word)| evaluator.write(*pin, narrow(word, record).into()));
+        evaluator.write(valid, is_valid(&pair).into());
         evaluator.step();
     }
     contacts
@@ -64,10 +75,15 @@ fn run(module: &Arc<Module>, pairs: &[PairRecord]) -> Vec<ContactRecord> {
 /// Pairs of every flow: words at random, spheres near touching at every scale, coincident and nearly coincident
 /// centres, and neighbours in the paper's diamond, which touch exactly.
 fn pairs(count: usize, seed: u64) -> Vec<PairRecord> {
+    pairs_of(count, seed, -140..120)
+}
+
+/// The same of sizes from 2 to the powers of `scales`.
+fn pairs_of(count: usize, seed: u64, scales: Range<i32>) -> Vec<PairRecord> {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
     let mut pairs = Vec::new();
     while pairs.len() < count {
-        let scale = 2.0_f32.powi(random.random_range(-140..120));
+        let scale = 2.0_f32.powi(random.random_range(scales.clone()));
         let mut number = |reach: f32| (random.random::<f32>() * 2.0 - 1.0) * reach;
         let first = [0; 3].map(|_| number(scale));
         let direction = [0; 3].map(|_| number(scale));
@@ -198,6 +214,40 @@ fn what_is_not_asked_for_is_not_there() {
             assert!(module.port("valid").is_some_and(|(_, port)| !port.output && port.node.is_some()));
         }
     }
+}
+
+/// Words of 16 bits at the kernel's edges: as narrow as its arithmetic, narrower, and with other exponents. A finite
+/// number of the pair may be infinite there.
+#[test]
+fn records_of_16_bits() {
+    for (record, scales) in [(Format::HALF, -24..15), (Format::BFLOAT, -140..120)] {
+        let pairs = pairs_of(1_000, 3, scales);
+        for arithmetic in ["e5f10", "e8f7", "e10f23z", "e8f15", "e8f23", "e10f23ztr", "e6f3z"] {
+            for fields in [Fields::ALL, Fields::HIT] {
+                let arithmetic = Arithmetic::Rounded(arithmetic.parse().unwrap());
+                let module = kernel_in(arithmetic, fields, record);
+                let wanted = Reference::of(arithmetic, fields).with_record(record).run_all(&pairs);
+                for flow in Flow::ALL {
+                    let seen = wanted.iter().filter(|contact| contact.flow() == Some(flow)).count();
+                    assert!(seen > 25, "only {seen} pairs are {flow} in {record}");
+                }
+                for (got, (wanted, pair)) in run_in(&module, &pairs, record).iter().zip(wanted.iter().zip(&pairs)) {
+                    assert!(
+                        got == wanted,
+                        "{arithmetic:?} {record} {fields}: {pair:x?} gives {got:x?}, not {wanted:x?}"
+                    );
+                }
+            }
+        }
+    }
+    // Over records of few exponents a format is wide enough that over binary32 is not.
+    let ends = |record| {
+        let report = KernelReport::of(&kernel_in(Arithmetic::Rounded("e8f15z".parse().unwrap()), Fields::ALL, record));
+        let inner = report.operators.into_iter().filter(|of| !of.module.starts_with("fp_convert_"));
+        inner.filter(|of| !of.module.ends_with("_normal")).count()
+    };
+    assert_eq!(ends(Format::HALF), 0);
+    assert!(ends(Format::BINARY32) > 3 && ends(Format::BFLOAT) > 3);
 }
 
 /// The whole kernel of a wide format is free of logic for the ends of the range, converters at the edges apart; that of

@@ -8,7 +8,7 @@ use sha2::{Digest, Sha256};
 use crate::config::{MANIFEST_SCHEMA, Results};
 use crate::pipeline::KernelReport;
 
-use super::{Afu, spl2};
+use super::{Afu, spl2, timing};
 use crate::config::Shell;
 
 /// The list of the Verilog files in a generated folder, each after those it needs.
@@ -105,7 +105,10 @@ impl Afu {
         };
         let hits = Some(of_hits.to_owned()).filter(|_| config.results == Results::Hits);
         let radius = config.radius.map(|radius| format!(", 25 set: every sphere's radius is {radius}"));
-        [hits, radius.filter(|_| name == "capability")].into_iter().flatten().collect()
+        let code = timing::record_code(config.record);
+        let record = (code > 0).then(|| format!(", 27:26 are {code}: words of records are {}", config.record));
+        let of_capability = [radius, record].into_iter().flatten().filter(|_| name == "capability");
+        hits.into_iter().chain(of_capability).collect()
     }
 
     fn manifest(&self, files: &[(String, String)]) -> String {

@@ -48,9 +48,9 @@ impl Afu {
         spec.check()?;
         let kernel = sphere_kernel(&Settings {
             arithmetic: spec.config.profile.arithmetic(),
-            record: spec.config.profile.arithmetic().record(),
+            record: spec.config.profile.arithmetic().record(spec.config.record.format()),
             fields: spec.config.contact,
-            radius: spec.config.radius,
+            radius: spec.config.radius.map(|radius| spec.config.record.round(radius)),
             clock_mhz: spec.config.clock_mhz,
             interval: spec.config.interval,
             model: spec.delays.clone(),
@@ -66,8 +66,9 @@ impl Afu {
     /// What is out of range in `spec`; ports that do not fit.
     pub fn around(spec: Spec, kernel: Arc<Module>) -> Result<Self, BuildError> {
         spec.check()?;
-        if spec.word_bits != 32 {
-            return Err(SpecError::Word(spec.word_bits).into());
+        let record_bits = spec.config.record.format().width();
+        if spec.word_bits != record_bits {
+            return Err(SpecError::Word(spec.word_bits, record_bits).into());
         }
         let core = line_top(&spec, &scpu(&spec, &kernel)?)?;
         let top = match spec.config.shell {

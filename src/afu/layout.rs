@@ -1,14 +1,17 @@
 //! Where records lie in lines: computed once, read by hardware, host and files alike.
 
-use crate::config::{Config, Results};
+use crate::config::{Config, Record, Results};
 use crate::kernel::{Fields, PAIR_FIELDS, PairRecord};
+
+use super::COUNT_BITS;
 
 /// The record layout of a configuration. A record is its words in use, padded to a power of two; a line holds as many
 /// as fit. With no field asked for, a contact is one bit. Where only contacts come back, each begins with its pair's
-/// number, and with no field asked for it is that number alone.
+/// number of 32 bits, and with no field asked for it is that number alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout {
     line_bits: u32,
+    record: Record,
     word_bits: u32,
     fields: Fields,
     results: Results,
@@ -35,13 +38,16 @@ pub struct OtherRadius {
 impl Layout {
     /// The layout of full pairs and of a contact with `fields` for each, in lines of `line_bits` (a power of two) bits.
     pub fn new(line_bits: u32, fields: Fields) -> Self {
-        Self { line_bits, word_bits: 32, fields, results: Results::All, radius: None }
+        let record = Record::F32;
+        let word_bits = record.format().width();
+        Self { line_bits, record, word_bits, fields, results: Results::All, radius: None }
     }
 
     /// The layout of a configuration, in lines of `line_bits` (a power of two) bits.
     pub fn of(line_bits: u32, config: &Config) -> Self {
         let radius = config.radius.map(f32::to_bits);
-        Self { results: config.results, radius, ..Self::new(line_bits, config.contact) }
+        let (record, word_bits) = (config.record, config.record.format().width());
+        Self { record, word_bits, results: config.results, radius, ..Self::new(line_bits, config.contact) }
     }
 
     /// The fields of a contact.
@@ -49,7 +55,17 @@ impl Layout {
         self.fields
     }
 
-    /// The same records in words of `word_bits` bits. Only proofs have other than 32.
+    /// The numbers of the records.
+    pub fn record(&self) -> Record {
+        self.record
+    }
+
+    /// Bits of a record's word.
+    pub fn word_bits(&self) -> u32 {
+        self.word_bits
+    }
+
+    /// The same records in words of `word_bits` bits. Only proofs have other than the record's.
     pub fn with_words_of(self, word_bits: u32) -> Self {
         Self { word_bits, ..self }
     }
@@ -106,14 +122,19 @@ impl Layout {
         groups.into_iter().filter(|(used, _)| *used).flat_map(|(_, words)| words).collect()
     }
 
-    /// Words of a record before those of the contact: the pair's number, where only contacts come back.
-    pub fn number_words(&self) -> usize {
-        usize::from(self.results == Results::Hits)
+    /// Bits of a record before those of the contact: the pair's number, where only contacts come back.
+    pub fn number_bits(&self) -> u32 {
+        if self.results == Results::Hits { COUNT_BITS } else { 0 }
+    }
+
+    /// Bits of a record in use: without what pads it to a power of two.
+    pub fn used_bits(&self) -> u32 {
+        (self.number_bits() + self.contact_words().len() as u32 * self.word_bits).max(1)
     }
 
     /// Bits a contact takes in a line.
     pub fn contact_bits(&self) -> u32 {
-        ((self.number_words() + self.contact_words().len()) as u32 * self.word_bits).max(1).next_power_of_two()
+        self.used_bits().next_power_of_two()
     }
 
     /// Bits of a result as an SCPU gives it: the record in its line, or, where only contacts come back, the words that
@@ -161,6 +182,27 @@ mod tests {
         }
         for (contact, bits) in hits {
             assert_eq!(per_line(contact, Results::Hits), (bits, 512 / bits), "{contact}");
+        }
+    }
+
+    #[test]
+    fn words_of_16_bits_are_half_as_long_but_for_a_hit_s_number() {
+        let of = |contact: &str, results, radius| {
+            let contact = contact.parse().expect("fields");
+            let config = Config { contact, results, radius, record: Record::F16, ..Config::default() };
+            let layout = Layout::of(512, &config);
+            assert_eq!((layout.pair_bits(), layout.pairs_per_line()), (128, 4), "six words are padded to eight");
+            assert_eq!(layout.pair_words().len(), if radius.is_some() { 6 } else { 8 });
+            assert_eq!(layout.contacts_per_line() * layout.contact_bits(), 512);
+            layout.contact_bits()
+        };
+        for radius in [None, Some(0.5)] {
+            for (contact, all, hits) in
+                [("hit,depth,normal,position", 128, 256), ("depth", 32, 64), ("normal", 64, 128), ("hit", 1, 32)]
+            {
+                assert_eq!(of(contact, Results::All, radius), all, "{contact}");
+                assert_eq!(of(contact, Results::Hits, radius), hits, "{contact}");
+            }
         }
     }
 }

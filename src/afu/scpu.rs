@@ -22,20 +22,22 @@ pub(super) fn scpu(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>, Err
     graph.about(format!(
         "one sphere collision processing unit: a pair every {every}, its record {latency} cycles later"
     ));
-    let layout = spec.layout();
+    let (layout, record) = (spec.layout(), spec.config.record.format());
+    let bits = record.width();
     // Announces a pair that then stays for the interval.
     let take = (spec.config.interval > 1).then(|| graph.input("take", 1));
     let pair = graph.input("pair", layout.pair_bits());
     let names: Vec<&str> = layout.pair_words().into_iter().map(|word| PAIR_FIELDS[word]).collect();
     let words: Vec<Signal<'_>> =
-        names.iter().zip(0..).map(|(name, index)| pair.slice(32 * index, 32).named(name)).collect();
+        names.iter().zip(0..).map(|(name, index)| pair.slice(bits * index, bits).named(name)).collect();
 
     // A NaN, an infinity or a negative radius (a negative zero is a radius) makes a pair invalid.
     let mut invalid = graph.constant(1, 0);
     for (word, name) in words.iter().zip(&names) {
-        invalid = invalid | word.slice(23, 8).all().named(&format!("{name}_not_finite"));
+        invalid = invalid
+            | word.slice(record.fraction_bits(), record.exponent_bits()).all().named(&format!("{name}_not_finite"));
         if name.starts_with('r') {
-            invalid = invalid | (word.msb() & word.low(31).any()).named(&format!("{name}_negative"));
+            invalid = invalid | (word.msb() & word.low(bits - 1).any()).named(&format!("{name}_negative"));
         }
     }
     let invalid = invalid.named("invalid");
@@ -62,7 +64,7 @@ pub(super) fn scpu(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>, Err
             hit.select(grazing.select(graph.constant(2, 2), graph.constant(2, 3)), graph.constant(2, 1)),
         );
         let flags: Vec<_> = unsettled.into_iter().chain([invalid, flow.named("flow"), hit]).collect();
-        let flags = Signal::join(&flags).extend(32).named("flags");
+        let flags = Signal::join(&flags).extend(bits).named("flags");
         let mut words: Vec<Signal<'_>> = layout
             .contact_words()
             .into_iter()

@@ -14,7 +14,7 @@ pub struct Spec {
     pub reset: Reset,
     /// Bits of a line: 512; less for proofs.
     pub line_bits: u32,
-    /// Bits of a record's word: 32; less for proofs, whose SCPUs are not the kernel's.
+    /// Bits of a record's word: those of the configuration's records; less for proofs, whose SCPUs are not the kernel's.
     pub word_bits: u32,
     /// Reads, and writes, outstanding at most: 64; less for proofs.
     pub max_outstanding: u32,
@@ -34,8 +34,8 @@ pub enum SpecError {
     #[error("a line of {0} bits: use a power of two that holds a pair and a contact")]
     Line(u32),
     /// Words that the kernel does not have.
-    #[error("words of {0} bits: the kernel's have 32; an SCPU of the caller's may have 1 to 32")]
-    Word(u32),
+    #[error("words of {0} bits: the records' have {1}; an SCPU of the caller's may have 1 to 32")]
+    Word(u32, u32),
     /// No room beyond what a pipeline holds, or more than memory serves.
     #[error("{0} cycles in dispatch: use 1 to 1024")]
     Dispatch(u32),
@@ -46,11 +46,12 @@ pub enum SpecError {
 
 impl From<Config> for Spec {
     fn from(config: Config) -> Self {
+        let word_bits = config.record.format().width();
         Self {
             config,
             reset: Reset::default(),
             line_bits: 512,
-            word_bits: 32,
+            word_bits,
             max_outstanding: 64,
             dispatch_cycles: 16,
             delays: DelayModel::default(),
@@ -94,7 +95,7 @@ impl Spec {
     pub fn check(&self) -> Result<(), SpecError> {
         self.config.check()?;
         if !(1..=32).contains(&self.word_bits) {
-            return Err(SpecError::Word(self.word_bits));
+            return Err(SpecError::Word(self.word_bits, self.config.record.format().width()));
         }
         if !(1..=1024).contains(&self.dispatch_cycles) {
             return Err(SpecError::Dispatch(self.dispatch_cycles));

@@ -1,6 +1,6 @@
 //! How many cycles each part of an AFU takes, from the numbers its hardware is generated with.
 
-use crate::config::Results;
+use crate::config::{Record, Results};
 
 use super::{Afu, collector, control, dispatcher, feeder, packer, slot, top};
 
@@ -31,10 +31,19 @@ pub struct Timing {
     pub done: u32,
 }
 
+/// What the capability word calls the numbers of records.
+pub(super) fn record_code(record: Record) -> u64 {
+    match record {
+        Record::F32 => 0,
+        Record::F16 => 1,
+        Record::Bf16 => 2,
+    }
+}
+
 impl Afu {
     /// What the AFU says of itself in its capability word: bits 7:0 SCPUs, 15:8 interval, 19:16 contact fields (hit,
     /// depth, normal, position from bit 16 up), 24 whether contacts alone come back, 25 whether all
-    /// spheres have one radius, 43:32 latency of an SCPU in cycles.
+    /// spheres have one radius, 27:26 the numbers of records (0 f32, 1 f16, 2 bf16), 43:32 latency of an SCPU in cycles.
     pub fn capability(&self) -> u64 {
         let config = &self.spec().config;
         let fields = [config.contact.position, config.contact.normal, config.contact.depth, true];
@@ -43,6 +52,7 @@ impl Afu {
         let one_radius = u64::from(config.radius.is_some());
         let latency = u64::from(self.kernel().latency.min(0xfff));
         latency << 32
+            | record_code(config.record) << 26
             | one_radius << 25
             | only_hits << 24
             | mask << 16

@@ -8,7 +8,7 @@ use crate::hdl::{Errors, Graph, Module, Signal};
 use super::control::{MODE_BITS, control, room_bits};
 use super::results::{Parts, Room};
 use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, MAX_SCPUS, SCPU_BITS, Spec};
-use super::{collector, dispatcher, feeder, slot};
+use super::{collector, dispatcher, feeder, slot, timing};
 
 /// Register ranks round the slots: results are registered after they were or-ed together.
 pub(super) const RANKS_AFTER: u32 = 1;
@@ -224,17 +224,19 @@ fn alongside<'g>(graph: &'g Graph, group: Signal<'g>, turn: Signal<'g>, latency:
 
 /// What the host may rely on: bits 7:0 SCPUs, 15:8 interval, 19:16 contact fields (hit, depth, normal, position from
 /// bit 16 up), 24 set where only contacts come back, 25 where
-/// every sphere has the one radius that is part of the hardware, 43:32 latency of an SCPU in cycles; the others are zero.
+/// every sphere has the one radius that is part of the hardware, 27:26 the numbers of records (0 f32, 1 f16, 2 bf16), 43:32
+/// latency of an SCPU in cycles; the others are zero.
 fn capability<'g>(graph: &'g Graph, spec: &Spec, scpus: Signal<'g>, latency: u32) -> Signal<'g> {
     let fields = spec.config.contact;
     let asked = [fields.position, fields.normal, fields.depth, true];
     let mask = asked.into_iter().fold(0, |mask, bit| mask << 1 | u128::from(bit));
     let only_hits = u128::from(spec.config.results == Results::Hits);
     let one_radius = u128::from(spec.config.radius.is_some());
+    let record = u128::from(timing::record_code(spec.config.record));
     let constant = |width, value| graph.constant(width, value);
     Signal::join(&[
         constant(32, u128::from(latency.min(0xfff))),
-        constant(16, one_radius << 9 | only_hits << 8 | mask),
+        constant(16, record << 10 | one_radius << 9 | only_hits << 8 | mask),
         constant(8, u128::from(spec.config.interval.min(0xff))),
         scpus.extend(8),
     ])

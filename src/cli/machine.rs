@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use contact_afu::config::{self, Config, Input, Profile, Results, Shell};
+use contact_afu::config::{self, Config, Input, Profile, Record, Results, Shell};
 use contact_afu::kernel::Fields;
 use contact_afu::number::{FormatError, Roots, Rounding, Subnormals};
 
@@ -37,6 +37,10 @@ pub struct Machine {
     /// One radius for all spheres, which is then part of the hardware and of no record [default: each its own]
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     pub radius: Option<f32>,
+    /// Numbers of records in memory: f32, or f16 or bf16, to which pairs are rounded, and of which a line holds four
+    /// [default: f32]
+    #[arg(long, value_name = "FORMAT")]
+    pub record: Option<Record>,
     /// What stands around the AFU's line port: spl2 (Intel HARP v1), line (nothing) [default: spl2]
     #[arg(long, value_name = "SHELL")]
     pub shell: Option<Shell>,
@@ -86,6 +90,7 @@ impl Machine {
         set(&mut config.input, &self.input);
         set(&mut config.results, &self.results);
         config.radius = self.radius.or(config.radius);
+        set(&mut config.record, &self.record);
         set(&mut config.shell, &self.shell);
         set(&mut config.clock_mhz, &self.clock);
         Ok(config)
@@ -141,6 +146,7 @@ impl One {
             ("--input", m.input.is_some()),
             ("--results", m.results.is_some()),
             ("--radius", m.radius.is_some()),
+            ("--record", m.record.is_some()),
             ("--shell", m.shell.is_some()),
             ("--clock", m.clock.is_some()),
             ("--target", m.target.is_some()),

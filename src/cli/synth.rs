@@ -6,6 +6,7 @@ use clap::Args;
 use contact_afu::afu::BuildError;
 use contact_afu::config::Config;
 use contact_afu::kernel::Fields;
+use contact_afu::number::Format;
 use contact_afu::operator::{Operator, Values};
 use contact_afu::pipeline::is_normal;
 use contact_afu::report::{operators, synth as report};
@@ -174,9 +175,9 @@ fn operator(name: &str, config: &Config) -> Result<(Operator, contact_afu::confi
         "greater" => Operator::Greater,
         "at_most" => Operator::AtMost,
         "root_exceeds" => Operator::RootExceeds,
-        "to_record" => Operator::Convert { to: arithmetic.format().record() },
+        "to_record" => Operator::Convert { to: arithmetic.format().record(Format::BINARY32) },
         "from_record" => {
-            let record = arithmetic.format().record();
+            let record = arithmetic.format().record(Format::BINARY32);
             let record = record.to_string().parse().map_err(|error| Failure::new(Kind::Other, error))?;
             return Ok((Operator::Convert { to: arithmetic.format() }, record));
         }

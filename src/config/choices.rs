@@ -5,6 +5,9 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
+use crate::kernel::{narrow, widen};
+use crate::number::Format;
+
 /// Not one of an option's words.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("unknown {what} `{given}`: use {words}")]
@@ -78,6 +81,38 @@ choice!(
     /// An AXI4 master and an AXI4-Lite slave.
     Axi = "axi"
 );
+
+choice!(
+    /// The numbers of records in memory: pairs are rounded to them when they are written, and contacts come back in them.
+    Record, "record", default F32,
+    /// IEEE binary32: a pair is 32 bytes, two a line.
+    F32 = "f32",
+    /// IEEE binary16: a pair is 16 bytes, four a line.
+    F16 = "f16",
+    /// bfloat16, the upper half of binary32: as short, with binary32's range and 8 significant bits.
+    Bf16 = "bf16"
+);
+
+impl Record {
+    /// The format of a word.
+    pub const fn format(self) -> Format {
+        match self {
+            Self::F32 => Format::BINARY32,
+            Self::F16 => Format::HALF,
+            Self::Bf16 => Format::BFLOAT,
+        }
+    }
+
+    /// A number as a word holds it, rounded to the nearest.
+    pub fn round(self, value: f32) -> f32 {
+        f32::from_bits(widen(narrow(value.to_bits(), self.format()), self.format()))
+    }
+
+    /// Whether it is the default, which files leave out.
+    pub(super) fn is_f32(&self) -> bool {
+        *self == Self::F32
+    }
+}
 
 #[cfg(test)]
 mod tests {

@@ -4,13 +4,13 @@ mod choices;
 mod file;
 mod profile;
 
-pub use choices::{Input, Results, Shell};
+pub use choices::{Input, Record, Results, Shell};
 pub use file::{MANIFEST_SCHEMA, ReadError, read};
 pub use profile::Profile;
 
 use serde::{Deserialize, Serialize};
 
-use crate::kernel::Fields;
+use crate::kernel::{Fields, Reference};
 
 /// The numbers of SCPUs an AFU can have.
 pub const SCPUS: std::ops::RangeInclusive<u32> = 1..=64;
@@ -43,6 +43,9 @@ pub struct Config {
     /// each sphere has its own.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub radius: Option<f32>,
+    /// The numbers of records in memory.
+    #[serde(skip_serializing_if = "Record::is_f32")]
+    pub record: Record,
     /// The shell around the line port.
     pub shell: Shell,
     /// The clock that stages are cut for, in MHz; simulated time is told in it.
@@ -59,6 +62,7 @@ impl Default for Config {
             input: Input::Direct,
             results: Results::All,
             radius: None,
+            record: Record::F32,
             shell: Shell::Spl2,
             clock_mhz: 200.0,
         }
@@ -90,6 +94,14 @@ pub enum Error {
     /// A radius that no sphere has.
     #[error("radius {0}: give a finite length, not below 0")]
     Radius(f32),
+    /// A radius beyond the record's numbers.
+    #[error("radius {0}: is infinite in records of {1}; give a smaller one, or record f32")]
+    RecordRadius(f32, Record),
+    /// A pair that was rounded is another pair.
+    #[error(
+        "profile exact with record {0}: what is exact of a rounded pair is not exact of the pair that was given; use record f32"
+    )]
+    ExactRecord(Record),
     /// Known to the design, not built yet.
     #[error("{option} {value}: not built yet; {instead}")]
     NotYet {
@@ -123,10 +135,16 @@ impl Config {
         if self.profile.is_exact() && self.results == Results::Hits {
             return Err(Error::ExactHits);
         }
+        if self.profile.is_exact() && self.record != Record::F32 {
+            return Err(Error::ExactRecord(self.record));
+        }
         if let Some(radius) = self.radius
             && !(0.0..=f32::MAX).contains(&radius)
         {
             return Err(Error::Radius(radius));
+        }
+        if let Some(radius) = self.radius.filter(|&radius| self.record.round(radius).is_infinite()) {
+            return Err(Error::RecordRadius(radius, self.record));
         }
         let not_yet = |option, value: String, instead| Err(Error::NotYet { option, value, instead });
         if self.input != Input::Direct {
@@ -140,6 +158,11 @@ impl Config {
             );
         }
         Ok(())
+    }
+
+    /// The reference kernel: what every other implementation of this configuration is compared with.
+    pub fn reference(&self) -> Reference {
+        self.profile.reference(self.contact).with_record(self.record.format())
     }
 
     /// One clock cycle, in nanoseconds.
@@ -159,6 +182,7 @@ impl Config {
             ("--input", self.input.to_string(), default.input.to_string()),
             ("--results", self.results.to_string(), default.results.to_string()),
             ("--radius", radius(self), radius(&default)),
+            ("--record", self.record.to_string(), default.record.to_string()),
             ("--shell", self.shell.to_string(), default.shell.to_string()),
             ("--clock", self.clock_mhz.to_string(), default.clock_mhz.to_string()),
         ];
@@ -220,6 +244,14 @@ mod tests {
             (
                 Config { profile: Profile::EXACT, results: Results::Hits, ..Config::default() },
                 "profile exact with results",
+            ),
+            (
+                Config { profile: Profile::EXACT, record: Record::F16, ..Config::default() },
+                "profile exact with record f16",
+            ),
+            (
+                Config { radius: Some(1e6), record: Record::F16, ..Config::default() },
+                "radius 1000000: is infinite in records of f16",
             ),
             (Config { input: Input::Indexed, ..Config::default() }, "input indexed"),
             (Config { shell: Shell::Axi, ..Config::default() }, "shell axi"),

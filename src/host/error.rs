@@ -3,6 +3,7 @@
 use super::transport::TransportError;
 use crate::afu::OtherRadius;
 use crate::afu::spl2::map;
+use crate::config::Record;
 
 /// Why a transaction has no results.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -104,7 +105,7 @@ pub enum HostError {
     },
     /// Pairs that are none.
     #[error(
-        "{count} invalid pairs, the first is pair {first}, whose {field} is NaN, infinite or a negative radius: mend or leave it out"
+        "{count} invalid pairs, the first is pair {first}, whose {field} is, as {record}, NaN, infinite or a negative radius: mend or leave it out"
     )]
     InvalidPairs {
         /// How many.
@@ -113,6 +114,8 @@ pub enum HostError {
         first: u32,
         /// Its field.
         field: &'static str,
+        /// The numbers of the AFU's records.
+        record: Record,
     },
     /// The transport.
     #[error(transparent)]

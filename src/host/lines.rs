@@ -1,19 +1,36 @@
-//! Records to lines and back, by the layout.
+//! Records to lines and back, by the layout. Here records have words of binary32; in lines they have those of the
+//! layout's numbers, to which pairs are rounded and from which contacts are widened.
 
 use crate::afu::Layout;
-use crate::kernel::{ContactRecord, Flow, PairRecord};
+use crate::kernel::{ContactRecord, Flow, PairRecord, narrow, widen};
 use crate::link::Line;
 
-/// Bits of a word.
-const WORD: usize = 32;
+/// Bits of a dword of a line.
+const DWORD: usize = 32;
+/// A contact's word that is no number: its flags.
+const FLAGS: usize = 7;
+
+/// Puts a word of `bits` bits, which lies in one dword, into zero bits of a line.
+fn put(line: &mut Line, at: usize, bits: u32, word: u32) {
+    let mask = u32::MAX >> (DWORD as u32 - bits);
+    line[at / DWORD] |= (word & mask) << (at % DWORD);
+}
+
+/// A word of `bits` bits, which lies in one dword.
+fn get(line: &Line, at: usize, bits: u32) -> u32 {
+    line[at / DWORD] >> (at % DWORD) & u32::MAX >> (DWORD as u32 - bits)
+}
 
 /// The source lines of pairs; what is unused of the last is zero.
 pub(crate) fn pack(layout: &Layout, pairs: &[PairRecord]) -> Vec<Line> {
-    let (room, words) = (layout.pair_bits() as usize / WORD, layout.pair_words());
+    let (room, words, bits, record) =
+        (layout.pair_bits() as usize, layout.pair_words(), layout.word_bits(), layout.record().format());
     let line = |pairs: &[PairRecord]| {
         let mut line: Line = [0; 16];
-        for (slot, pair) in line.chunks_mut(room).zip(pairs) {
-            slot.iter_mut().zip(&words).for_each(|(to, &word)| *to = pair.0[word]);
+        for (place, pair) in pairs.iter().enumerate() {
+            for (slot, &word) in words.iter().enumerate() {
+                put(&mut line, place * room + slot * bits as usize, bits, narrow(pair.0[word], record));
+            }
         }
         line
     };
@@ -22,23 +39,34 @@ pub(crate) fn pack(layout: &Layout, pairs: &[PairRecord]) -> Vec<Line> {
 
 /// The pairs of source lines.
 pub(crate) fn unpack_pairs(layout: &Layout, lines: &[Line], count: usize) -> Vec<PairRecord> {
-    let words = layout.pair_bits() as usize / WORD;
-    let slots = lines.iter().flat_map(|line| line.chunks(words));
-    slots.take(count).map(|slot| layout.pair(slot)).collect()
+    let (room, words, bits, record) =
+        (layout.pair_bits() as usize, layout.pair_words().len(), layout.word_bits(), layout.record().format());
+    let pair = |line: &Line, place: usize| {
+        let word = |slot: usize| widen(get(line, place * room + slot * bits as usize, bits), record);
+        layout.pair(&(0..words).map(word).collect::<Vec<_>>())
+    };
+    let places = 0..layout.pairs_per_line() as usize;
+    lines
+        .iter()
+        .flat_map(|line| places.clone().map(move |place| (line, place)))
+        .take(count)
+        .map(|(line, place)| pair(line, place))
+        .collect()
 }
 
 /// The destination lines of contacts where each pair has one; what is unused of the last is zero.
 pub(crate) fn pack_contacts(layout: &Layout, records: &[ContactRecord]) -> Vec<Line> {
-    let (words, bits) = (layout.contact_words(), layout.contact_bits() as usize);
+    let (words, bits, numbers) = (layout.contact_words(), layout.contact_bits() as usize, layout.record().format());
     let line = |records: &[ContactRecord]| {
         let mut line: Line = [0; 16];
         for (place, record) in records.iter().enumerate() {
             let at = place * bits;
             if words.is_empty() {
-                line[at / WORD] |= u32::from(record.is_contact()) << (at % WORD);
+                put(&mut line, at, 1, record.is_contact().into());
             }
             for (slot, &word) in words.iter().enumerate() {
-                line[at / WORD + slot] = record.0[word];
+                let short = if word == FLAGS { record.0[word] } else { narrow(record.0[word], numbers) };
+                put(&mut line, at + slot * layout.word_bits() as usize, layout.word_bits(), short);
             }
         }
         line
@@ -87,15 +115,16 @@ impl<'a> Contacts<'a> {
         let (line, place) = self.place(index);
         let line = self.lines.get(line)?.as_ref()?;
         let mut record = ContactRecord::default();
-        let first = place * self.layout.contact_bits() as usize / WORD;
-        let behind = first + self.layout.number_words();
-        let number = (behind > first).then(|| line[first]);
+        let first = place * self.layout.contact_bits() as usize;
+        let (number_bits, bits) = (self.layout.number_bits(), self.layout.word_bits());
+        let number = (number_bits > 0).then(|| get(line, first, number_bits));
         if self.words.is_empty() {
-            let hit = number.is_some() || line[place / WORD] >> (place % WORD) & 1 == 1;
-            record.0[7] = if hit { Flow::Real } else { Flow::Fake }.flags();
+            let hit = number.is_some() || get(line, first, 1) == 1;
+            record.0[FLAGS] = if hit { Flow::Real } else { Flow::Fake }.flags();
         }
         for (slot, &word) in self.words.iter().enumerate() {
-            record.0[word] = line[behind + slot];
+            let short = get(line, first + number_bits as usize + slot * bits as usize, bits);
+            record.0[word] = if word == FLAGS { short } else { widen(short, self.layout.record().format()) };
         }
         Some((number, record))
     }
@@ -105,7 +134,7 @@ impl<'a> Contacts<'a> {
     pub(crate) fn seen(&self, record: ContactRecord) -> ContactRecord {
         let mut seen = ContactRecord::default();
         if self.words.is_empty() {
-            seen.0[7] = if record.is_contact() { Flow::Real } else { Flow::Fake }.flags();
+            seen.0[FLAGS] = if record.is_contact() { Flow::Real } else { Flow::Fake }.flags();
         }
         for &word in &self.words {
             seen.0[word] = record.0[word];
@@ -117,14 +146,14 @@ impl<'a> Contacts<'a> {
     #[cfg_attr(not(feature = "cosim"), allow(dead_code))] // for `verify` alone
     pub(crate) fn rest_is_zero(&self, count: usize) -> bool {
         let bits = self.layout.contact_bits() as usize;
-        let used = ((self.layout.number_words() + self.words.len()) * WORD).max(1);
+        let used = self.layout.used_bits() as usize;
         let per_line = self.layout.contacts_per_line() as usize;
         let clean = |(number, line): (usize, &Option<Line>)| {
             let Some(line) = line else { return true };
             let mut rest = *line;
             for place in 0..per_line.min(count - (number * per_line).min(count)) {
                 for bit in place * bits..place * bits + used {
-                    rest[bit / WORD] &= !(1 << (bit % WORD));
+                    rest[bit / DWORD] &= !(1 << (bit % DWORD));
                 }
             }
             rest == [0; 16]
@@ -136,7 +165,7 @@ impl<'a> Contacts<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::{Config, Results};
+    use crate::config::{Config, Record, Results};
     use crate::kernel::Fields;
 
     fn records(count: u32) -> Vec<ContactRecord> {
@@ -224,5 +253,58 @@ mod tests {
         assert_eq!(lines[1], std::array::from_fn(|word| if word < 8 { 16 + word as u32 } else { 0 }));
         assert!(pack(&layout, &[]).is_empty());
         assert_eq!(unpack_pairs(&layout, &lines, 3), pairs);
+    }
+
+    /// Four pairs and four contacts a line, word by word of 16 bits, the number of a hit in two of them.
+    #[test]
+    fn words_of_16_bits_read_back_what_was_rounded_to_them() {
+        let halves =
+            |line: &Line| -> Vec<u32> { line.iter().flat_map(|dword| [dword & 0xFFFF, dword >> 16]).collect() };
+        let any = |i: u32| PairRecord(std::array::from_fn(|word| (8 * i + word as u32 + 1).wrapping_mul(0x9E37_79B9)));
+        let sphere = |x: f32| [x, 0.3, -x, 0.7];
+        let near = |i: u32| PairRecord::from_spheres(sphere(0.1), sphere(i as f32 / 32.0));
+        let pairs: Vec<_> = (0..41).map(|i| if i % 2 == 0 { any(i) } else { near(i) }).collect();
+        for (record, results) in [(Record::F16, Results::All), (Record::Bf16, Results::Hits)] {
+            let layout = Layout::of(512, &Config { record, results, ..Config::default() });
+            let lines = pack(&layout, &pairs);
+            assert_eq!(lines.len(), 11);
+            let words: Vec<u32> = lines.iter().flat_map(halves).collect();
+            let expected: Vec<u32> =
+                pairs.iter().flat_map(|pair| pair.0.map(|word| narrow(word, record.format()))).collect();
+            assert_eq!(words[..expected.len()], expected);
+            assert!(words[expected.len()..].iter().all(|&word| word == 0));
+            let read = unpack_pairs(&layout, &lines, pairs.len());
+            assert!(read.iter().zip(&pairs).all(|(read, pair)| *read == pair.rounded(record.format())));
+            assert_eq!(pack(&layout, &read)[..10], lines[..10], "finite or infinite, none becomes another");
+
+            let records: Vec<_> = Config { record, ..Config::default() }.reference().run_all(&pairs);
+            let short = |contact: &ContactRecord| -> [u32; 8] {
+                std::array::from_fn(|i| if i == 7 { contact.0[i] } else { narrow(contact.0[i], record.format()) })
+            };
+            let mut lines = vec![[0_u32; 16]; records.len().div_ceil(layout.contacts_per_line() as usize)];
+            for (i, contact) in records.iter().enumerate() {
+                let place = i % layout.contacts_per_line() as usize * layout.contact_bits() as usize / 16;
+                let number = if results == Results::Hits {
+                    vec![i as u32 * 70_001 & 0xFFFF, i as u32 * 70_001 >> 16]
+                } else {
+                    vec![]
+                };
+                for (slot, word) in number.into_iter().chain(short(contact)).enumerate() {
+                    let at = place + slot;
+                    lines[i / layout.contacts_per_line() as usize][at / 2] |= word << (16 * (at % 2));
+                }
+            }
+            if results == Results::All {
+                assert_eq!(pack_contacts(&layout, &records), lines);
+            }
+            let lines: Vec<_> = lines.into_iter().map(Some).collect();
+            let contacts = Contacts::new(&layout, &lines);
+            for (i, contact) in records.iter().enumerate() {
+                assert_eq!(contacts.get(i), Some(*contact), "{record}, {i}");
+                let number = contacts.hit(i).map(|(number, _)| number);
+                assert_eq!(number, (results == Results::Hits).then_some(i as u32 * 70_001));
+            }
+            assert!(contacts.rest_is_zero(records.len()) && !contacts.rest_is_zero(records.len() - 1), "{record}");
+        }
     }
 }

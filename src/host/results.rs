@@ -2,6 +2,7 @@
 
 use super::error::HostError;
 use super::report::Report;
+use crate::config::Record;
 use crate::kernel::{ContactRecord, PAIR_FIELDS, PairRecord};
 
 /// The contacts of a transaction, with what the AFU said at its end.
@@ -17,6 +18,8 @@ pub struct Results {
     pub first_invalid: Option<u32>,
     /// Pairs that the AFU left to the host (profile exact), which settled them: their contacts are the host's.
     pub unsettled: u64,
+    /// The numbers of the AFU's records: what is invalid is so in these.
+    pub record: Record,
     /// What it took.
     pub report: Report,
 }
@@ -28,8 +31,8 @@ impl Results {
     /// [`HostError::InvalidPairs`], naming the first of `pairs` that is none, and its field.
     pub fn strict(&self, pairs: &[PairRecord]) -> Result<(), HostError> {
         let Some(first) = self.first_invalid else { return Ok(()) };
-        let field =
-            pairs.get(first as usize).and_then(|pair| pair.invalid_field()).map_or("word", |word| PAIR_FIELDS[word]);
-        Err(HostError::InvalidPairs { count: self.invalid, first, field })
+        let pair = pairs.get(first as usize).map(|pair| pair.rounded(self.record.format()));
+        let field = pair.and_then(PairRecord::invalid_field).map_or("word", |word| PAIR_FIELDS[word]);
+        Err(HostError::InvalidPairs { count: self.invalid, first, field, record: self.record })
     }
 }

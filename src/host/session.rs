@@ -45,6 +45,7 @@ impl Expected {
             ("contact fields (a mask)", 16, 4),
             ("results (1: contacts alone)", 24, 1),
             ("one radius for all spheres (1: yes)", 25, 1),
+            ("records (0: f32, 1: f16, 2: bf16) of", 26, 2),
             ("an SCPU latency (another profile or clock) of", 32, 12),
         ];
         for (what, low, bits) in parts {

@@ -53,7 +53,7 @@ impl Software {
         Ok(Self {
             capability: afu.capability(),
             layout: afu.layout(),
-            reference: config.profile.reference(config.contact),
+            reference: config.reference(),
             link,
             memory: Memory::new(),
             cycle: 0,

@@ -321,6 +321,7 @@ impl<'s, T: Transport> Transaction<'s, T, Done> {
             invalid: word(status::INVALID),
             first_invalid: Some(word(status::FIRST_INVALID)).filter(|&pair| pair != u32::MAX),
             unsettled,
+            record: layout.record(),
             report: *report,
         };
         Ok(self.to(|_| Retrieved { results }))

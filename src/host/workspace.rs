@@ -43,7 +43,7 @@ impl Workspace {
     /// # Errors
     /// [`HostError::Pages`]; [`HostError::OnlyHits`] where only contacts come back.
     pub fn new(layout: Layout, pages: u64, seed: u64) -> Result<Self, HostError> {
-        if layout.number_words() > 0 {
+        if layout.number_bits() > 0 {
             return Err(HostError::OnlyHits);
         }
         if !(1..=MAX_PAGES).contains(&pages) {

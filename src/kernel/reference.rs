@@ -1,16 +1,19 @@
 //! The reference kernel: [`contact`] over records, in any format.
 
 use super::record::word;
-use super::{Contact, ContactRecord, Fields, Filtered, Flow, PairRecord, contact, exact, settle};
+use super::{Contact, ContactRecord, Fields, Filtered, Flow, PairRecord, contact, exact, narrow, settle, widen};
 use crate::number::{Format, Number, Soft};
 
 /// What every other implementation is compared with, bit for bit.
 ///
-/// In binary32 it computes with the machine's `f32`, in any other format with [`Soft`]; records are binary32.
+/// In binary32 it computes with the machine's `f32`, in any other format with [`Soft`]. Pairs and contacts are given as
+/// binary32; where records in memory are shorter ([`Reference::with_record`]), pairs are rounded to them first, and the
+/// contact's words are those of memory, widened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reference {
     arithmetic: Arithmetic,
     fields: Fields,
+    record: Format,
 }
 
 /// Which kernel, in which numbers.
@@ -23,11 +26,11 @@ pub enum Arithmetic {
 }
 
 impl Arithmetic {
-    /// The format of the pair's and the contact's words: binary32, written by the same rounding.
-    pub const fn record(self) -> Format {
+    /// The format of the pair's and the contact's words, of the widths of `record`: written by the same rounding.
+    pub const fn record(self, record: Format) -> Format {
         match self {
-            Self::Rounded(format) => format.record(),
-            Self::Exact => Format::BINARY32,
+            Self::Rounded(format) => format.record(record),
+            Self::Exact => record,
         }
     }
 }
@@ -45,12 +48,18 @@ impl Reference {
 
     /// Either of them.
     pub const fn of(arithmetic: Arithmetic, fields: Fields) -> Self {
-        Self { arithmetic, fields }
+        Self { arithmetic, fields, record: Format::BINARY32 }
+    }
+
+    /// The same over records in memory of the widths of `record`.
+    #[must_use]
+    pub const fn with_record(self, record: Format) -> Self {
+        Self { record, ..self }
     }
 
     /// What the kernel gives for one pair. That of `exact` leaves some pairs unsettled: see [`settle`].
     pub fn run(&self, pair: &PairRecord) -> ContactRecord {
-        if self.arithmetic == Arithmetic::Rounded(Format::BINARY32) {
+        if self.arithmetic == Arithmetic::Rounded(Format::BINARY32) && self.record == Format::BINARY32 {
             native(pair, self.fields)
         } else {
             self.run_soft(pair)
@@ -71,17 +80,19 @@ impl Reference {
 
     /// [`Reference::run`] by way of [`Soft`] in every format: the twin that checks `f32`, and is checked by it.
     pub fn run_soft(&self, pair: &PairRecord) -> ContactRecord {
-        let record = self.arithmetic.record();
-        let spheres = pair.read(|word| Soft::from_bits(record, word.into()));
+        let record = self.arithmetic.record(self.record);
+        let pair = pair.rounded(record);
+        let spheres = pair.read(|word| Soft::from_bits(record, narrow(word, record).into()));
         let valid = pair.is_valid();
+        let word = |number: Soft| widen(number.bits() as u32, record);
         match self.arithmetic {
             Arithmetic::Rounded(format) => {
                 let contact = contact(spheres, valid, format, record, self.fields);
-                write(contact, valid, |number| number.bits() as u32)
+                write(contact, valid, word)
             }
             Arithmetic::Exact => {
                 let Filtered { contact, unsettled } = exact(spheres, valid, record, self.fields);
-                if unsettled { ContactRecord::UNSETTLED } else { write(contact, valid, |number| number.bits() as u32) }
+                if unsettled { ContactRecord::UNSETTLED } else { write(contact, valid, word) }
             }
         }
     }

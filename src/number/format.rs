@@ -108,10 +108,10 @@ impl Format {
         }
     }
 
-    /// The format of records beside arithmetic in this one: [`Format::BINARY32`], written by the same rounding.
+    /// The format of records of the widths of `record` beside arithmetic in this one: written by the same rounding.
     #[must_use]
-    pub const fn record(self) -> Self {
-        Self { rounding: self.rounding, roots: self.roots, ..Self::BINARY32 }
+    pub const fn record(self, record: Self) -> Self {
+        Self { rounding: self.rounding, roots: self.roots, ..record }
     }
 
     /// How results are rounded.

@@ -57,7 +57,7 @@ pub fn sphere_kernel(settings: &Settings) -> Result<Arc<Module>, Errors> {
 pub fn is_normal(arithmetic: Arithmetic, fields: Fields) -> Result<bool, Errors> {
     let settings = Settings {
         arithmetic,
-        record: arithmetic.record(),
+        record: arithmetic.record(Format::BINARY32),
         fields,
         radius: None,
         clock_mhz: 100.0,

@@ -96,7 +96,7 @@ impl Bench {
             source,
             model,
             layout: Layout::of(LINE_BITS, config),
-            reference: config.profile.reference(config.contact),
+            reference: config.reference(),
         })
     }
 

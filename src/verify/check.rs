@@ -92,14 +92,14 @@ pub(super) fn check(
         unmet.push(format!("the job ended with error {} ({error:?})", outcome.error));
     }
     let job = Job { pairs, reference, memory: &memory, outcome: &outcome };
-    let came = if layout.number_words() > 0 { job.hits(&mut unmet) } else { job.all() };
+    let came = if layout.number_bits() > 0 { job.hits(&mut unmet) } else { job.all() };
     if !memory.rest_is_zero(came.records) {
         unmet.push("unused bits of the destination lines are not zero".to_owned());
     }
     job.status(&mut unmet);
     let Came { numbers, mut contacts, mismatches, .. } = came;
     // With contacts alone as results nothing is unsettled: the profile exact refuses them.
-    let unsettled = if layout.number_words() > 0 { 0 } else { settle(pairs, &mut contacts, fields) };
+    let unsettled = if layout.number_bits() > 0 { 0 } else { settle(pairs, &mut contacts, fields) };
     Verdict { pairs: pairs.len(), contacts, numbers, unsettled, mismatches, unmet, outcome, seconds }
 }
 

@@ -1,9 +1,10 @@
 //! Transactions with the AFU in software: what goes right, and what is refused.
 
 use contact_afu::afu::spl2::map::{self, identity, pointers, status};
-use contact_afu::config::Config;
-use contact_afu::host::{HostError, Session, Software, Transport, TransportError};
+use contact_afu::config::{Config, Record};
+use contact_afu::host::{Expected, HostError, Session, Software, Transport, TransportError, Workspace};
 use contact_afu::kernel::{Engine, PairRecord};
+use contact_afu::link::LinkModel;
 use contact_afu::link::spl2::CsrOffset;
 
 use crate::meddle::{Dying, Meddled};
@@ -175,9 +176,36 @@ fn invalid_pairs_are_named_by_number_and_field() {
     let done = session.transaction().send(&pairs).unwrap().start().unwrap().confirm().unwrap().wait().unwrap();
     let results = done.retrieve().unwrap().end().unwrap();
     let error = results.strict(&pairs).unwrap_err();
-    assert_eq!(error, HostError::InvalidPairs { count: 2, first: 5, field: "r2" });
+    assert_eq!(error, HostError::InvalidPairs { count: 2, first: 5, field: "r2", record: Record::F32 });
     let good = session.transaction().send(&pairs[..5]).unwrap().start().unwrap().confirm().unwrap().wait().unwrap();
     assert_eq!(good.retrieve().unwrap().end().unwrap().strict(&pairs[..5]), Ok(()));
+}
+
+/// Records of 16 bits: four pairs a line, the reference's contacts; an AFU of other records is another one.
+#[test]
+fn records_of_16_bits_are_agreed_on() {
+    let pairs = pairs(1000);
+    for record in [Record::F16, Record::Bf16] {
+        let config = Config { record, ..config() };
+        let expected = Expected::new(&config).unwrap();
+        assert_eq!(expected.layout.pairs_per_line(), 4);
+        let workspace = || Workspace::new(expected.layout, 1, 7).unwrap();
+        let device = Software::new(&config, LinkModel::ideal()).unwrap();
+        let contacts = Session::new(device, workspace(), expected).run(&pairs).unwrap();
+        assert_eq!(contacts, config.reference().run_all(&pairs));
+        assert_ne!(contacts, crate::contacts(&pairs));
+        let error = Session::new(software(), workspace(), expected).run(&pairs).unwrap_err();
+        assert!(error.to_string().contains("records (0: f32, 1: f16, 2: bf16) of"), "{error}");
+    }
+    // A number beyond f16 makes a pair invalid there, and the host says so.
+    let config = Config { record: Record::F16, ..config() };
+    let expected = Expected::new(&config).unwrap();
+    let device = Software::new(&config, LinkModel::ideal()).unwrap();
+    let mut session = Session::new(device, Workspace::new(expected.layout, 1, 7).unwrap(), expected);
+    let far = [PairRecord::from_spheres([0.0, 0.0, 65_520.0, 1.0], [0.0; 4])];
+    let done = session.transaction().send(&far).unwrap().start().unwrap().confirm().unwrap().wait().unwrap();
+    let error = done.retrieve().unwrap().end().unwrap().strict(&far).unwrap_err().to_string();
+    assert!(error.contains("pair 0, whose z1 is, as f16, NaN, infinite"), "{error}");
 }
 
 /// Whatever step a transaction was dropped at, the device is stopped, the workspace free, and the next one right.
