@@ -87,6 +87,36 @@ fn files_hold_every_point_and_steps_are_computed() {
     }
 }
 
+/// With clocks of place and route the front is solid, through filled points alone, and the others are hollow.
+#[test]
+fn a_routed_point_is_filled_and_on_a_solid_front() {
+    let mut results = results();
+    for point in &mut results.points {
+        let hardware = point.hardware.as_mut().expect("the study counted cells");
+        hardware.routed_mhz = ["wide", "wide+faithful", "exact"].contains(&point.name.as_str()).then_some(91.0);
+    }
+    let wide = results.point("wide").expect("wide is there");
+    assert!((wide.lone_ns() - wide.cycles.lone as f64 * 1000.0 / 91.0).abs() < 1e-9, "times are at the routed clock");
+    for (time, steps) in steps(&results) {
+        assert!(steps.len() < 3, "{time:?}: only what was routed is on a front: {steps:?}");
+    }
+    let room = tempfile::tempdir().expect("a temporary folder");
+    let file = room.path().join("report.html");
+    fs::write(&file, page(&results)).expect("written");
+    let opened = browser::open(&file);
+    assert!(opened.console.is_empty(), "{:#?}", opened.console);
+    let front = between(&opened.dom, "<g data-series=\"front, placed and routed\">", "</g>");
+    assert!(front.contains("Solid") && !front.contains("Dotted"), "{front}");
+    let of_model = "<g data-series=\"clock by the delay model\">";
+    let drawn = between(&opened.dom, "<g data-series=\"placed and routed\">", of_model);
+    assert_eq!(drawn.matches("data-point=").count(), 3, "{drawn}");
+    assert!(drawn.contains("data-point=\"wide\"") && !drawn.contains("hollow"), "{drawn}");
+    let model = between(&opened.dom, of_model, "</svg>");
+    assert_eq!(model.matches("data-point=").count(), results.points.len() - 3);
+    assert!(model.contains("hollow") && !model.contains("data-point=\"wide\""));
+    assert!(between(&opened.dom, "data-name=\"wide\"", "</tr>").contains(">91<"), "the row has the routed clock");
+}
+
 #[test]
 fn a_choice_meets_its_bounds_and_is_the_cheapest() {
     let results = results();

@@ -58,7 +58,7 @@ fn a_manifest_is_a_configuration_and_flags_win_over_it() {
 #[test]
 fn records_of_16_bits_are_told_of_everywhere() {
     let room = tempfile::tempdir().expect("a temporary folder");
-    afu(room.path(), &["rtl", "--record", "bf16", "--out", "a"]).success();
+    afu(room.path(), &["rtl", "--shell", "line", "--record", "bf16", "--out", "a"]).success();
     let files = contents(&room.path().join("a"));
     let manifest: serde_json::Value = serde_json::from_slice(&files["manifest.json"]).expect("JSON");
     assert_eq!(manifest["config"]["record"], "bf16");
@@ -68,7 +68,7 @@ fn records_of_16_bits_are_told_of_everywhere() {
     let top = String::from_utf8_lossy(&files["scpu.v"]).into_owned();
     assert!(top.contains("--record bf16"), "{top}");
     afu(room.path(), &["rtl", "--config", "a", "--record", "f32", "--out", "b"]).success();
-    afu(room.path(), &["rtl", "--out", "c"]).success();
+    afu(room.path(), &["rtl", "--shell", "line", "--out", "c"]).success();
     assert_eq!(
         contents(&room.path().join("b")),
         contents(&room.path().join("c")),

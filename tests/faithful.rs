@@ -1,6 +1,7 @@
-//! Faithful reciprocals and roots: every significand of every fraction length, against exact integers.
+//! Reciprocals and roots, faithful ones of every fraction length and correctly rounded ones of binary32's: every
+//! significand, against exact integers.
 
-use contact_afu::number::{FAITHFUL_FRACTION_BITS, Faithful, Function};
+use contact_afu::number::{FAITHFUL_FRACTION_BITS, Faithful, Format, Function, Number, Soft};
 
 /// Whether `value` is less than one unit from the exact result and equal to it where that is a whole number of units;
 /// and the sign of what is missing, for the middle.
@@ -47,6 +48,42 @@ fn every_significand_is_within_a_unit() {
                     }
                 }
             });
+        }
+    });
+}
+
+/// The significand, with its leading bit, and the exponent of the unit in its last place.
+fn parts(number: Soft) -> (u128, i32) {
+    let bits = number.bits();
+    (bits & 0x7F_FFFF | 1 << 23, (bits >> 23) as i32 - 150)
+}
+
+/// That a root and a reciprocal of binary32 are at most half a unit off. Exactly half they never are: neither function
+/// has such a middle.
+fn half_a_unit(fraction: u32) {
+    let m = u128::from(fraction | 1 << 23);
+    for odd in 0..2 {
+        let number = Soft::from_bits(Format::BINARY32, (127 + odd) << 23 | u128::from(fraction));
+        let (root, unit) = parts(number.sqrt());
+        // In units of 2^-23 the root's square is m · 2^(23 + odd); that of twice the root four times as much.
+        let (radicand, twice) = (m << (25 + odd), 2 * root);
+        assert_eq!(unit, -23, "{fraction:#x}");
+        let is_near = (twice - 1) * (twice - 1) < radicand && radicand < (twice + 1) * (twice + 1);
+        assert!(is_near, "root of {fraction:#x}, odd {odd}");
+    }
+    let (reciprocal, unit) = parts(Soft::from_bits(Format::BINARY32, 127 << 23 | u128::from(fraction)).recip());
+    // In units of its last place the reciprocal is 2^(23 - unit) / m.
+    let exact = 1_u128 << (23 - unit);
+    assert!((2 * exact).abs_diff(2 * m * reciprocal) < m, "reciprocal of {fraction:#x}");
+}
+
+/// What `correct` promises, in the format that studies call `paper`: half a unit, for every significand of 23 fraction
+/// bits. The hardware is this twin bit for bit (`tests/operators.rs`).
+#[test]
+fn every_correct_root_and_reciprocal_is_within_half_a_unit() {
+    std::thread::scope(|scope| {
+        for first in 0..2 {
+            scope.spawn(move || (first..1 << 23).step_by(2).for_each(half_a_unit));
         }
     });
 }

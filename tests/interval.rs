@@ -12,7 +12,7 @@ use std::sync::Arc;
 const OUTPUTS: [&str; 7] = ["pos_x", "pos_y", "pos_z", "normal_x", "normal_y", "normal_z", "depth"];
 
 fn kernel(arithmetic: Arithmetic, fields: Fields, interval: u32) -> Arc<Module> {
-    let (record, model) = (arithmetic.record(), DelayModel::default());
+    let (record, model) = (arithmetic.record(Format::BINARY32), DelayModel::default());
     sphere_kernel(&Settings { arithmetic, record, fields, radius: None, clock_mhz: 200.0, interval, model }).unwrap()
 }
 

@@ -2,7 +2,7 @@
 
 use super::engine::in_parallel;
 use super::{Answer, Formula};
-use crate::config::Profile;
+use crate::config::{Profile, Record};
 use crate::kernel::{ContactRecord, EngineError, Fields, PairRecord, Reference, settle};
 
 /// Something that answers pairs: a profile's reference kernel, or another engine.
@@ -17,22 +17,33 @@ pub trait Contender {
     fn answers(&mut self, pairs: &[PairRecord]) -> Result<Vec<Answer>, EngineError>;
 }
 
-/// A profile's reference kernel, which the hardware equals bit for bit.
+/// A profile's reference kernel, which the hardware equals bit for bit. Over shorter records it answers the pair that was
+/// rounded to them, and is judged by the one that was given: that rounding is part of what they cost.
 #[derive(Clone, Debug)]
 pub struct Profiled {
     profile: Profile,
+    record: Record,
     reference: Reference,
 }
 
 impl Profiled {
     /// The kernel of a profile.
     pub fn new(profile: &Profile) -> Self {
-        Self { profile: profile.clone(), reference: profile.reference(Fields::ALL) }
+        Self::over(profile, Record::F32)
+    }
+
+    /// The kernel of a profile over such records in memory.
+    pub fn over(profile: &Profile, record: Record) -> Self {
+        let reference = profile.reference(Fields::ALL).with_record(record.format());
+        Self { profile: profile.clone(), record, reference }
     }
 
     /// Its name as a contender.
     pub fn title(&self) -> String {
-        self.profile.to_string()
+        match self.record {
+            Record::F32 => self.profile.to_string(),
+            record => format!("{} record {record}", self.profile),
+        }
     }
 }
 

@@ -21,7 +21,7 @@ pub struct Accuracy {
     /// which the same command goes on where it was stopped. Without it, a row a profile
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Some ten configurations and fewer pairs, nothing placed and routed
+    /// Some ten configurations and fewer pairs, nothing placed and routed unless --seeds asks for it
     #[arg(long, requires = "out")]
     quick: bool,
     /// Write into the folder even if afu did not make it; other files in it are left alone
@@ -30,6 +30,10 @@ pub struct Accuracy {
     /// Place and route nothing: the fronts are then those of the delay model
     #[arg(long)]
     no_route: bool,
+    /// Place and route the points on the fronts with each of these seeds of the placer, a list, of whose clocks the median
+    /// counts; nextpnr must then be there [default: 1 in the full study, where nextpnr is there]
+    #[arg(long, value_name = "LIST", value_delimiter = ',', requires = "out", conflicts_with_all = ["no_route", "no_synth"])]
+    seeds: Vec<u32>,
     /// Link between AFU and memory: a name or file as in `afu cosim`
     #[arg(long, value_name = "NAME|FILE", default_value = "harp1")]
     link: String,
@@ -40,7 +44,7 @@ pub struct Accuracy {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256))]
     jobs: Option<u32>,
     /// Neighbours of the front that the full study adds, at most
-    #[arg(long, value_name = "N", default_value_t = 12, requires = "out")]
+    #[arg(long, value_name = "N", default_value_t = 6, requires = "out")]
     neighbours: usize,
     /// Only these profiles: a list of half, bfloat, paper, wide, exact, eXfY
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
@@ -68,15 +72,23 @@ pub fn run(options: &Accuracy) -> Result<(), Failure> {
     if size == Size::Full {
         plan.neighbours = options.neighbours;
     }
+    if !options.seeds.is_empty() {
+        (plan.placer_seeds, plan.must_route) = (options.seeds.clone(), true);
+    }
     if options.no_route || options.no_synth {
         plan.placer_seeds.clear();
     }
     let folder = options.out.as_deref().map(|folder| (folder, options.force));
-    let bar = progress::bar("accuracy", "measurements", 0);
-    let results = trade::run(&plan, folder, |work| match work {
-        Work::Planned(more) => bar.inc_length(more as u64),
-        Work::Begun(what) => bar.set_prefix(what),
-        Work::Done => bar.inc(1),
+    let bar = progress::share("accuracy");
+    let (mut planned, mut done) = (0.0, 0.0);
+    let results = trade::run(&plan, folder, |work| {
+        match work {
+            Work::Planned(more) => planned += more,
+            Work::Begun(what) => bar.set_prefix(what),
+            Work::Done(seconds) => done += seconds,
+        }
+        bar.set_length(planned as u64);
+        bar.set_position(done as u64);
     });
     bar.finish_and_clear();
     let mut results = results?;

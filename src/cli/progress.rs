@@ -16,6 +16,16 @@ pub fn bar(title: &str, unit: &str, length: u64) -> ProgressBar {
     bar
 }
 
+/// A bar over work whose length is guessed, and so is told only as a share.
+pub fn share(title: &str) -> ProgressBar {
+    let bar = ProgressBar::new(0);
+    if let Ok(style) = ProgressStyle::with_template("{prefix} [{bar:30}] {percent} %, {elapsed}, about {eta} left") {
+        bar.set_style(style.progress_chars("=> "));
+    }
+    bar.set_prefix(title.to_owned());
+    bar
+}
+
 /// A turning sign for work whose length nobody knows.
 pub fn spinner(title: &str) -> ProgressBar {
     let spinner = ProgressBar::new_spinner();

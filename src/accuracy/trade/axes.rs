@@ -1,6 +1,6 @@
 //! The configurations of a study.
 
-use crate::config::{Config, Profile, Shell};
+use crate::config::{Config, Profile, Record, Shell};
 use crate::number::{Format, Roots};
 
 /// A configuration as studies have it: one SCPU, nothing around the line port. What more SCPUs give follows from it.
@@ -41,6 +41,11 @@ fn intervals(cycles: &[u32]) -> Vec<Choice> {
     cycles.iter().map(|&interval| ("interval", one(Config { interval, ..Config::default() }))).collect()
 }
 
+fn records(choices: &[(&str, Record)]) -> Vec<Choice> {
+    let of = |&(name, record): &(&str, Record)| profile(name).map(|config| Config { record, ..config });
+    choices.iter().filter_map(of).map(|config| ("record", config)).collect()
+}
+
 /// A row a profile: from narrow to exact.
 pub(super) fn of_profiles() -> Vec<Choice> {
     profiles("profile", &["half", "bfloat", "e8f15", "paper", "wide", "wide+faithful", "exact"])
@@ -54,24 +59,33 @@ pub(super) fn few() -> Vec<Choice> {
 /// One axis at a time from `wide`.
 pub(super) fn each_alone() -> Vec<Choice> {
     let fraction: Vec<String> =
-        [5, 7, 9, 11, 13, 15, 17, 19, 20, 21, 22, 24, 25, 27, 31].map(|bits| format!("e10f{bits}z")).to_vec();
-    let exponent: Vec<String> = [6, 7, 9, 11, 12].map(|bits| format!("e{bits}f23z")).to_vec();
+        [5, 7, 9, 11, 13, 15, 17, 19, 21, 22, 24, 25, 27].map(|bits| format!("e10f{bits}z")).to_vec();
+    let exponent: Vec<String> = [7, 9, 11].map(|bits| format!("e{bits}f23z")).to_vec();
     let of = |axis, list: &[String]| profiles(axis, &list.iter().map(String::as_str).collect::<Vec<_>>());
     [
         of_profiles(),
         of("fraction bits", &fraction),
         of("exponent bits", &exponent),
-        profiles("subnormals", &["wide+kept", "paper+flushed", "half+flushed"]),
+        profiles("subnormals", &["wide+kept", "paper+flushed"]),
         profiles("rounding", &["wide+zero", "paper+zero"]),
         profiles("roots", &["paper+faithful", "e10f15zr", "e10f19zr"]),
-        clocks(&[50.0, 75.0, 100.0, 150.0, 250.0, 300.0]),
+        clocks(&[50.0, 100.0, 150.0, 250.0, 300.0]),
+        records(&[
+            ("half", Record::F16),
+            ("bfloat", Record::Bf16),
+            ("e8f15", Record::F16),
+            ("e8f15", Record::Bf16),
+            ("wide", Record::F16),
+            ("wide", Record::Bf16),
+            ("wide+faithful", Record::F16),
+        ]),
         intervals(&[2, 4]),
     ]
     .concat()
 }
 
 /// Configurations one step from `config`: a fraction or exponent bit more or less, roots of the other kind, the next clock
-/// up or down.
+/// up or down, records of other numbers.
 pub(super) fn neighbours(config: &Config) -> Vec<Choice> {
     let format = config.profile.format();
     let (exponent, fraction) = (format.exponent_bits(), format.fraction_bits());
@@ -93,7 +107,9 @@ pub(super) fn neighbours(config: &Config) -> Vec<Choice> {
     };
     let formats = formats.into_iter().flatten().map(|profile| Config { profile, ..config.clone() });
     let clocks = [0.75, 1.25].map(|factor| Config { clock_mhz: (config.clock_mhz * factor).round(), ..config.clone() });
-    formats.chain(clocks).map(|config| ("neighbour of the front", config)).collect()
+    let others = [Record::F32, Record::F16, Record::Bf16].into_iter().filter(|&record| record != config.record);
+    let records = others.map(|record| Config { record, ..config.clone() });
+    formats.chain(clocks).chain(records).map(|config| ("neighbour of the front", config)).collect()
 }
 
 /// Whether two configurations are one under two names.
@@ -136,8 +152,8 @@ mod tests {
         assert_eq!(of_profiles().len(), 7);
         assert_eq!(few().len(), 10);
         let (good, left_out) = possible(each_alone());
-        assert_eq!(good.len(), 7 + 15 + 5 + 3 + 2 + 3 + 6 + 2);
-        assert!(left_out.is_empty(), "{left_out:?}");
+        assert_eq!(good.len(), 7 + 13 + 3 + 2 + 2 + 3 + 5 + 7 + 2);
+        assert!(good.len() >= 40 && left_out.is_empty(), "{left_out:?}");
         let (_, left_out) = possible(intervals(&[0, 1, 100]));
         assert_eq!(left_out.len(), 2, "{left_out:?}");
         assert!(left_out[0].starts_with("interval 0"), "{left_out:?}");
@@ -146,6 +162,7 @@ mod tests {
         assert_eq!(two.len(), 2);
         let around = neighbours(&profile("wide").expect("a profile"));
         let names: Vec<_> = around.iter().map(|(_, config)| name(config)).collect();
-        assert_eq!(names, ["e10f23zr", "e10f24z", "e10f22z", "e9f23z", "e11f23z", "wide clock 150", "wide clock 250"]);
+        assert_eq!(names[..5], ["e10f23zr", "e10f24z", "e10f22z", "e9f23z", "e11f23z"]);
+        assert_eq!(names[5..], ["wide clock 150", "wide clock 250", "wide record f16", "wide record bf16"]);
     }
 }

@@ -52,6 +52,8 @@ pub struct Plan {
     pub neighbours: usize,
     /// The placer's seeds for the points on the front; none: nothing is routed.
     pub placer_seeds: Vec<u32>,
+    /// Whether a missing program for that is an error, and not only told.
+    pub must_route: bool,
     /// Configurations that are worked on at a time.
     pub jobs: usize,
 }
@@ -76,8 +78,9 @@ impl Size {
             seed,
             target: Target::Ecp5,
             synthesis: true,
-            neighbours: if full { 12 } else { 0 },
+            neighbours: if full { 6 } else { 0 },
             placer_seeds: if full { vec![1] } else { Vec::new() },
+            must_route: false,
             jobs,
         }
     }

@@ -8,8 +8,6 @@ use super::software;
 use super::{Plan, Point, Results, ResultsError};
 use crate::accuracy::{Contenders, Failed, Profiled, Row, measure};
 use crate::config::Config;
-#[cfg(feature = "ode")]
-use crate::kernel::Fields;
 use crate::link::LinkError;
 use crate::synth::{SynthError, Unit};
 use crate::verify::{Bench, VerifyError, rtl_sha256};
@@ -38,15 +36,31 @@ pub enum TradeError {
     Results(#[from] ResultsError),
 }
 
-/// A piece of work done, for progress.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// A piece of work done, for progress. How long a piece takes is guessed, in seconds of one processor where nothing is
+/// known yet: only the shares count.
+#[derive(Clone, Debug, PartialEq)]
 pub enum Work {
-    /// So many pieces of work more.
-    Planned(usize),
+    /// So many seconds of work more; or less, where there turns out to be less to do.
+    Planned(f64),
     /// Something begins.
     Begun(String),
-    /// A piece is done.
-    Done,
+    /// So many of them are done.
+    Done(f64),
+}
+
+/// Guesses: a pair's answer and its judgement; a model and a netlist; place and route.
+const PAIR_SECONDS: f64 = 5e-6;
+const COST_SECONDS: f64 = 60.0;
+const ROUTE_SECONDS: f64 = 600.0;
+/// Points on fronts, before any is known.
+const ON_FRONTS: f64 = 8.0;
+/// Arithmetics that answer a set before their rows are kept: the truth about the set is found anew for each so many.
+const AT_ONCE: usize = 16;
+
+/// A guess at the seconds of so many configurations.
+fn seconds(plan: &Plan, configs: usize) -> f64 {
+    let pairs: usize = plan.sets.iter().map(|set| set.pairs.len()).sum();
+    configs as f64 * (COST_SECONDS + PAIR_SECONDS * pairs as f64)
 }
 
 /// Measures `plan`. What `folder` (taken even if it is not ours with `true`) holds from an earlier run is not measured
@@ -58,14 +72,15 @@ pub enum Work {
 pub fn run(plan: &Plan, folder: Option<(&Path, bool)>, mut progress: impl FnMut(Work)) -> Result<Results, TradeError> {
     let mut store = Store::open(folder)?;
     let mut results = Results::new(plan);
-    progress(Work::Planned(plan.choices.len() + plan.sets.len()));
+    let routes = ON_FRONTS * ROUTE_SECONDS * plan.placer_seeds.len() as f64;
+    progress(Work::Planned(seconds(plan, plan.choices.len() + plan.neighbours) + routes));
     add(plan, &plan.choices, &mut results, &mut store, &mut progress)?;
     if plan.neighbours > 0 {
         let more = beside_the_front(plan, &results);
-        progress(Work::Planned(more.len() + plan.sets.len()));
+        progress(Work::Planned(seconds(plan, more.len()) - seconds(plan, plan.neighbours)));
         add(plan, &more, &mut results, &mut store, &mut progress)?;
     }
-    route(plan, &mut results, &mut store, &mut progress)?;
+    route(plan, routes, &mut results, &mut store, &mut progress)?;
     progress(Work::Begun("the diamond".to_owned()));
     drift(&mut results)?;
     // Last of all, when nothing else runs.
@@ -73,7 +88,7 @@ pub fn run(plan: &Plan, folder: Option<(&Path, bool)>, mut progress: impl FnMut(
     let pairs = plan.sets.iter().rfind(|set| set.is_scene).map_or(&[][..], |set| &set.pairs);
     results.kernels = software::kernels(pairs);
     for point in &mut results.points {
-        point.software_ns = software::of_profile(&point.config.profile, pairs);
+        point.software_ns = software::of_config(&point.config, pairs);
     }
     Ok(results)
 }
@@ -86,10 +101,10 @@ fn drift(results: &mut Results) -> Result<(), TradeError> {
     for index in 0..results.points.len() {
         let (known, rest) = results.points.split_at_mut(index);
         let Some(point) = rest.first_mut() else { break };
-        let profile = &point.config.profile;
-        point.drift = match known.iter().find(|known| known.config.profile.arithmetic() == profile.arithmetic()) {
+        let mut reference = point.config.reference();
+        point.drift = match known.iter().find(|known| known.config.reference() == reference) {
             Some(known) => known.drift,
-            None => scene.drift(&mut profile.reference(Fields::ALL)).map_err(fail)?,
+            None => scene.drift(&mut reference).map_err(fail)?,
         };
     }
     Ok(())
@@ -132,24 +147,35 @@ const ROUNDS: usize = 4;
 /// Places and routes the points on the fronts.
 fn route(
     plan: &Plan,
+    mut guessed: f64,
     results: &mut Results,
     store: &mut Store,
     progress: &mut impl FnMut(Work),
 ) -> Result<(), TradeError> {
-    for _ in 0..if plan.placer_seeds.is_empty() { 0 } else { ROUNDS } {
-        let open = |point: &Point| point.hardware.is_some() && point.routed_mhz().is_none();
-        let chosen: Vec<usize> = best(results).into_iter().filter(|&index| open(&results.points[index])).collect();
+    let seeds = &plan.placer_seeds;
+    let mut tried: Vec<usize> = Vec::new();
+    for _ in 0..if seeds.is_empty() { 0 } else { ROUNDS } {
+        let is_open = |point: &Point| point.hardware.is_some() && point.routed_mhz().is_none();
+        let chosen =
+            best(results).into_iter().filter(|index| is_open(&results.points[*index]) && !tried.contains(index));
+        let chosen: Vec<usize> = chosen.collect();
         if chosen.is_empty() {
             break;
         }
-        progress(Work::Planned(chosen.len()));
+        progress(Work::Planned(ROUTE_SECONDS * (chosen.len() * seeds.len()) as f64 - std::mem::take(&mut guessed)));
         let configs: Vec<Config> = chosen.iter().map(|&index| results.points[index].config.clone()).collect();
-        let costs = costs(plan, &configs.iter().collect::<Vec<_>>(), &plan.placer_seeds, store, progress)?;
-        for (index, cost) in chosen.into_iter().zip(costs) {
-            let point = &mut results.points[index];
-            (point.cycles, point.hardware) = (cost.cycles, cost.hardware);
+        let costs = costs(plan, &configs.iter().collect::<Vec<_>>(), seeds, store, progress)?;
+        for (&index, cost) in chosen.iter().zip(costs) {
+            results.left_out.extend(cost.missing.filter(|missing| !results.left_out.contains(missing)));
+            // Where it could not be routed, what was known of it stays.
+            if cost.hardware.is_some() {
+                let point = &mut results.points[index];
+                (point.cycles, point.hardware) = (cost.cycles, cost.hardware);
+            }
         }
+        tried.extend(chosen);
     }
+    progress(Work::Planned(-guessed));
     Ok(())
 }
 
@@ -190,29 +216,34 @@ fn errors(
     store: &mut Store,
     progress: &mut impl FnMut(Work),
 ) -> Result<Vec<Vec<Row>>, TradeError> {
+    let contender = |config: &Config| Profiled::over(&config.profile, config.record);
     // The clock changes no bit: an arithmetic answers once.
     let mut contenders = Contenders::new();
     let mut names: Vec<String> = Vec::new();
     for config in configs {
-        let contender: Box<dyn crate::accuracy::Contender> = Box::new(Profiled::new(&config.profile));
-        if !names.contains(&contender.name()) {
-            names.push(contender.name());
-            contenders.push(contender);
+        let contender = contender(config);
+        if !names.contains(&contender.title()) {
+            names.push(contender.title());
+            contenders.push(Box::new(contender));
         }
     }
     let mut found: Vec<Vec<Row>> = vec![Vec::new(); configs.len()];
     for set in &plan.sets {
         progress(Work::Begun(format!("errors on {}", set.name)));
-        let (rows, _) = measure(&set.name, &set.pairs, &mut contenders, &store.rows, |_| {})?;
+        let mut rows = Vec::new();
+        for some in contenders.chunks_mut(AT_ONCE) {
+            let (of_some, _) = measure(&set.name, &set.pairs, some, &store.rows, |_| {})?;
+            let is_new = |row: &&Row| !store.rows.iter().any(|known| known.key == row.key);
+            let new: Vec<Row> = of_some.iter().filter(is_new).cloned().collect();
+            store.rows.extend(new);
+            store.save()?;
+            rows.extend(of_some);
+        }
         for (config, found) in configs.iter().zip(&mut found) {
-            let name = Profiled::new(&config.profile).title();
+            let name = contender(config).title();
             found.extend(rows.iter().find(|row| row.contender == name).cloned());
         }
-        let new: Vec<Row> =
-            rows.into_iter().filter(|row| !store.rows.iter().any(|known| known.key == row.key)).collect();
-        store.rows.extend(new);
-        store.save()?;
-        progress(Work::Done);
+        progress(Work::Done(PAIR_SECONDS * (set.pairs.len() * configs.len()) as f64));
     }
     Ok(found)
 }
@@ -274,7 +305,11 @@ fn costs(
                 }
                 News::Ended(index, cost) => {
                     costs[index] = Some((*cost).inspect_err(|_| stop())?);
-                    progress(Work::Done);
+                    progress(Work::Done(if seeds.is_empty() {
+                        COST_SECONDS
+                    } else {
+                        ROUTE_SECONDS * seeds.len() as f64
+                    }));
                 }
             }
         }
@@ -306,8 +341,19 @@ fn cost(
                 tell(News::Hardware(made.clone()));
                 Some(made)
             }
-            Err(SynthError::MissingTool(tool)) => {
+            Err(SynthError::MissingTool(tool)) if seeds.is_empty() => {
                 missing = Some(format!("area and clock: {tool}"));
+                None
+            }
+            Err(SynthError::MissingTool(tool)) if !plan.must_route => {
+                missing = Some(format!("place and route: {tool}"));
+                None
+            }
+            // One that does not route leaves the others their points.
+            Err(error @ SynthError::Failed { .. }) if !seeds.is_empty() => {
+                let text = error.to_string();
+                missing =
+                    Some(format!("place and route of {}: {}", name(config), text.lines().next().unwrap_or_default()));
                 None
             }
             Err(error) => return Err(error.into()),

@@ -1,6 +1,6 @@
 //! The same arithmetic in software, timed on this machine.
 
-use crate::config::Profile;
+use crate::config::Config;
 use crate::kernel::batch::{Batch, Level};
 use crate::kernel::double::Doubles;
 use crate::kernel::{Fields, PairRecord};
@@ -13,10 +13,10 @@ const PASSES: usize = 5;
 const PAIRS: usize = 2_000;
 const KERNEL_PAIRS: usize = 4_096;
 
-/// Nanoseconds a pair of a profile's reference kernel, on one thread.
-pub(super) fn of_profile(profile: &Profile, pairs: &[PairRecord]) -> Option<f64> {
+/// Nanoseconds a pair of a configuration's reference kernel, on one thread.
+pub(super) fn of_config(config: &Config, pairs: &[PairRecord]) -> Option<f64> {
     let pairs = &pairs[..pairs.len().min(PAIRS)];
-    let reference = profile.reference(Fields::ALL);
+    let reference = config.reference();
     shortest(pairs.len(), PASSES, || {
         black_box(reference.run_all(black_box(pairs)));
     })
