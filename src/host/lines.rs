@@ -285,7 +285,7 @@ mod tests {
             for (i, contact) in records.iter().enumerate() {
                 let place = i % layout.contacts_per_line() as usize * layout.contact_bits() as usize / 16;
                 let number = if results == Results::Hits {
-                    vec![i as u32 * 70_001 & 0xFFFF, i as u32 * 70_001 >> 16]
+                    vec![(i as u32 * 70_001) & 0xFFFF, (i as u32 * 70_001) >> 16]
                 } else {
                     vec![]
                 };
