@@ -9,6 +9,7 @@ contact_afu_feeder.v
 fp_greater_e10f23z_normal.v
 fp_sqrt_e10f23z_normal.v
 fp_add_magnitudes_e10f23z_normal.v
+multiplier_12x12.v
 fp_square_e10f23z_normal.v
 fp_sub_e10f23z_normal.v
 fp_convert_e8f23_finite_to_e10f23z.v

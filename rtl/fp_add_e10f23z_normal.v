@@ -26,13 +26,13 @@ module fp_add_e10f23z_normal (
   wire [22:0] b_fraction = b[22:0];
   wire [32:0] b_magnitude = {b_exponent, b_fraction};
   wire b_is_larger = a_magnitude < b_magnitude;
+  wire [9:0] small_exponent = b_is_larger ? a_exponent : b_exponent;
+  wire [9:0] large_exponent = b_is_larger ? b_exponent : a_exponent;
   wire a_hidden = |a_exponent;
   wire [23:0] a_significand = {a_hidden, a_fraction};
   wire b_hidden = |b_exponent;
   wire [23:0] b_significand = {b_hidden, b_fraction};
   wire [23:0] small_significand = b_is_larger ? a_significand : b_significand;
-  wire [9:0] small_exponent = b_is_larger ? a_exponent : b_exponent;
-  wire [9:0] large_exponent = b_is_larger ? b_exponent : a_exponent;
   wire [23:0] large_significand = b_is_larger ? b_significand : a_significand;
   wire large_sign = b_is_larger ? b_sign : a_sign;
 
@@ -54,119 +54,135 @@ module fp_add_e10f23z_normal (
   wire [25:0] align_by_16 = exponent_difference[4] ? {16'd0, small_significand_s1[23:14]} : small_significand_s1_wide;
   wire [25:0] align_by_8 = exponent_difference[3] ? {8'd0, align_by_16[25:8]} : align_by_16;
   wire [25:0] align_by_4 = exponent_difference[2] ? {4'd0, align_by_8[25:4]} : align_by_8;
+  wire align_by_4_loses = exponent_difference[2] & |align_by_8[3:0];
   wire align_by_16_loses = exponent_difference[4] & |small_significand_s1_wide[15:0];
   wire align_by_8_loses = exponent_difference[3] & |align_by_16[7:0];
-  wire align_by_4_loses = exponent_difference[2] & |align_by_8[3:0];
   wire align_far = |exponent_difference[9:5];
-  wire [25:0] align_by_2 = exponent_difference[1] ? {2'd0, align_by_4[25:2]} : align_by_4;
 
   // ---- stage 2 ----
-  reg [23:0] large_significand_s2;
-  reg exponent_difference_0_0_s2;
-  reg [25:0] align_by_2_s2;
+  reg effective_subtraction_s2;
   reg align_far_s2;
   reg small_significand_s1_wide_any_s2;
-  reg align_by_16_loses_or_or_s2;
+  reg align_by_16_loses_or_s2;
+  reg align_by_4_loses_s2;
   reg exponent_difference_1_1_s2;
-  reg align_by_4_1_0_any_s2;
-  reg effective_subtraction_s2;
-  reg [9:0] large_exponent_s2;
+  reg [25:0] align_by_4_s2;
+  reg exponent_difference_0_0_s2;
+  reg [23:0] large_significand_s2;
   always @(posedge clk) begin
-    large_significand_s2 <= large_significand_s1;
-    exponent_difference_0_0_s2 <= exponent_difference[0];
-    align_by_2_s2 <= align_by_2;
+    effective_subtraction_s2 <= effective_subtraction_s1;
     align_far_s2 <= align_far;
     small_significand_s1_wide_any_s2 <= |small_significand_s1_wide;
-    align_by_16_loses_or_or_s2 <= align_by_16_loses | align_by_8_loses | align_by_4_loses;
+    align_by_16_loses_or_s2 <= align_by_16_loses | align_by_8_loses;
+    align_by_4_loses_s2 <= align_by_4_loses;
     exponent_difference_1_1_s2 <= exponent_difference[1];
-    align_by_4_1_0_any_s2 <= |align_by_4[1:0];
-    effective_subtraction_s2 <= effective_subtraction_s1;
-    large_exponent_s2 <= large_exponent_s1;
+    align_by_4_s2 <= align_by_4;
+    exponent_difference_0_0_s2 <= exponent_difference[0];
+    large_significand_s2 <= large_significand_s1;
   end
-  wire [27:0] augend = {1'b0, {large_significand_s2, 3'd0}};
-  wire [25:0] align_by_1 = exponent_difference_0_0_s2 ? {1'b0, align_by_2_s2[25:1]} : align_by_2_s2;
-  wire align_by_2_loses = exponent_difference_1_1_s2 & align_by_4_1_0_any_s2;
-  wire align_by_1_loses = exponent_difference_0_0_s2 & align_by_2_s2[0];
-  wire aligned_sticky = align_far_s2 ? small_significand_s1_wide_any_s2 : (align_by_16_loses_or_or_s2 | align_by_2_loses | align_by_1_loses);
-  wire [27:0] addend = {1'b0, {~align_far_s2 ? align_by_1 : 26'd0, aligned_sticky}};
-  wire [27:0] complemented = addend ^ {28{effective_subtraction_s2}};
-  wire [28:0] sum_and_carry_in = {augend, 1'b1} + {complemented, effective_subtraction_s2};
-  wire [27:0] sum = sum_and_carry_in[28:1];
+  wire align_by_2_loses = exponent_difference_1_1_s2 & |align_by_4_s2[1:0];
+  wire [25:0] align_by_2 = exponent_difference_1_1_s2 ? {2'd0, align_by_4_s2[25:2]} : align_by_4_s2;
+  wire align_by_1_loses = exponent_difference_0_0_s2 & align_by_2[0];
+  wire aligned_sticky = align_far_s2 ? small_significand_s1_wide_any_s2 : (align_by_16_loses_or_s2 | align_by_4_loses_s2 | align_by_2_loses | align_by_1_loses);
+  wire [25:0] align_by_1 = exponent_difference_0_0_s2 ? {1'b0, align_by_2[25:1]} : align_by_2;
 
   // ---- stage 3 ----
-  reg [27:0] sum_s3;
-  reg [9:0] large_exponent_s3;
+  reg [23:0] large_significand_s3;
+  reg [25:0] align_by_1_and_not_align_far_s2_wide_s3;
+  reg aligned_sticky_s3;
   reg effective_subtraction_s3;
   always @(posedge clk) begin
-    sum_s3 <= sum;
-    large_exponent_s3 <= large_exponent_s2;
+    large_significand_s3 <= large_significand_s2;
+    align_by_1_and_not_align_far_s2_wide_s3 <= ~align_far_s2 ? align_by_1 : 26'd0;
+    aligned_sticky_s3 <= aligned_sticky;
     effective_subtraction_s3 <= effective_subtraction_s2;
   end
-  wire normalise_top_16_clear = ~|sum_s3[27:12];
-  wire [27:0] normalise_by_16 = normalise_top_16_clear ? {sum_s3[11:0], 16'd0} : sum_s3;
-  wire normalise_top_8_clear = ~|normalise_by_16[27:20];
-  wire [27:0] normalise_by_8 = normalise_top_8_clear ? {normalise_by_16[19:0], 8'd0} : normalise_by_16;
+  wire [27:0] augend = {1'b0, {large_significand_s3, 3'd0}};
+  wire [27:0] addend = {1'b0, {align_by_1_and_not_align_far_s2_wide_s3, aligned_sticky_s3}};
+  wire [27:0] sum = augend + (addend ^ {28{effective_subtraction_s3}}) + {27'd0, effective_subtraction_s3};
 
   // ---- stage 4 ----
-  reg [27:0] normalise_by_8_s4;
-  reg [9:0] large_exponent_s4;
-  reg normalise_top_16_clear_s4;
-  reg normalise_top_8_clear_s4;
-  reg [2:0] large_sign_s4_line;
-  reg large_sign_s4;
+  reg [27:0] sum_s4;
   reg effective_subtraction_s4;
   always @(posedge clk) begin
-    normalise_by_8_s4 <= normalise_by_8;
-    large_exponent_s4 <= large_exponent_s3;
-    normalise_top_16_clear_s4 <= normalise_top_16_clear;
-    normalise_top_8_clear_s4 <= normalise_top_8_clear;
-    large_sign_s4_line <= {large_sign_s4_line[1:0], large_sign};
-    large_sign_s4 <= large_sign_s4_line[2];
+    sum_s4 <= sum;
     effective_subtraction_s4 <= effective_subtraction_s3;
   end
-  wire normalise_top_4_clear = ~|normalise_by_8_s4[27:24];
-  wire [27:0] normalise_by_4 = normalise_top_4_clear ? {normalise_by_8_s4[23:0], 4'd0} : normalise_by_8_s4;
-  wire normalise_top_2_clear = ~|normalise_by_4[27:26];
-  wire [27:0] normalise_by_2 = normalise_top_2_clear ? {normalise_by_4[25:0], 2'd0} : normalise_by_4;
-  wire normalise_top_1_clear = ~normalise_by_2[27];
-  wire [27:0] normalise_by_1 = normalise_top_1_clear ? {normalise_by_2[26:0], 1'b0} : normalise_by_2;
-  wire [23:0] significand = normalise_by_1[27:4];
-  wire sticky = |normalise_by_1[2:0];
-  wire guard = normalise_by_1[3];
-  wire [4:0] leading_zeros = {normalise_top_16_clear_s4, normalise_top_8_clear_s4, normalise_top_4_clear, normalise_top_2_clear, normalise_top_1_clear};
-  wire [10:0] normalised_exponent = ({1'b0, large_exponent_s4} + 11'd1) - {5'd0, {1'b0, leading_zeros}};
-  wire is_exact_zero = ~normalise_by_1[27];
-  wire sign = large_sign_s4 & ~(is_exact_zero & effective_subtraction_s4);
+  wire normalise_top_16_clear = ~|sum_s4[27:12];
+  wire [27:0] normalise_by_16 = normalise_top_16_clear ? {sum_s4[11:0], 16'd0} : sum_s4;
 
   // ---- stage 5 ----
-  reg sign_s5;
-  reg [9:0] normalised_exponent_9_0_s5;
-  reg [22:0] significand_22_0_s5;
-  reg guard_s5;
-  reg sticky_s5;
-  reg significand_0_0_s5;
-  reg normalise_by_1_27_27_s5;
+  reg [27:0] normalise_by_16_s5;
+  reg normalise_top_16_clear_s5;
+  reg effective_subtraction_s5;
   always @(posedge clk) begin
-    sign_s5 <= sign;
-    normalised_exponent_9_0_s5 <= normalised_exponent[9:0];
-    significand_22_0_s5 <= significand[22:0];
-    guard_s5 <= guard;
-    sticky_s5 <= sticky;
-    significand_0_0_s5 <= significand[0];
-    normalise_by_1_27_27_s5 <= normalise_by_1[27];
+    normalise_by_16_s5 <= normalise_by_16;
+    normalise_top_16_clear_s5 <= normalise_top_16_clear;
+    effective_subtraction_s5 <= effective_subtraction_s4;
   end
-  wire [32:0] truncated = {normalised_exponent_9_0_s5, significand_22_0_s5};
-  wire round_up = guard_s5 & (sticky_s5 | significand_0_0_s5);
-  wire [32:0] rounded = truncated + {32'd0, round_up};
-  wire [32:0] magnitude = normalise_by_1_27_27_s5 ? rounded : 33'd0;
+  wire normalise_top_8_clear = ~|normalise_by_16_s5[27:20];
+  wire [27:0] normalise_by_8 = normalise_top_8_clear ? {normalise_by_16_s5[19:0], 8'd0} : normalise_by_16_s5;
+  wire normalise_top_4_clear = ~|normalise_by_8[27:24];
+  wire [27:0] normalise_by_4 = normalise_top_4_clear ? {normalise_by_8[23:0], 4'd0} : normalise_by_8;
+
+  // ---- stage 6 ----
+  reg [27:0] normalise_by_4_s6;
+  reg [39:0] large_exponent_s6_line;
+  reg [9:0] large_exponent_s6;
+  reg normalise_top_16_clear_s6;
+  reg normalise_top_8_clear_s6;
+  reg normalise_top_4_clear_s6;
+  reg [4:0] large_sign_s6_line;
+  reg large_sign_s6;
+  reg effective_subtraction_s6;
+  always @(posedge clk) begin
+    normalise_by_4_s6 <= normalise_by_4;
+    large_exponent_s6_line <= {large_exponent_s6_line[29:0], large_exponent_s1};
+    large_exponent_s6 <= large_exponent_s6_line[39:30];
+    normalise_top_16_clear_s6 <= normalise_top_16_clear_s5;
+    normalise_top_8_clear_s6 <= normalise_top_8_clear;
+    normalise_top_4_clear_s6 <= normalise_top_4_clear;
+    large_sign_s6_line <= {large_sign_s6_line[3:0], large_sign};
+    large_sign_s6 <= large_sign_s6_line[4];
+    effective_subtraction_s6 <= effective_subtraction_s5;
+  end
+  wire normalise_top_2_clear = ~|normalise_by_4_s6[27:26];
+  wire [27:0] normalise_by_2 = normalise_top_2_clear ? {normalise_by_4_s6[25:0], 2'd0} : normalise_by_4_s6;
+  wire normalise_top_1_clear = ~normalise_by_2[27];
+  wire [27:0] normalise_by_1 = normalise_top_1_clear ? {normalise_by_2[26:0], 1'b0} : normalise_by_2;
+  wire guard = normalise_by_1[3];
+  wire sticky = |normalise_by_1[2:0];
+  wire [23:0] significand = normalise_by_1[27:4];
+  wire round_up = guard & (sticky | significand[0]);
+  wire [4:0] leading_zeros = {normalise_top_16_clear_s6, normalise_top_8_clear_s6, normalise_top_4_clear_s6, normalise_top_2_clear, normalise_top_1_clear};
+  wire [10:0] normalised_exponent = ({1'b0, large_exponent_s6} + 11'd1) - {5'd0, {1'b0, leading_zeros}};
+  wire is_exact_zero = ~normalise_by_1[27];
+  wire sign = large_sign_s6 & ~(is_exact_zero & effective_subtraction_s6);
+
+  // ---- stage 7 ----
+  reg sign_s7;
+  reg [9:0] normalised_exponent_9_0_s7;
+  reg [22:0] significand_22_0_s7;
+  reg round_up_s7;
+  reg normalise_by_1_27_27_s7;
+  always @(posedge clk) begin
+    sign_s7 <= sign;
+    normalised_exponent_9_0_s7 <= normalised_exponent[9:0];
+    significand_22_0_s7 <= significand[22:0];
+    round_up_s7 <= round_up;
+    normalise_by_1_27_27_s7 <= normalise_by_1[27];
+  end
+  wire [32:0] truncated = {normalised_exponent_9_0_s7, significand_22_0_s7};
+  wire [32:0] rounded = truncated + {32'd0, round_up_s7};
+  wire [32:0] magnitude = normalise_by_1_27_27_s7 ? rounded : 33'd0;
 
   // ---- registered outputs ----
   always @(posedge clk) begin
-    result <= {sign_s5, magnitude};
+    result <= {sign_s7, magnitude};
   end
 
   // Bits that nothing needs.
-  wire unused = &{1'b0, sum_and_carry_in[0], significand[23], normalised_exponent[10]};
+  wire unused = &{1'b0, significand[23], normalised_exponent[10]};
 
 endmodule
 

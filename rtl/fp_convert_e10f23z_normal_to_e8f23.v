@@ -24,81 +24,97 @@ module fp_convert_e10f23z_normal_to_e8f23 (
   wire [22:0] a_fraction = a[22:0];
   wire [23:0] a_significand = {1'b1, a_fraction};
   wire [24:0] a_significand_wide = {a_significand, 1'b0};
-  wire [24:0] denormalise_by_16 = denormalise_distance[4] ? {16'd0, a_significand[23:15]} : a_significand_wide;
-  wire denormalise_by_16_loses = denormalise_distance[4] & |a_significand_wide[15:0];
-  wire denormalise_far = |denormalise_distance[8:5];
   wire a_hidden = |a_exponent;
   wire overflow = ~rebiased_exponent[10] & (|rebiased_exponent[10:8] | &rebiased_exponent[7:0]);
   wire a_sign = a[33];
 
   // ---- stage 1 ----
-  reg denormalise_far_s1;
-  reg a_significand_wide_any_s1;
-  reg denormalise_by_16_loses_s1;
+  reg denormalise_distance_4_4_s1;
+  reg a_significand_wide_15_0_any_s1;
   reg denormalise_distance_3_3_s1;
-  reg [24:0] denormalise_by_16_s1;
+  reg [8:0] a_significand_23_15_s1;
+  reg [24:0] a_significand_wide_s1;
   reg denormalise_distance_2_2_s1;
   reg denormalise_distance_1_1_s1;
   reg denormalise_distance_0_0_s1;
+  reg [3:0] denormalise_distance_8_5_s1;
   reg [7:0] rebiased_exponent_7_0_and_s1;
   reg a_hidden_s1;
   reg overflow_s1;
   reg a_sign_s1;
   always @(posedge clk) begin
-    denormalise_far_s1 <= denormalise_far;
-    a_significand_wide_any_s1 <= |a_significand_wide;
-    denormalise_by_16_loses_s1 <= denormalise_by_16_loses;
+    denormalise_distance_4_4_s1 <= denormalise_distance[4];
+    a_significand_wide_15_0_any_s1 <= |a_significand_wide[15:0];
     denormalise_distance_3_3_s1 <= denormalise_distance[3];
-    denormalise_by_16_s1 <= denormalise_by_16;
+    a_significand_23_15_s1 <= a_significand[23:15];
+    a_significand_wide_s1 <= a_significand_wide;
     denormalise_distance_2_2_s1 <= denormalise_distance[2];
     denormalise_distance_1_1_s1 <= denormalise_distance[1];
     denormalise_distance_0_0_s1 <= denormalise_distance[0];
+    denormalise_distance_8_5_s1 <= denormalise_distance[8:5];
     rebiased_exponent_7_0_and_s1 <= not_rebiased_exponent_10_10_and ? rebiased_exponent[7:0] : 8'd0;
     a_hidden_s1 <= a_hidden;
     overflow_s1 <= overflow;
     a_sign_s1 <= a_sign;
   end
-  wire denormalise_by_8_loses = denormalise_distance_3_3_s1 & |denormalise_by_16_s1[7:0];
-  wire [24:0] denormalise_by_8 = denormalise_distance_3_3_s1 ? {8'd0, denormalise_by_16_s1[24:8]} : denormalise_by_16_s1;
+  wire denormalise_by_16_loses = denormalise_distance_4_4_s1 & a_significand_wide_15_0_any_s1;
+  wire [24:0] denormalise_by_16 = denormalise_distance_4_4_s1 ? {16'd0, a_significand_23_15_s1} : a_significand_wide_s1;
+  wire denormalise_by_8_loses = denormalise_distance_3_3_s1 & |denormalise_by_16[7:0];
+  wire [24:0] denormalise_by_8 = denormalise_distance_3_3_s1 ? {8'd0, denormalise_by_16[24:8]} : denormalise_by_16;
   wire denormalise_by_4_loses = denormalise_distance_2_2_s1 & |denormalise_by_8[3:0];
   wire [24:0] denormalise_by_4 = denormalise_distance_2_2_s1 ? {4'd0, denormalise_by_8[24:4]} : denormalise_by_8;
   wire denormalise_by_2_loses = denormalise_distance_1_1_s1 & |denormalise_by_4[1:0];
   wire [24:0] denormalise_by_2 = denormalise_distance_1_1_s1 ? {2'd0, denormalise_by_4[24:2]} : denormalise_by_4;
   wire denormalise_by_1_loses = denormalise_distance_0_0_s1 & denormalise_by_2[0];
-  wire sticky = denormalise_far_s1 ? a_significand_wide_any_s1 : (denormalise_by_16_loses_s1 | denormalise_by_8_loses | denormalise_by_4_loses | denormalise_by_2_loses | denormalise_by_1_loses);
+  wire denormalise_far = |denormalise_distance_8_5_s1;
   wire [24:0] denormalise_by_1 = denormalise_distance_0_0_s1 ? {1'b0, denormalise_by_2[24:1]} : denormalise_by_2;
-  wire [24:0] denormalised = ~denormalise_far_s1 ? denormalise_by_1 : 25'd0;
-  wire guard = denormalised[0];
 
   // ---- stage 2 ----
-  reg a_sign_s2;
-  reg overflow_s2;
-  reg a_hidden_s2;
   reg [7:0] rebiased_exponent_7_0_and_s2;
-  reg [22:0] denormalised_23_1_s2;
-  reg guard_s2;
-  reg sticky_or_denormalised_1_1_s2;
+  reg [24:0] denormalise_by_1_s2;
+  reg denormalise_far_s2;
+  reg a_significand_wide_s1_any_s2;
+  reg denormalise_by_16_loses_or_or_or_or_s2;
+  reg a_hidden_s2;
+  reg overflow_s2;
+  reg a_sign_s2;
   always @(posedge clk) begin
-    a_sign_s2 <= a_sign_s1;
-    overflow_s2 <= overflow_s1;
-    a_hidden_s2 <= a_hidden_s1;
     rebiased_exponent_7_0_and_s2 <= rebiased_exponent_7_0_and_s1;
-    denormalised_23_1_s2 <= denormalised[23:1];
-    guard_s2 <= guard;
-    sticky_or_denormalised_1_1_s2 <= sticky | denormalised[1];
+    denormalise_by_1_s2 <= denormalise_by_1;
+    denormalise_far_s2 <= denormalise_far;
+    a_significand_wide_s1_any_s2 <= |a_significand_wide_s1;
+    denormalise_by_16_loses_or_or_or_or_s2 <= denormalise_by_16_loses | denormalise_by_8_loses | denormalise_by_4_loses | denormalise_by_2_loses | denormalise_by_1_loses;
+    a_hidden_s2 <= a_hidden_s1;
+    overflow_s2 <= overflow_s1;
+    a_sign_s2 <= a_sign_s1;
   end
-  wire is_infinity = overflow_s2 & a_hidden_s2;
-  wire a_is_zero = ~a_hidden_s2;
+  wire [24:0] denormalised = ~denormalise_far_s2 ? denormalise_by_1_s2 : 25'd0;
+  wire [30:0] truncated = {rebiased_exponent_7_0_and_s2, denormalised[23:1]};
+  wire guard = denormalised[0];
+  wire sticky = denormalise_far_s2 ? a_significand_wide_s1_any_s2 : denormalise_by_16_loses_or_or_or_or_s2;
+  wire round_up = guard & (sticky | denormalised[1]);
+  wire [30:0] rounded = truncated + {30'd0, round_up};
+
+  // ---- stage 3 ----
+  reg a_sign_s3;
+  reg overflow_s3;
+  reg a_hidden_s3;
+  reg [30:0] rounded_s3;
+  always @(posedge clk) begin
+    a_sign_s3 <= a_sign_s2;
+    overflow_s3 <= overflow_s2;
+    a_hidden_s3 <= a_hidden_s2;
+    rounded_s3 <= rounded;
+  end
+  wire is_infinity = overflow_s3 & a_hidden_s3;
+  wire a_is_zero = ~a_hidden_s3;
   wire is_special = is_infinity | a_is_zero;
   wire [30:0] special_magnitude = {{8{is_infinity}}, 23'd0};
-  wire [30:0] truncated = {rebiased_exponent_7_0_and_s2, denormalised_23_1_s2};
-  wire round_up = guard_s2 & sticky_or_denormalised_1_1_s2;
-  wire [30:0] rounded = truncated + {30'd0, round_up};
-  wire [30:0] magnitude = is_special ? special_magnitude : rounded;
+  wire [30:0] magnitude = is_special ? special_magnitude : rounded_s3;
 
   // ---- registered outputs ----
   always @(posedge clk) begin
-    result <= {a_sign_s2, magnitude};
+    result <= {a_sign_s3, magnitude};
   end
 
   // Bits that nothing needs.

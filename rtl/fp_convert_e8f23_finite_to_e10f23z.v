@@ -19,8 +19,6 @@ module fp_convert_e8f23_finite_to_e10f23z (
   wire a_hidden = |a_exponent;
   wire [22:0] a_fraction = a[22:0];
   wire [23:0] a_significand = {a_hidden, a_fraction};
-  wire a_significand_23_8_is_zero = ~|a_significand[23:8];
-  wire [23:0] a_normalise_by_16 = a_significand_23_8_is_zero ? {a_fraction[7:0], 16'd0} : a_significand;
   wire a_significand_23_16_is_zero = ~|a_significand[23:16];
   wire a_significand_15_12_is_zero = ~|a_fraction[15:12];
   wire a_significand_11_10_is_zero = ~|a_fraction[11:10];
@@ -43,49 +41,65 @@ module fp_convert_e8f23_finite_to_e10f23z (
   wire a_sign = a[31];
 
   // ---- stage 1 ----
-  reg a_sign_s1;
-  reg a_is_zero_s1;
-  reg [6:0] a_exponent_7_1_s1;
-  reg a_exponent_0_0_or_not_a_hidden_s1;
-  reg a_significand_23_8_is_zero_s1;
+  reg a_significand_23_8_any_s1;
   reg a_significand_7_4_is_zero_s1;
   reg [1:0] a_significand_3_0_zeros_if_s1;
   reg a_significand_23_16_is_zero_s1;
   reg [2:0] a_significand_15_8_zeros_if_s1;
-  reg [23:0] a_normalise_by_16_s1;
+  reg [7:0] a_fraction_7_0_s1;
+  reg [23:0] a_significand_s1;
+  reg [6:0] a_exponent_7_1_s1;
+  reg a_exponent_0_0_or_not_a_hidden_s1;
+  reg a_is_zero_s1;
+  reg a_sign_s1;
   always @(posedge clk) begin
-    a_sign_s1 <= a_sign;
-    a_is_zero_s1 <= a_is_zero;
-    a_exponent_7_1_s1 <= a_exponent[7:1];
-    a_exponent_0_0_or_not_a_hidden_s1 <= a_exponent[0] | ~a_hidden;
-    a_significand_23_8_is_zero_s1 <= a_significand_23_8_is_zero;
+    a_significand_23_8_any_s1 <= |a_significand[23:8];
     a_significand_7_4_is_zero_s1 <= a_significand_7_4_is_zero;
     a_significand_3_0_zeros_if_s1 <= a_significand_7_4_is_zero ? a_significand_3_0_zeros : a_significand_7_4_zeros;
     a_significand_23_16_is_zero_s1 <= a_significand_23_16_is_zero;
     a_significand_15_8_zeros_if_s1 <= a_significand_23_16_is_zero ? a_significand_15_8_zeros : a_significand_23_16_zeros;
-    a_normalise_by_16_s1 <= a_normalise_by_16;
+    a_fraction_7_0_s1 <= a_fraction[7:0];
+    a_significand_s1 <= a_significand;
+    a_exponent_7_1_s1 <= a_exponent[7:1];
+    a_exponent_0_0_or_not_a_hidden_s1 <= a_exponent[0] | ~a_hidden;
+    a_is_zero_s1 <= a_is_zero;
+    a_sign_s1 <= a_sign;
   end
-  wire [7:0] a_effective_exponent = {a_exponent_7_1_s1, a_exponent_0_0_or_not_a_hidden_s1};
+  wire a_significand_23_8_is_zero = ~a_significand_23_8_any_s1;
   wire [2:0] a_significand_7_0_zeros = {a_significand_7_4_is_zero_s1, a_significand_3_0_zeros_if_s1};
   wire [3:0] a_significand_23_8_zeros = {a_significand_23_16_is_zero_s1, a_significand_15_8_zeros_if_s1};
-  wire [3:0] a_significand_7_0_zeros_wide_if = a_significand_23_8_is_zero_s1 ? {1'b0, a_significand_7_0_zeros} : a_significand_23_8_zeros;
-  wire [4:0] a_significand_23_0_zeros = {a_significand_23_8_is_zero_s1, a_significand_7_0_zeros_wide_if};
-  wire [8:0] a_normalised_exponent = {1'b0, a_effective_exponent} - {3'd0, {1'b0, a_significand_23_0_zeros}};
-  wire [10:0] rebiased_exponent = {{2{a_normalised_exponent[8]}}, a_normalised_exponent} + 11'd384;
-  wire [23:0] a_normalise_by_8 = a_significand_7_0_zeros_wide_if[3] ? {a_normalise_by_16_s1[15:0], 8'd0} : a_normalise_by_16_s1;
+  wire [3:0] a_significand_7_0_zeros_wide_if = a_significand_23_8_is_zero ? {1'b0, a_significand_7_0_zeros} : a_significand_23_8_zeros;
+  wire [23:0] a_normalise_by_16 = a_significand_23_8_is_zero ? {a_fraction_7_0_s1, 16'd0} : a_significand_s1;
+  wire [23:0] a_normalise_by_8 = a_significand_7_0_zeros_wide_if[3] ? {a_normalise_by_16[15:0], 8'd0} : a_normalise_by_16;
   wire [23:0] a_normalise_by_4 = a_significand_7_0_zeros_wide_if[2] ? {a_normalise_by_8[19:0], 4'd0} : a_normalise_by_8;
   wire [23:0] a_normalise_by_2 = a_significand_7_0_zeros_wide_if[1] ? {a_normalise_by_4[21:0], 2'd0} : a_normalise_by_4;
   wire [23:0] a_normalise_by_1 = a_significand_7_0_zeros_wide_if[0] ? {a_normalise_by_2[22:0], 1'b0} : a_normalise_by_2;
-  wire [32:0] truncated = {rebiased_exponent[9:0], a_normalise_by_1[22:0]};
-  wire [32:0] magnitude = a_is_zero_s1 ? 33'd0 : truncated;
+  wire [7:0] a_effective_exponent = {a_exponent_7_1_s1, a_exponent_0_0_or_not_a_hidden_s1};
+  wire [4:0] a_significand_23_0_zeros = {a_significand_23_8_is_zero, a_significand_7_0_zeros_wide_if};
+  wire [8:0] a_normalised_exponent = {1'b0, a_effective_exponent} - {3'd0, {1'b0, a_significand_23_0_zeros}};
+  wire [10:0] rebiased_exponent = {{2{a_normalised_exponent[8]}}, a_normalised_exponent} + 11'd384;
+
+  // ---- stage 2 ----
+  reg a_sign_s2;
+  reg a_is_zero_s2;
+  reg [9:0] rebiased_exponent_9_0_s2;
+  reg [22:0] a_normalise_by_1_22_0_s2;
+  always @(posedge clk) begin
+    a_sign_s2 <= a_sign_s1;
+    a_is_zero_s2 <= a_is_zero_s1;
+    rebiased_exponent_9_0_s2 <= rebiased_exponent[9:0];
+    a_normalise_by_1_22_0_s2 <= a_normalise_by_1[22:0];
+  end
+  wire [32:0] truncated = {rebiased_exponent_9_0_s2, a_normalise_by_1_22_0_s2};
+  wire [32:0] magnitude = a_is_zero_s2 ? 33'd0 : truncated;
 
   // ---- registered outputs ----
   always @(posedge clk) begin
-    result <= {a_sign_s1, magnitude};
+    result <= {a_sign_s2, magnitude};
   end
 
   // Bits that nothing needs.
-  wire unused = &{1'b0, rebiased_exponent[10], a_normalise_by_1[23]};
+  wire unused = &{1'b0, a_normalise_by_1[23], rebiased_exponent[10]};
 
 endmodule
 

@@ -25,84 +25,108 @@ module fp_mul_e10f23z_normal (
   wire is_zero = a_is_zero | b_is_zero;
   wire [22:0] a_fraction = a[22:0];
   wire [22:0] b_fraction = b[22:0];
-  wire [23:0] tile_0_0 = {12'd0, a_fraction[11:0]} * {12'd0, b_fraction[11:0]};
   wire [23:0] b_significand = {1'b1, b_fraction};
-  wire [23:0] tile_0_1 = {12'd0, a_fraction[11:0]} * {12'd0, b_significand[23:12]};
   wire [23:0] a_significand = {1'b1, a_fraction};
-  wire [23:0] tile_1_0 = {12'd0, a_significand[23:12]} * {12'd0, b_fraction[11:0]};
-  wire [23:0] tile_1_1 = {12'd0, a_significand[23:12]} * {12'd0, b_significand[23:12]};
-  wire [47:0] tiles_0_0 = {tile_1_1, tile_0_0};
   wire [12:0] a_exponent_wide_wide_wide_plus = {{1'b0, {1'b0, a_exponent}}, 1'b1} + {{1'b0, {1'b0, b_exponent}}, 1'b1};
   wire [11:0] exponent_sum = a_exponent_wide_wide_wide_plus[12:1];
   wire [11:0] product_exponent = {exponent_sum[11:9] - 3'd1, exponent_sum[8:0]};
   wire a_sign = a[33];
   wire b_sign = b[33];
   wire product_sign = a_sign ^ b_sign;
-
-  // ---- stage 1 ----
-  reg is_zero_s1;
-  reg [11:0] tile_0_0_11_0_s1;
-  reg [35:0] tiles_0_0_47_12_s1;
-  reg [23:0] tile_1_0_s1;
-  reg [23:0] tile_0_1_s1;
-  reg [9:0] product_exponent_9_0_s1;
-  reg product_sign_s1;
-  always @(posedge clk) begin
-    is_zero_s1 <= is_zero;
-    tile_0_0_11_0_s1 <= tile_0_0[11:0];
-    tiles_0_0_47_12_s1 <= tiles_0_0[47:12];
-    tile_1_0_s1 <= tile_1_0;
-    tile_0_1_s1 <= tile_0_1;
-    product_exponent_9_0_s1 <= product_exponent[9:0];
-    product_sign_s1 <= product_sign;
-  end
-  wire [24:0] tiles_sum = {1'b0, tile_1_0_s1} + {1'b0, tile_0_1_s1};
-  wire [35:0] tiles_sum_2 = tiles_0_0_47_12_s1 + {11'd0, tiles_sum};
+  wire [23:0] tile_0_0;
+  multiplier_12x12 tile_0_0_block (
+    .clk     (clk),
+    .a       (a_fraction[11:0]),
+    .b       (b_fraction[11:0]),
+    .product (tile_0_0)
+  );
+  wire [23:0] tile_1_0;
+  multiplier_12x12 tile_1_0_block (
+    .clk     (clk),
+    .a       (a_significand[23:12]),
+    .b       (b_fraction[11:0]),
+    .product (tile_1_0)
+  );
+  wire [23:0] tile_0_1;
+  multiplier_12x12 tile_0_1_block (
+    .clk     (clk),
+    .a       (a_fraction[11:0]),
+    .b       (b_significand[23:12]),
+    .product (tile_0_1)
+  );
+  wire [23:0] tile_1_1;
+  multiplier_12x12 tile_1_1_block (
+    .clk     (clk),
+    .a       (a_significand[23:12]),
+    .b       (b_significand[23:12]),
+    .product (tile_1_1)
+  );
 
   // ---- stage 2 ----
-  reg is_zero_s2;
-  reg [35:0] tiles_sum_s2;
-  reg [11:0] tile_0_0_11_0_s2;
-  reg [9:0] product_exponent_9_0_s2;
-  reg product_sign_s2;
-  always @(posedge clk) begin
-    is_zero_s2 <= is_zero_s1;
-    tiles_sum_s2 <= tiles_sum_2;
-    tile_0_0_11_0_s2 <= tile_0_0_11_0_s1;
-    product_exponent_9_0_s2 <= product_exponent_9_0_s1;
-    product_sign_s2 <= product_sign_s1;
-  end
-  wire product_at_least_two = tiles_sum_s2[35];
-  wire [47:0] product = {tiles_sum_s2, tile_0_0_11_0_s2};
-  wire [47:0] normalised = product_at_least_two ? product : {product[46:0], 1'b0};
-  wire guard = normalised[23];
-  wire sticky = |normalised[22:0];
-  wire [23:0] significand = normalised[47:24];
-  wire round_up = guard & (sticky | significand[0]);
+  wire [24:0] tiles_sum_2 = {1'b0, tile_1_0} + {1'b0, tile_0_1};
+  wire [47:0] tiles_0_0 = {tile_1_1, tile_0_0};
 
   // ---- stage 3 ----
-  reg product_sign_s3;
-  reg [9:0] product_exponent_9_0_s3;
-  reg [22:0] significand_22_0_s3;
-  reg product_at_least_two_s3;
-  reg round_up_s3;
-  reg is_zero_s3;
+  reg [35:0] tiles_0_0_47_12_s3;
+  reg [24:0] tiles_sum_s3;
+  reg [11:0] tile_0_0_11_0_s3;
   always @(posedge clk) begin
-    product_sign_s3 <= product_sign_s2;
-    product_exponent_9_0_s3 <= product_exponent_9_0_s2;
-    significand_22_0_s3 <= significand[22:0];
-    product_at_least_two_s3 <= product_at_least_two;
-    round_up_s3 <= round_up;
-    is_zero_s3 <= is_zero_s2;
+    tiles_0_0_47_12_s3 <= tiles_0_0[47:12];
+    tiles_sum_s3 <= tiles_sum_2;
+    tile_0_0_11_0_s3 <= tile_0_0[11:0];
   end
-  wire [32:0] truncated = {product_exponent_9_0_s3, significand_22_0_s3};
-  wire [32:0] increments = {{9'd0, product_at_least_two_s3}, {22'd0, round_up_s3}};
+  wire [35:0] tiles_sum = tiles_0_0_47_12_s3 + {11'd0, tiles_sum_s3};
+  wire product_at_least_two = tiles_sum[35];
+  wire [47:0] product = {tiles_sum, tile_0_0_11_0_s3};
+  wire [47:0] normalised = product_at_least_two ? product : {product[46:0], 1'b0};
+  wire [23:0] significand = normalised[47:24];
+  wire guard = normalised[23];
+
+  // ---- stage 4 ----
+  reg guard_s4;
+  reg [22:0] normalised_22_0_s4;
+  reg significand_0_0_s4;
+  reg product_at_least_two_s4;
+  reg [22:0] significand_22_0_s4;
+  always @(posedge clk) begin
+    guard_s4 <= guard;
+    normalised_22_0_s4 <= normalised[22:0];
+    significand_0_0_s4 <= significand[0];
+    product_at_least_two_s4 <= product_at_least_two;
+    significand_22_0_s4 <= significand[22:0];
+  end
+  wire sticky = |normalised_22_0_s4;
+  wire round_up = guard_s4 & (sticky | significand_0_0_s4);
+
+  // ---- stage 5 ----
+  reg [3:0] product_sign_s5_line;
+  reg product_sign_s5;
+  reg [39:0] product_exponent_9_0_s5_line;
+  reg [9:0] product_exponent_9_0_s5;
+  reg [22:0] significand_22_0_s5;
+  reg product_at_least_two_s5;
+  reg round_up_s5;
+  reg [3:0] is_zero_s5_line;
+  reg is_zero_s5;
+  always @(posedge clk) begin
+    product_sign_s5_line <= {product_sign_s5_line[2:0], product_sign};
+    product_sign_s5 <= product_sign_s5_line[3];
+    product_exponent_9_0_s5_line <= {product_exponent_9_0_s5_line[29:0], product_exponent[9:0]};
+    product_exponent_9_0_s5 <= product_exponent_9_0_s5_line[39:30];
+    significand_22_0_s5 <= significand_22_0_s4;
+    product_at_least_two_s5 <= product_at_least_two_s4;
+    round_up_s5 <= round_up;
+    is_zero_s5_line <= {is_zero_s5_line[2:0], is_zero};
+    is_zero_s5 <= is_zero_s5_line[3];
+  end
+  wire [32:0] truncated = {product_exponent_9_0_s5, significand_22_0_s5};
+  wire [32:0] increments = {{9'd0, product_at_least_two_s5}, {22'd0, round_up_s5}};
   wire [32:0] rounded = truncated + increments;
-  wire [32:0] magnitude = ~is_zero_s3 ? rounded : 33'd0;
+  wire [32:0] magnitude = ~is_zero_s5 ? rounded : 33'd0;
 
   // ---- registered outputs ----
   always @(posedge clk) begin
-    result <= {product_sign_s3, magnitude};
+    result <= {product_sign_s5, magnitude};
   end
 
   // Bits that nothing needs.

@@ -15,6 +15,17 @@ module fp_recip_e10f23z_normal (
   output reg  [33:0] result
 );
 
+  // Place of the newest word in the delay lines of 8 cycles.
+  reg [2:0] delay_8;
+  wire [2:0] delay_8_next = (delay_8 == 3'd7) ? 3'd0 : (delay_8 + 3'd1);
+  always @(posedge clk) begin
+    if (rst) begin
+      delay_8 <= 3'd0;
+    end else begin
+      delay_8 <= delay_8_next;
+    end
+  end
+
   // Place of the newest word in the delay lines of 16 cycles.
   reg [3:0] delay_16;
   wire [3:0] delay_16_next = (delay_16 == 4'd15) ? 4'd0 : (delay_16 + 4'd1);
@@ -30,396 +41,386 @@ module fp_recip_e10f23z_normal (
   wire [22:0] a_fraction = a[22:0];
   wire [23:0] a_significand = {1'b1, a_fraction};
   wire [24:0] a_significand_wide = {1'b0, a_significand};
-  wire [23:0] remainder_1 = 24'd0 - a_significand;
-  wire [24:0] remainder_1_wide = {remainder_1, 1'b0};
-  wire [24:0] difference_2 = remainder_1_wide - a_significand_wide;
-  wire borrow_2 = difference_2[24];
-  wire [23:0] remainder_2 = borrow_2 ? remainder_1_wide[23:0] : difference_2[23:0];
+  wire [24:0] partial_2 = {24'd0 - a_significand, 1'b0} - a_significand_wide;
   wire [9:0] a_exponent = a[32:23];
   wire [10:0] quotient_exponent = 11'd1021 - {1'b0, a_exponent};
   wire a_sign = a[33];
 
   // ---- stage 1 ----
   reg [24:0] a_significand_wide_s1;
-  reg [23:0] remainder_2_s1;
+  reg [23:0] partial_2_23_0_s1;
+  reg partial_2_24_24_s1;
   always @(posedge clk) begin
     a_significand_wide_s1 <= a_significand_wide;
-    remainder_2_s1 <= remainder_2;
+    partial_2_23_0_s1 <= partial_2[23:0];
+    partial_2_24_24_s1 <= partial_2[24];
   end
-  wire [24:0] remainder_2_s1_wide = {remainder_2_s1, 1'b0};
-  wire [24:0] difference_3 = remainder_2_s1_wide - a_significand_wide_s1;
-  wire borrow_3 = difference_3[24];
-  wire [23:0] remainder_3 = borrow_3 ? remainder_2_s1_wide[23:0] : difference_3[23:0];
-  wire [24:0] remainder_3_wide = {remainder_3, 1'b0};
-  wire [24:0] difference_4 = remainder_3_wide - a_significand_wide_s1;
-  wire borrow_4 = difference_4[24];
+  wire [24:0] partial_3 = {partial_2_23_0_s1, 1'b0} + (a_significand_wide_s1 ^ {25{~partial_2_24_24_s1}}) + {24'd0, ~partial_2_24_24_s1};
 
   // ---- stage 2 ----
   reg [24:0] a_significand_wide_s2;
-  reg borrow_4_s2;
-  reg [24:0] remainder_3_wide_s2;
-  reg [23:0] difference_4_23_0_s2;
+  reg [23:0] partial_3_23_0_s2;
+  reg partial_3_24_24_s2;
   always @(posedge clk) begin
     a_significand_wide_s2 <= a_significand_wide_s1;
-    borrow_4_s2 <= borrow_4;
-    remainder_3_wide_s2 <= remainder_3_wide;
-    difference_4_23_0_s2 <= difference_4[23:0];
+    partial_3_23_0_s2 <= partial_3[23:0];
+    partial_3_24_24_s2 <= partial_3[24];
   end
-  wire [23:0] remainder_4 = borrow_4_s2 ? remainder_3_wide_s2[23:0] : difference_4_23_0_s2;
-  wire [24:0] remainder_4_wide = {remainder_4, 1'b0};
-  wire [24:0] difference_5 = remainder_4_wide - a_significand_wide_s2;
-  wire borrow_5 = difference_5[24];
-  wire [23:0] remainder_5 = borrow_5 ? remainder_4_wide[23:0] : difference_5[23:0];
+  wire [24:0] partial_4 = {partial_3_23_0_s2, 1'b0} + (a_significand_wide_s2 ^ {25{~partial_3_24_24_s2}}) + {24'd0, ~partial_3_24_24_s2};
 
   // ---- stage 3 ----
   reg [24:0] a_significand_wide_s3;
-  reg [23:0] remainder_5_s3;
+  reg [23:0] partial_4_23_0_s3;
+  reg partial_4_24_24_s3;
   always @(posedge clk) begin
     a_significand_wide_s3 <= a_significand_wide_s2;
-    remainder_5_s3 <= remainder_5;
+    partial_4_23_0_s3 <= partial_4[23:0];
+    partial_4_24_24_s3 <= partial_4[24];
   end
-  wire [24:0] remainder_5_s3_wide = {remainder_5_s3, 1'b0};
-  wire [24:0] difference_6 = remainder_5_s3_wide - a_significand_wide_s3;
-  wire borrow_6 = difference_6[24];
-  wire [23:0] remainder_6 = borrow_6 ? remainder_5_s3_wide[23:0] : difference_6[23:0];
-  wire [24:0] remainder_6_wide = {remainder_6, 1'b0};
-  wire [24:0] difference_7 = remainder_6_wide - a_significand_wide_s3;
-  wire borrow_7 = difference_7[24];
+  wire [24:0] partial_5 = {partial_4_23_0_s3, 1'b0} + (a_significand_wide_s3 ^ {25{~partial_4_24_24_s3}}) + {24'd0, ~partial_4_24_24_s3};
 
   // ---- stage 4 ----
   reg [24:0] a_significand_wide_s4;
-  reg borrow_7_s4;
-  reg [24:0] remainder_6_wide_s4;
-  reg [23:0] difference_7_23_0_s4;
+  reg [23:0] partial_5_23_0_s4;
+  reg partial_5_24_24_s4;
   always @(posedge clk) begin
     a_significand_wide_s4 <= a_significand_wide_s3;
-    borrow_7_s4 <= borrow_7;
-    remainder_6_wide_s4 <= remainder_6_wide;
-    difference_7_23_0_s4 <= difference_7[23:0];
+    partial_5_23_0_s4 <= partial_5[23:0];
+    partial_5_24_24_s4 <= partial_5[24];
   end
-  wire [23:0] remainder_7 = borrow_7_s4 ? remainder_6_wide_s4[23:0] : difference_7_23_0_s4;
-  wire [24:0] remainder_7_wide = {remainder_7, 1'b0};
-  wire [24:0] difference_8 = remainder_7_wide - a_significand_wide_s4;
-  wire borrow_8 = difference_8[24];
-  wire [23:0] remainder_8 = borrow_8 ? remainder_7_wide[23:0] : difference_8[23:0];
+  wire [24:0] partial_6 = {partial_5_23_0_s4, 1'b0} + (a_significand_wide_s4 ^ {25{~partial_5_24_24_s4}}) + {24'd0, ~partial_5_24_24_s4};
 
   // ---- stage 5 ----
   reg [24:0] a_significand_wide_s5;
-  reg [23:0] remainder_8_s5;
+  reg [23:0] partial_6_23_0_s5;
+  reg partial_6_24_24_s5;
   always @(posedge clk) begin
     a_significand_wide_s5 <= a_significand_wide_s4;
-    remainder_8_s5 <= remainder_8;
+    partial_6_23_0_s5 <= partial_6[23:0];
+    partial_6_24_24_s5 <= partial_6[24];
   end
-  wire [24:0] remainder_8_s5_wide = {remainder_8_s5, 1'b0};
-  wire [24:0] difference_9 = remainder_8_s5_wide - a_significand_wide_s5;
-  wire borrow_9 = difference_9[24];
-  wire [23:0] remainder_9 = borrow_9 ? remainder_8_s5_wide[23:0] : difference_9[23:0];
-  wire [24:0] remainder_9_wide = {remainder_9, 1'b0};
-  wire [24:0] difference_10 = remainder_9_wide - a_significand_wide_s5;
-  wire borrow_10 = difference_10[24];
+  wire [24:0] partial_7 = {partial_6_23_0_s5, 1'b0} + (a_significand_wide_s5 ^ {25{~partial_6_24_24_s5}}) + {24'd0, ~partial_6_24_24_s5};
 
   // ---- stage 6 ----
   reg [24:0] a_significand_wide_s6;
-  reg borrow_10_s6;
-  reg [24:0] remainder_9_wide_s6;
-  reg [23:0] difference_10_23_0_s6;
+  reg [23:0] partial_7_23_0_s6;
+  reg partial_7_24_24_s6;
   always @(posedge clk) begin
     a_significand_wide_s6 <= a_significand_wide_s5;
-    borrow_10_s6 <= borrow_10;
-    remainder_9_wide_s6 <= remainder_9_wide;
-    difference_10_23_0_s6 <= difference_10[23:0];
+    partial_7_23_0_s6 <= partial_7[23:0];
+    partial_7_24_24_s6 <= partial_7[24];
   end
-  wire [23:0] remainder_10 = borrow_10_s6 ? remainder_9_wide_s6[23:0] : difference_10_23_0_s6;
-  wire [24:0] remainder_10_wide = {remainder_10, 1'b0};
-  wire [24:0] difference_11 = remainder_10_wide - a_significand_wide_s6;
-  wire borrow_11 = difference_11[24];
-  wire [23:0] remainder_11 = borrow_11 ? remainder_10_wide[23:0] : difference_11[23:0];
+  wire [24:0] partial_8 = {partial_7_23_0_s6, 1'b0} + (a_significand_wide_s6 ^ {25{~partial_7_24_24_s6}}) + {24'd0, ~partial_7_24_24_s6};
 
   // ---- stage 7 ----
   reg [24:0] a_significand_wide_s7;
-  reg [23:0] remainder_11_s7;
+  reg [23:0] partial_8_23_0_s7;
+  reg partial_8_24_24_s7;
   always @(posedge clk) begin
     a_significand_wide_s7 <= a_significand_wide_s6;
-    remainder_11_s7 <= remainder_11;
+    partial_8_23_0_s7 <= partial_8[23:0];
+    partial_8_24_24_s7 <= partial_8[24];
   end
-  wire [24:0] remainder_11_s7_wide = {remainder_11_s7, 1'b0};
-  wire [24:0] difference_12 = remainder_11_s7_wide - a_significand_wide_s7;
-  wire borrow_12 = difference_12[24];
-  wire [23:0] remainder_12 = borrow_12 ? remainder_11_s7_wide[23:0] : difference_12[23:0];
-  wire [24:0] remainder_12_wide = {remainder_12, 1'b0};
-  wire [24:0] difference_13 = remainder_12_wide - a_significand_wide_s7;
-  wire borrow_13 = difference_13[24];
+  wire [24:0] partial_9 = {partial_8_23_0_s7, 1'b0} + (a_significand_wide_s7 ^ {25{~partial_8_24_24_s7}}) + {24'd0, ~partial_8_24_24_s7};
 
   // ---- stage 8 ----
   reg [24:0] a_significand_wide_s8;
-  reg borrow_13_s8;
-  reg [24:0] remainder_12_wide_s8;
-  reg [23:0] difference_13_23_0_s8;
+  reg [23:0] partial_9_23_0_s8;
+  reg partial_9_24_24_s8;
   always @(posedge clk) begin
     a_significand_wide_s8 <= a_significand_wide_s7;
-    borrow_13_s8 <= borrow_13;
-    remainder_12_wide_s8 <= remainder_12_wide;
-    difference_13_23_0_s8 <= difference_13[23:0];
+    partial_9_23_0_s8 <= partial_9[23:0];
+    partial_9_24_24_s8 <= partial_9[24];
   end
-  wire [23:0] remainder_13 = borrow_13_s8 ? remainder_12_wide_s8[23:0] : difference_13_23_0_s8;
-  wire [24:0] remainder_13_wide = {remainder_13, 1'b0};
-  wire [24:0] difference_14 = remainder_13_wide - a_significand_wide_s8;
-  wire borrow_14 = difference_14[24];
-  wire [23:0] remainder_14 = borrow_14 ? remainder_13_wide[23:0] : difference_14[23:0];
+  wire [24:0] partial_10 = {partial_9_23_0_s8, 1'b0} + (a_significand_wide_s8 ^ {25{~partial_9_24_24_s8}}) + {24'd0, ~partial_9_24_24_s8};
 
   // ---- stage 9 ----
   reg [24:0] a_significand_wide_s9;
-  reg [23:0] remainder_14_s9;
+  reg [23:0] partial_10_23_0_s9;
+  reg partial_10_24_24_s9;
   always @(posedge clk) begin
     a_significand_wide_s9 <= a_significand_wide_s8;
-    remainder_14_s9 <= remainder_14;
+    partial_10_23_0_s9 <= partial_10[23:0];
+    partial_10_24_24_s9 <= partial_10[24];
   end
-  wire [24:0] remainder_14_s9_wide = {remainder_14_s9, 1'b0};
-  wire [24:0] difference_15 = remainder_14_s9_wide - a_significand_wide_s9;
-  wire borrow_15 = difference_15[24];
-  wire [23:0] remainder_15 = borrow_15 ? remainder_14_s9_wide[23:0] : difference_15[23:0];
-  wire [24:0] remainder_15_wide = {remainder_15, 1'b0};
-  wire [24:0] difference_16 = remainder_15_wide - a_significand_wide_s9;
-  wire borrow_16 = difference_16[24];
+  wire [24:0] partial_11 = {partial_10_23_0_s9, 1'b0} + (a_significand_wide_s9 ^ {25{~partial_10_24_24_s9}}) + {24'd0, ~partial_10_24_24_s9};
 
   // ---- stage 10 ----
   reg [24:0] a_significand_wide_s10;
-  reg borrow_16_s10;
-  reg [24:0] remainder_15_wide_s10;
-  reg [23:0] difference_16_23_0_s10;
+  reg [23:0] partial_11_23_0_s10;
+  reg partial_11_24_24_s10;
   always @(posedge clk) begin
     a_significand_wide_s10 <= a_significand_wide_s9;
-    borrow_16_s10 <= borrow_16;
-    remainder_15_wide_s10 <= remainder_15_wide;
-    difference_16_23_0_s10 <= difference_16[23:0];
+    partial_11_23_0_s10 <= partial_11[23:0];
+    partial_11_24_24_s10 <= partial_11[24];
   end
-  wire [23:0] remainder_16 = borrow_16_s10 ? remainder_15_wide_s10[23:0] : difference_16_23_0_s10;
-  wire [24:0] remainder_16_wide = {remainder_16, 1'b0};
-  wire [24:0] difference_17 = remainder_16_wide - a_significand_wide_s10;
-  wire borrow_17 = difference_17[24];
-  wire [23:0] remainder_17 = borrow_17 ? remainder_16_wide[23:0] : difference_17[23:0];
+  wire [24:0] partial_12 = {partial_11_23_0_s10, 1'b0} + (a_significand_wide_s10 ^ {25{~partial_11_24_24_s10}}) + {24'd0, ~partial_11_24_24_s10};
 
   // ---- stage 11 ----
   reg [24:0] a_significand_wide_s11;
-  reg [23:0] remainder_17_s11;
+  reg [23:0] partial_12_23_0_s11;
+  reg partial_12_24_24_s11;
   always @(posedge clk) begin
     a_significand_wide_s11 <= a_significand_wide_s10;
-    remainder_17_s11 <= remainder_17;
+    partial_12_23_0_s11 <= partial_12[23:0];
+    partial_12_24_24_s11 <= partial_12[24];
   end
-  wire [24:0] remainder_17_s11_wide = {remainder_17_s11, 1'b0};
-  wire [24:0] difference_18 = remainder_17_s11_wide - a_significand_wide_s11;
-  wire borrow_18 = difference_18[24];
-  wire [23:0] remainder_18 = borrow_18 ? remainder_17_s11_wide[23:0] : difference_18[23:0];
-  wire [24:0] remainder_18_wide = {remainder_18, 1'b0};
-  wire [24:0] difference_19 = remainder_18_wide - a_significand_wide_s11;
-  wire borrow_19 = difference_19[24];
+  wire [24:0] partial_13 = {partial_12_23_0_s11, 1'b0} + (a_significand_wide_s11 ^ {25{~partial_12_24_24_s11}}) + {24'd0, ~partial_12_24_24_s11};
 
   // ---- stage 12 ----
   reg [24:0] a_significand_wide_s12;
-  reg borrow_19_s12;
-  reg [24:0] remainder_18_wide_s12;
-  reg [23:0] difference_19_23_0_s12;
+  reg [23:0] partial_13_23_0_s12;
+  reg partial_13_24_24_s12;
   always @(posedge clk) begin
     a_significand_wide_s12 <= a_significand_wide_s11;
-    borrow_19_s12 <= borrow_19;
-    remainder_18_wide_s12 <= remainder_18_wide;
-    difference_19_23_0_s12 <= difference_19[23:0];
+    partial_13_23_0_s12 <= partial_13[23:0];
+    partial_13_24_24_s12 <= partial_13[24];
   end
-  wire [23:0] remainder_19 = borrow_19_s12 ? remainder_18_wide_s12[23:0] : difference_19_23_0_s12;
-  wire [24:0] remainder_19_wide = {remainder_19, 1'b0};
-  wire [24:0] difference_20 = remainder_19_wide - a_significand_wide_s12;
-  wire borrow_20 = difference_20[24];
-  wire [23:0] remainder_20 = borrow_20 ? remainder_19_wide[23:0] : difference_20[23:0];
+  wire [24:0] partial_14 = {partial_13_23_0_s12, 1'b0} + (a_significand_wide_s12 ^ {25{~partial_13_24_24_s12}}) + {24'd0, ~partial_13_24_24_s12};
 
   // ---- stage 13 ----
   reg [24:0] a_significand_wide_s13;
-  reg [23:0] remainder_20_s13;
-  reg borrow_20_s13;
-  reg borrow_19_s13;
+  reg [23:0] partial_14_23_0_s13;
+  reg partial_14_24_24_s13;
   always @(posedge clk) begin
     a_significand_wide_s13 <= a_significand_wide_s12;
-    remainder_20_s13 <= remainder_20;
-    borrow_20_s13 <= borrow_20;
-    borrow_19_s13 <= borrow_19_s12;
+    partial_14_23_0_s13 <= partial_14[23:0];
+    partial_14_24_24_s13 <= partial_14[24];
   end
-  wire [24:0] remainder_20_s13_wide = {remainder_20_s13, 1'b0};
-  wire [24:0] difference_21 = remainder_20_s13_wide - a_significand_wide_s13;
-  wire borrow_21 = difference_21[24];
-  wire [23:0] remainder_21 = borrow_21 ? remainder_20_s13_wide[23:0] : difference_21[23:0];
-  wire [24:0] remainder_21_wide = {remainder_21, 1'b0};
-  wire [24:0] difference_22 = remainder_21_wide - a_significand_wide_s13;
-  wire borrow_22 = difference_22[24];
+  wire [24:0] partial_15 = {partial_14_23_0_s13, 1'b0} + (a_significand_wide_s13 ^ {25{~partial_14_24_24_s13}}) + {24'd0, ~partial_14_24_24_s13};
 
   // ---- stage 14 ----
   reg [24:0] a_significand_wide_s14;
-  reg borrow_22_s14;
-  reg [24:0] remainder_21_wide_s14;
-  reg [23:0] difference_22_23_0_s14;
-  reg borrow_21_s14;
-  reg borrow_20_s14;
-  reg borrow_19_s14;
+  reg [23:0] partial_15_23_0_s14;
+  reg partial_15_24_24_s14;
   always @(posedge clk) begin
     a_significand_wide_s14 <= a_significand_wide_s13;
-    borrow_22_s14 <= borrow_22;
-    remainder_21_wide_s14 <= remainder_21_wide;
-    difference_22_23_0_s14 <= difference_22[23:0];
-    borrow_21_s14 <= borrow_21;
-    borrow_20_s14 <= borrow_20_s13;
-    borrow_19_s14 <= borrow_19_s13;
+    partial_15_23_0_s14 <= partial_15[23:0];
+    partial_15_24_24_s14 <= partial_15[24];
   end
-  wire [23:0] remainder_22 = borrow_22_s14 ? remainder_21_wide_s14[23:0] : difference_22_23_0_s14;
-  wire [24:0] remainder_22_wide = {remainder_22, 1'b0};
-  wire [24:0] difference_23 = remainder_22_wide - a_significand_wide_s14;
-  wire borrow_23 = difference_23[24];
-  wire [23:0] remainder_23 = borrow_23 ? remainder_22_wide[23:0] : difference_23[23:0];
+  wire [24:0] partial_16 = {partial_15_23_0_s14, 1'b0} + (a_significand_wide_s14 ^ {25{~partial_15_24_24_s14}}) + {24'd0, ~partial_15_24_24_s14};
 
   // ---- stage 15 ----
-  reg [23:0] remainder_23_s15;
   reg [24:0] a_significand_wide_s15;
-  reg [13:0] borrow_2_s15_line;
-  reg borrow_2_s15;
-  reg [12:0] borrow_3_s15_line;
-  reg borrow_3_s15;
-  reg [11:0] borrow_4_s15_line;
-  reg borrow_4_s15;
-  reg [11:0] borrow_5_s15_line;
-  reg borrow_5_s15;
-  reg [10:0] borrow_6_s15_line;
-  reg borrow_6_s15;
-  reg [9:0] borrow_7_s15_line;
-  reg borrow_7_s15;
-  reg [9:0] borrow_8_s15_line;
-  reg borrow_8_s15;
-  reg [8:0] borrow_9_s15_line;
-  reg borrow_9_s15;
-  reg [7:0] borrow_10_s15_line;
-  reg borrow_10_s15;
-  reg [7:0] borrow_11_s15_line;
-  reg borrow_11_s15;
-  reg [6:0] borrow_12_s15_line;
-  reg borrow_12_s15;
-  reg [5:0] borrow_13_s15_line;
-  reg borrow_13_s15;
-  reg [5:0] borrow_14_s15_line;
-  reg borrow_14_s15;
-  reg [4:0] borrow_15_s15_line;
-  reg borrow_15_s15;
-  reg [3:0] borrow_16_s15_line;
-  reg borrow_16_s15;
-  reg [3:0] borrow_17_s15_line;
-  reg borrow_17_s15;
-  reg [2:0] borrow_18_s15_line;
-  reg borrow_18_s15;
-  reg borrow_19_s15;
-  reg borrow_20_s15;
-  reg borrow_21_s15;
-  reg borrow_22_s15;
-  reg borrow_23_s15;
+  reg [23:0] partial_16_23_0_s15;
+  reg partial_16_24_24_s15;
   always @(posedge clk) begin
-    remainder_23_s15 <= remainder_23;
     a_significand_wide_s15 <= a_significand_wide_s14;
-    borrow_2_s15_line <= {borrow_2_s15_line[12:0], borrow_2};
-    borrow_2_s15 <= borrow_2_s15_line[13];
-    borrow_3_s15_line <= {borrow_3_s15_line[11:0], borrow_3};
-    borrow_3_s15 <= borrow_3_s15_line[12];
-    borrow_4_s15_line <= {borrow_4_s15_line[10:0], borrow_4_s2};
-    borrow_4_s15 <= borrow_4_s15_line[11];
-    borrow_5_s15_line <= {borrow_5_s15_line[10:0], borrow_5};
-    borrow_5_s15 <= borrow_5_s15_line[11];
-    borrow_6_s15_line <= {borrow_6_s15_line[9:0], borrow_6};
-    borrow_6_s15 <= borrow_6_s15_line[10];
-    borrow_7_s15_line <= {borrow_7_s15_line[8:0], borrow_7_s4};
-    borrow_7_s15 <= borrow_7_s15_line[9];
-    borrow_8_s15_line <= {borrow_8_s15_line[8:0], borrow_8};
-    borrow_8_s15 <= borrow_8_s15_line[9];
-    borrow_9_s15_line <= {borrow_9_s15_line[7:0], borrow_9};
-    borrow_9_s15 <= borrow_9_s15_line[8];
-    borrow_10_s15_line <= {borrow_10_s15_line[6:0], borrow_10_s6};
-    borrow_10_s15 <= borrow_10_s15_line[7];
-    borrow_11_s15_line <= {borrow_11_s15_line[6:0], borrow_11};
-    borrow_11_s15 <= borrow_11_s15_line[7];
-    borrow_12_s15_line <= {borrow_12_s15_line[5:0], borrow_12};
-    borrow_12_s15 <= borrow_12_s15_line[6];
-    borrow_13_s15_line <= {borrow_13_s15_line[4:0], borrow_13_s8};
-    borrow_13_s15 <= borrow_13_s15_line[5];
-    borrow_14_s15_line <= {borrow_14_s15_line[4:0], borrow_14};
-    borrow_14_s15 <= borrow_14_s15_line[5];
-    borrow_15_s15_line <= {borrow_15_s15_line[3:0], borrow_15};
-    borrow_15_s15 <= borrow_15_s15_line[4];
-    borrow_16_s15_line <= {borrow_16_s15_line[2:0], borrow_16_s10};
-    borrow_16_s15 <= borrow_16_s15_line[3];
-    borrow_17_s15_line <= {borrow_17_s15_line[2:0], borrow_17};
-    borrow_17_s15 <= borrow_17_s15_line[3];
-    borrow_18_s15_line <= {borrow_18_s15_line[1:0], borrow_18};
-    borrow_18_s15 <= borrow_18_s15_line[2];
-    borrow_19_s15 <= borrow_19_s14;
-    borrow_20_s15 <= borrow_20_s14;
-    borrow_21_s15 <= borrow_21_s14;
-    borrow_22_s15 <= borrow_22_s14;
-    borrow_23_s15 <= borrow_23;
+    partial_16_23_0_s15 <= partial_16[23:0];
+    partial_16_24_24_s15 <= partial_16[24];
   end
-  wire [24:0] remainder_23_s15_wide = {remainder_23_s15, 1'b0};
-  wire [24:0] difference_24 = remainder_23_s15_wide - a_significand_wide_s15;
-  wire borrow_24 = difference_24[24];
-  wire [23:0] remainder_24 = borrow_24 ? remainder_23_s15_wide[23:0] : difference_24[23:0];
-  wire [24:0] difference_25 = {remainder_24, 1'b0} - a_significand_wide_s15;
-  wire borrow_25 = difference_25[24];
-  wire digit_25 = ~borrow_25;
-  wire digit_2 = ~borrow_2_s15;
-  wire digit_3 = ~borrow_3_s15;
-  wire digit_4 = ~borrow_4_s15;
-  wire digit_5 = ~borrow_5_s15;
-  wire digit_6 = ~borrow_6_s15;
-  wire digit_7 = ~borrow_7_s15;
-  wire digit_8 = ~borrow_8_s15;
-  wire digit_9 = ~borrow_9_s15;
-  wire digit_10 = ~borrow_10_s15;
-  wire digit_11 = ~borrow_11_s15;
-  wire digit_12 = ~borrow_12_s15;
-  wire digit_13 = ~borrow_13_s15;
-  wire digit_14 = ~borrow_14_s15;
-  wire digit_15 = ~borrow_15_s15;
-  wire digit_16 = ~borrow_16_s15;
-  wire digit_17 = ~borrow_17_s15;
-  wire digit_18 = ~borrow_18_s15;
-  wire digit_19 = ~borrow_19_s15;
-  wire digit_20 = ~borrow_20_s15;
-  wire digit_21 = ~borrow_21_s15;
-  wire digit_22 = ~borrow_22_s15;
-  wire digit_23 = ~borrow_23_s15;
-  wire digit_24 = ~borrow_24;
-  wire [24:0] quotient = {1'b1, digit_2, digit_3, digit_4, digit_5, digit_6, digit_7, digit_8, digit_9, digit_10, digit_11, digit_12, digit_13, digit_14, digit_15, digit_16, digit_17, digit_18, digit_19, digit_20, digit_21, digit_22, digit_23, digit_24, digit_25};
-  wire [23:0] significand = quotient[24:1];
+  wire [24:0] partial_17 = {partial_16_23_0_s15, 1'b0} + (a_significand_wide_s15 ^ {25{~partial_16_24_24_s15}}) + {24'd0, ~partial_16_24_24_s15};
 
   // ---- stage 16 ----
-  reg [14:0] a_sign_s16_line;
-  reg a_sign_s16;
+  reg [24:0] a_significand_wide_s16;
+  reg [23:0] partial_17_23_0_s16;
+  reg partial_17_24_24_s16;
   (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
   reg [9:0] quotient_exponent_9_0_s16_line [0:15];
   reg [9:0] quotient_exponent_9_0_s16;
-  reg [22:0] significand_22_0_s16;
-  reg digit_25_s16;
   always @(posedge clk) begin
-    a_sign_s16_line <= {a_sign_s16_line[13:0], a_sign};
-    a_sign_s16 <= a_sign_s16_line[14];
+    a_significand_wide_s16 <= a_significand_wide_s15;
+    partial_17_23_0_s16 <= partial_17[23:0];
+    partial_17_24_24_s16 <= partial_17[24];
     quotient_exponent_9_0_s16_line[delay_16] <= quotient_exponent[9:0];
     quotient_exponent_9_0_s16 <= quotient_exponent_9_0_s16_line[delay_16_next];
-    significand_22_0_s16 <= significand[22:0];
-    digit_25_s16 <= digit_25;
   end
-  wire [32:0] truncated = {quotient_exponent_9_0_s16, significand_22_0_s16};
-  wire [32:0] rounded = truncated + {32'd0, digit_25_s16};
+  wire [24:0] partial_18 = {partial_17_23_0_s16, 1'b0} + (a_significand_wide_s16 ^ {25{~partial_17_24_24_s16}}) + {24'd0, ~partial_17_24_24_s16};
+
+  // ---- stage 17 ----
+  reg [24:0] a_significand_wide_s17;
+  reg [23:0] partial_18_23_0_s17;
+  reg partial_18_24_24_s17;
+  always @(posedge clk) begin
+    a_significand_wide_s17 <= a_significand_wide_s16;
+    partial_18_23_0_s17 <= partial_18[23:0];
+    partial_18_24_24_s17 <= partial_18[24];
+  end
+  wire [24:0] partial_19 = {partial_18_23_0_s17, 1'b0} + (a_significand_wide_s17 ^ {25{~partial_18_24_24_s17}}) + {24'd0, ~partial_18_24_24_s17};
+
+  // ---- stage 18 ----
+  reg [24:0] a_significand_wide_s18;
+  reg [23:0] partial_19_23_0_s18;
+  reg partial_19_24_24_s18;
+  always @(posedge clk) begin
+    a_significand_wide_s18 <= a_significand_wide_s17;
+    partial_19_23_0_s18 <= partial_19[23:0];
+    partial_19_24_24_s18 <= partial_19[24];
+  end
+  wire [24:0] partial_20 = {partial_19_23_0_s18, 1'b0} + (a_significand_wide_s18 ^ {25{~partial_19_24_24_s18}}) + {24'd0, ~partial_19_24_24_s18};
+
+  // ---- stage 19 ----
+  reg [24:0] a_significand_wide_s19;
+  reg [23:0] partial_20_23_0_s19;
+  reg partial_20_24_24_s19;
+  always @(posedge clk) begin
+    a_significand_wide_s19 <= a_significand_wide_s18;
+    partial_20_23_0_s19 <= partial_20[23:0];
+    partial_20_24_24_s19 <= partial_20[24];
+  end
+  wire [24:0] partial_21 = {partial_20_23_0_s19, 1'b0} + (a_significand_wide_s19 ^ {25{~partial_20_24_24_s19}}) + {24'd0, ~partial_20_24_24_s19};
+
+  // ---- stage 20 ----
+  reg [24:0] a_significand_wide_s20;
+  reg [23:0] partial_21_23_0_s20;
+  reg partial_21_24_24_s20;
+  always @(posedge clk) begin
+    a_significand_wide_s20 <= a_significand_wide_s19;
+    partial_21_23_0_s20 <= partial_21[23:0];
+    partial_21_24_24_s20 <= partial_21[24];
+  end
+  wire [24:0] partial_22 = {partial_21_23_0_s20, 1'b0} + (a_significand_wide_s20 ^ {25{~partial_21_24_24_s20}}) + {24'd0, ~partial_21_24_24_s20};
+
+  // ---- stage 21 ----
+  reg [24:0] a_significand_wide_s21;
+  reg [23:0] partial_22_23_0_s21;
+  reg partial_22_24_24_s21;
+  reg partial_21_24_24_s21;
+  always @(posedge clk) begin
+    a_significand_wide_s21 <= a_significand_wide_s20;
+    partial_22_23_0_s21 <= partial_22[23:0];
+    partial_22_24_24_s21 <= partial_22[24];
+    partial_21_24_24_s21 <= partial_21_24_24_s20;
+  end
+  wire [24:0] partial_23 = {partial_22_23_0_s21, 1'b0} + (a_significand_wide_s21 ^ {25{~partial_22_24_24_s21}}) + {24'd0, ~partial_22_24_24_s21};
+
+  // ---- stage 22 ----
+  reg [24:0] a_significand_wide_s22;
+  reg [23:0] partial_23_23_0_s22;
+  reg partial_23_24_24_s22;
+  reg partial_22_24_24_s22;
+  reg partial_21_24_24_s22;
+  always @(posedge clk) begin
+    a_significand_wide_s22 <= a_significand_wide_s21;
+    partial_23_23_0_s22 <= partial_23[23:0];
+    partial_23_24_24_s22 <= partial_23[24];
+    partial_22_24_24_s22 <= partial_22_24_24_s21;
+    partial_21_24_24_s22 <= partial_21_24_24_s21;
+  end
+  wire [24:0] partial_24 = {partial_23_23_0_s22, 1'b0} + (a_significand_wide_s22 ^ {25{~partial_23_24_24_s22}}) + {24'd0, ~partial_23_24_24_s22};
+
+  // ---- stage 23 ----
+  reg [20:0] partial_2_24_24_s23_line;
+  reg partial_2_24_24_s23;
+  reg [19:0] partial_3_24_24_s23_line;
+  reg partial_3_24_24_s23;
+  reg [18:0] partial_4_24_24_s23_line;
+  reg partial_4_24_24_s23;
+  reg [17:0] partial_5_24_24_s23_line;
+  reg partial_5_24_24_s23;
+  reg [16:0] partial_6_24_24_s23_line;
+  reg partial_6_24_24_s23;
+  reg [15:0] partial_7_24_24_s23_line;
+  reg partial_7_24_24_s23;
+  reg [14:0] partial_8_24_24_s23_line;
+  reg partial_8_24_24_s23;
+  reg [13:0] partial_9_24_24_s23_line;
+  reg partial_9_24_24_s23;
+  reg [12:0] partial_10_24_24_s23_line;
+  reg partial_10_24_24_s23;
+  reg [11:0] partial_11_24_24_s23_line;
+  reg partial_11_24_24_s23;
+  reg [10:0] partial_12_24_24_s23_line;
+  reg partial_12_24_24_s23;
+  reg [9:0] partial_13_24_24_s23_line;
+  reg partial_13_24_24_s23;
+  reg [8:0] partial_14_24_24_s23_line;
+  reg partial_14_24_24_s23;
+  reg [7:0] partial_15_24_24_s23_line;
+  reg partial_15_24_24_s23;
+  reg [6:0] partial_16_24_24_s23_line;
+  reg partial_16_24_24_s23;
+  reg [5:0] partial_17_24_24_s23_line;
+  reg partial_17_24_24_s23;
+  reg [4:0] partial_18_24_24_s23_line;
+  reg partial_18_24_24_s23;
+  reg [3:0] partial_19_24_24_s23_line;
+  reg partial_19_24_24_s23;
+  reg [2:0] partial_20_24_24_s23_line;
+  reg partial_20_24_24_s23;
+  reg partial_21_24_24_s23;
+  reg partial_22_24_24_s23;
+  reg partial_23_24_24_s23;
+  reg partial_24_24_24_s23;
+  reg [23:0] partial_24_23_0_s23;
+  reg [24:0] a_significand_wide_s23;
+  always @(posedge clk) begin
+    partial_2_24_24_s23_line <= {partial_2_24_24_s23_line[19:0], partial_2_24_24_s1};
+    partial_2_24_24_s23 <= partial_2_24_24_s23_line[20];
+    partial_3_24_24_s23_line <= {partial_3_24_24_s23_line[18:0], partial_3_24_24_s2};
+    partial_3_24_24_s23 <= partial_3_24_24_s23_line[19];
+    partial_4_24_24_s23_line <= {partial_4_24_24_s23_line[17:0], partial_4_24_24_s3};
+    partial_4_24_24_s23 <= partial_4_24_24_s23_line[18];
+    partial_5_24_24_s23_line <= {partial_5_24_24_s23_line[16:0], partial_5_24_24_s4};
+    partial_5_24_24_s23 <= partial_5_24_24_s23_line[17];
+    partial_6_24_24_s23_line <= {partial_6_24_24_s23_line[15:0], partial_6_24_24_s5};
+    partial_6_24_24_s23 <= partial_6_24_24_s23_line[16];
+    partial_7_24_24_s23_line <= {partial_7_24_24_s23_line[14:0], partial_7_24_24_s6};
+    partial_7_24_24_s23 <= partial_7_24_24_s23_line[15];
+    partial_8_24_24_s23_line <= {partial_8_24_24_s23_line[13:0], partial_8_24_24_s7};
+    partial_8_24_24_s23 <= partial_8_24_24_s23_line[14];
+    partial_9_24_24_s23_line <= {partial_9_24_24_s23_line[12:0], partial_9_24_24_s8};
+    partial_9_24_24_s23 <= partial_9_24_24_s23_line[13];
+    partial_10_24_24_s23_line <= {partial_10_24_24_s23_line[11:0], partial_10_24_24_s9};
+    partial_10_24_24_s23 <= partial_10_24_24_s23_line[12];
+    partial_11_24_24_s23_line <= {partial_11_24_24_s23_line[10:0], partial_11_24_24_s10};
+    partial_11_24_24_s23 <= partial_11_24_24_s23_line[11];
+    partial_12_24_24_s23_line <= {partial_12_24_24_s23_line[9:0], partial_12_24_24_s11};
+    partial_12_24_24_s23 <= partial_12_24_24_s23_line[10];
+    partial_13_24_24_s23_line <= {partial_13_24_24_s23_line[8:0], partial_13_24_24_s12};
+    partial_13_24_24_s23 <= partial_13_24_24_s23_line[9];
+    partial_14_24_24_s23_line <= {partial_14_24_24_s23_line[7:0], partial_14_24_24_s13};
+    partial_14_24_24_s23 <= partial_14_24_24_s23_line[8];
+    partial_15_24_24_s23_line <= {partial_15_24_24_s23_line[6:0], partial_15_24_24_s14};
+    partial_15_24_24_s23 <= partial_15_24_24_s23_line[7];
+    partial_16_24_24_s23_line <= {partial_16_24_24_s23_line[5:0], partial_16_24_24_s15};
+    partial_16_24_24_s23 <= partial_16_24_24_s23_line[6];
+    partial_17_24_24_s23_line <= {partial_17_24_24_s23_line[4:0], partial_17_24_24_s16};
+    partial_17_24_24_s23 <= partial_17_24_24_s23_line[5];
+    partial_18_24_24_s23_line <= {partial_18_24_24_s23_line[3:0], partial_18_24_24_s17};
+    partial_18_24_24_s23 <= partial_18_24_24_s23_line[4];
+    partial_19_24_24_s23_line <= {partial_19_24_24_s23_line[2:0], partial_19_24_24_s18};
+    partial_19_24_24_s23 <= partial_19_24_24_s23_line[3];
+    partial_20_24_24_s23_line <= {partial_20_24_24_s23_line[1:0], partial_20_24_24_s19};
+    partial_20_24_24_s23 <= partial_20_24_24_s23_line[2];
+    partial_21_24_24_s23 <= partial_21_24_24_s22;
+    partial_22_24_24_s23 <= partial_22_24_24_s22;
+    partial_23_24_24_s23 <= partial_23_24_24_s22;
+    partial_24_24_24_s23 <= partial_24[24];
+    partial_24_23_0_s23 <= partial_24[23:0];
+    a_significand_wide_s23 <= a_significand_wide_s22;
+  end
+  wire [24:0] partial_25 = {partial_24_23_0_s23, 1'b0} + (a_significand_wide_s23 ^ {25{~partial_24_24_24_s23}}) + {24'd0, ~partial_24_24_24_s23};
+  wire [24:0] quotient = ~{1'b0, partial_2_24_24_s23, partial_3_24_24_s23, partial_4_24_24_s23, partial_5_24_24_s23, partial_6_24_24_s23, partial_7_24_24_s23, partial_8_24_24_s23, partial_9_24_24_s23, partial_10_24_24_s23, partial_11_24_24_s23, partial_12_24_24_s23, partial_13_24_24_s23, partial_14_24_24_s23, partial_15_24_24_s23, partial_16_24_24_s23, partial_17_24_24_s23, partial_18_24_24_s23, partial_19_24_24_s23, partial_20_24_24_s23, partial_21_24_24_s23, partial_22_24_24_s23, partial_23_24_24_s23, partial_24_24_24_s23, partial_25[24]};
+  wire guard = quotient[0];
+  wire [23:0] significand = quotient[24:1];
+
+  // ---- stage 24 ----
+  reg [22:0] a_sign_s24_line;
+  reg a_sign_s24;
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [9:0] quotient_exponent_9_0_s24_line [0:7];
+  reg [9:0] quotient_exponent_9_0_s24;
+  reg [22:0] significand_22_0_s24;
+  reg guard_s24;
+  always @(posedge clk) begin
+    a_sign_s24_line <= {a_sign_s24_line[21:0], a_sign};
+    a_sign_s24 <= a_sign_s24_line[22];
+    quotient_exponent_9_0_s24_line[delay_8] <= quotient_exponent_9_0_s16;
+    quotient_exponent_9_0_s24 <= quotient_exponent_9_0_s24_line[delay_8_next];
+    significand_22_0_s24 <= significand[22:0];
+    guard_s24 <= guard;
+  end
+  wire [32:0] truncated = {quotient_exponent_9_0_s24, significand_22_0_s24};
+  wire [32:0] rounded = truncated + {32'd0, guard_s24};
 
   // ---- registered outputs ----
   always @(posedge clk) begin
-    result <= {a_sign_s16, rounded};
+    result <= {a_sign_s24, rounded};
   end
 
   // Bits that nothing needs.
-  wire unused = &{1'b0, difference_25[23:0], remainder_21_wide_s14[24], remainder_18_wide_s12[24],
-    remainder_15_wide_s10[24], remainder_12_wide_s8[24], remainder_9_wide_s6[24],
-    remainder_6_wide_s4[24], remainder_3_wide_s2[24], quotient[0], significand[23],
-    quotient_exponent[10]};
+  wire unused = &{1'b0, partial_25[23:0], significand[23], quotient_exponent[10]};
 
 endmodule
 

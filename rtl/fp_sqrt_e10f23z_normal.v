@@ -15,14 +15,25 @@ module fp_sqrt_e10f23z_normal (
   output reg  [33:0] result
 );
 
-  // Place of the newest word in the delay lines of 14 cycles.
-  reg [3:0] delay_14;
-  wire [3:0] delay_14_next = (delay_14 == 4'd13) ? 4'd0 : (delay_14 + 4'd1);
+  // Place of the newest word in the delay lines of 7 cycles.
+  reg [2:0] delay_7;
+  wire [2:0] delay_7_next = (delay_7 == 3'd6) ? 3'd0 : (delay_7 + 3'd1);
   always @(posedge clk) begin
     if (rst) begin
-      delay_14 <= 4'd0;
+      delay_7 <= 3'd0;
     end else begin
-      delay_14 <= delay_14_next;
+      delay_7 <= delay_7_next;
+    end
+  end
+
+  // Place of the newest word in the delay lines of 16 cycles.
+  reg [3:0] delay_16;
+  wire [3:0] delay_16_next = (delay_16 == 4'd15) ? 4'd0 : (delay_16 + 4'd1);
+  always @(posedge clk) begin
+    if (rst) begin
+      delay_16 <= 4'd0;
+    end else begin
+      delay_16 <= delay_16_next;
     end
   end
 
@@ -33,353 +44,585 @@ module fp_sqrt_e10f23z_normal (
   wire [22:0] a_fraction = a[22:0];
   wire [23:0] a_significand = {1'b1, a_fraction};
   wire [24:0] radicand = exponent_is_odd ? {a_significand, 1'b0} : {1'b0, a_significand};
+  wire [3:0] partial_1 = {radicand[24:23] - 2'd1, radicand[22:21]} - 4'd5;
+  wire [5:0] partial_1_wide = {partial_1, radicand[20:19]};
+  wire [2:0] partial_1_wide_2_0_plus_3 = partial_1_wide[2:0] + 3'd3;
+  wire carry_3 = partial_1_wide_2_0_plus_3[0] & (radicand[18] | radicand[17]);
+  wire carry_2 = partial_1[0] & (radicand[20] | radicand[19]);
   wire [49:0] radicand_wide = {radicand, 25'd0};
-  wire [1:0] remainder_0 = radicand[24:23] - 2'd1;
-  wire [3:0] remainder_0_wide = {remainder_0, radicand[22:21]};
-  wire [3:0] difference_1 = remainder_0_wide - 4'd5;
-  wire borrow_1 = difference_1[3];
-  wire [1:0] root_1 = {1'b1, ~borrow_1};
-  wire [2:0] remainder_1 = borrow_1 ? remainder_0_wide[2:0] : difference_1[2:0];
-  wire [4:0] remainder_1_wide = {remainder_1, radicand[20:19]};
-  wire [4:0] difference_2 = remainder_1_wide - {1'b0, {root_1, 2'd1}};
-  wire borrow_2 = difference_2[4];
   wire [11:0] a_exponent_wide_wide_plus_511 = {1'b0, {1'b0, a_exponent}} + 12'd511;
   wire [10:0] root_exponent = a_exponent_wide_wide_plus_511[11:1];
   wire a_sign = a[33];
 
   // ---- stage 1 ----
-  reg [1:0] radicand_8_7_s1;
-  reg [1:0] radicand_14_13_s1;
-  reg borrow_2_s1;
-  reg [3:0] remainder_1_wide_3_0_s1;
-  reg [3:0] difference_2_3_0_s1;
+  reg [1:0] partial_1_2_1_s1;
+  reg carry_2_s1;
+  reg partial_1_3_3_s1;
+  reg [2:0] partial_1_wide_2_0_plus_3_s1;
+  reg carry_3_s1;
   reg [1:0] radicand_18_17_s1;
-  reg [1:0] root_1_s1;
+  reg radicand_16_16_or_radicand_15_15_s1;
+  reg radicand_14_14_or_radicand_13_13_s1;
   reg [1:0] radicand_16_15_s1;
-  reg [1:0] radicand_10_9_s1;
+  reg radicand_12_12_or_radicand_11_11_s1;
+  reg [1:0] radicand_14_13_s1;
+  reg radicand_10_10_or_radicand_9_9_s1;
   reg [1:0] radicand_12_11_s1;
   always @(posedge clk) begin
-    radicand_8_7_s1 <= radicand[8:7];
-    radicand_14_13_s1 <= radicand[14:13];
-    borrow_2_s1 <= borrow_2;
-    remainder_1_wide_3_0_s1 <= remainder_1_wide[3:0];
-    difference_2_3_0_s1 <= difference_2[3:0];
+    partial_1_2_1_s1 <= partial_1[2:1];
+    carry_2_s1 <= carry_2;
+    partial_1_3_3_s1 <= partial_1[3];
+    partial_1_wide_2_0_plus_3_s1 <= partial_1_wide_2_0_plus_3;
+    carry_3_s1 <= carry_3;
     radicand_18_17_s1 <= radicand[18:17];
-    root_1_s1 <= root_1;
+    radicand_16_16_or_radicand_15_15_s1 <= radicand[16] | radicand[15];
+    radicand_14_14_or_radicand_13_13_s1 <= radicand[14] | radicand[13];
     radicand_16_15_s1 <= radicand[16:15];
-    radicand_10_9_s1 <= radicand[10:9];
+    radicand_12_12_or_radicand_11_11_s1 <= radicand[12] | radicand[11];
+    radicand_14_13_s1 <= radicand[14:13];
+    radicand_10_10_or_radicand_9_9_s1 <= radicand[10] | radicand[9];
     radicand_12_11_s1 <= radicand[12:11];
   end
-  wire [3:0] remainder_2 = borrow_2_s1 ? remainder_1_wide_3_0_s1 : difference_2_3_0_s1;
-  wire [5:0] remainder_2_wide = {remainder_2, radicand_18_17_s1};
-  wire [2:0] root_2 = {root_1_s1, ~borrow_2_s1};
-  wire [5:0] difference_3 = remainder_2_wide - {1'b0, {root_2, 2'd1}};
-  wire borrow_3 = difference_3[5];
-  wire [4:0] remainder_3 = borrow_3 ? remainder_2_wide[4:0] : difference_3[4:0];
-  wire [6:0] remainder_3_wide = {remainder_3, radicand_16_15_s1};
-  wire [3:0] root_3 = {root_2, ~borrow_3};
-  wire [6:0] difference_4 = remainder_3_wide - {1'b0, {root_3, 2'd1}};
-  wire borrow_4 = difference_4[6];
+  wire [2:0] partial_2_above = {partial_1_2_1_s1, carry_2_s1} + (3'd3 ^ {3{~partial_1_3_3_s1}}) + {2'd0, ~partial_1_3_3_s1};
+  wire [4:0] partial_2 = {partial_2_above[2:1], partial_1_wide_2_0_plus_3_s1};
+  wire [1:0] root_2 = {1'b1, ~partial_1_3_3_s1};
+  wire [3:0] partial_3_above = {partial_2[3:1], carry_3_s1} + ({1'b0, {root_2, 1'b1}} ^ {4{~partial_2_above[2]}}) + {3'd0, ~partial_2_above[2]};
+  wire [6:0] partial_2_wide = {partial_2, radicand_18_17_s1};
+  wire [2:0] partial_2_wide_2_0_plus_3 = partial_2_wide[2:0] + 3'd3;
+  wire carry_4 = partial_2_wide_2_0_plus_3[0] & radicand_16_16_or_radicand_15_15_s1;
+  wire [5:0] partial_3 = {partial_3_above[3:1], partial_2_wide_2_0_plus_3};
+  wire [7:0] partial_3_wide = {partial_3, radicand_16_15_s1};
 
   // ---- stage 2 ----
-  reg [1:0] radicand_8_7_s2;
-  reg [3:0] root_3_s2;
-  reg borrow_4_s2;
-  reg [5:0] remainder_3_wide_5_0_s2;
-  reg [5:0] difference_4_5_0_s2;
+  reg [3:0] partial_3_4_1_s2;
+  reg carry_4_s2;
+  reg [1:0] root_2_s2;
+  reg not_partial_2_above_2_2_s2;
+  reg partial_3_above_3_3_s2;
+  reg [2:0] partial_3_wide_2_0_s2;
+  reg radicand_14_14_or_radicand_13_13_s2;
   reg [1:0] radicand_14_13_s2;
-  reg [1:0] radicand_10_9_s2;
+  reg radicand_12_12_or_radicand_11_11_s2;
+  reg radicand_10_10_or_radicand_9_9_s2;
   reg [1:0] radicand_12_11_s2;
   always @(posedge clk) begin
-    radicand_8_7_s2 <= radicand_8_7_s1;
-    root_3_s2 <= root_3;
-    borrow_4_s2 <= borrow_4;
-    remainder_3_wide_5_0_s2 <= remainder_3_wide[5:0];
-    difference_4_5_0_s2 <= difference_4[5:0];
+    partial_3_4_1_s2 <= partial_3[4:1];
+    carry_4_s2 <= carry_4;
+    root_2_s2 <= root_2;
+    not_partial_2_above_2_2_s2 <= ~partial_2_above[2];
+    partial_3_above_3_3_s2 <= partial_3_above[3];
+    partial_3_wide_2_0_s2 <= partial_3_wide[2:0];
+    radicand_14_14_or_radicand_13_13_s2 <= radicand_14_14_or_radicand_13_13_s1;
     radicand_14_13_s2 <= radicand_14_13_s1;
-    radicand_10_9_s2 <= radicand_10_9_s1;
+    radicand_12_12_or_radicand_11_11_s2 <= radicand_12_12_or_radicand_11_11_s1;
+    radicand_10_10_or_radicand_9_9_s2 <= radicand_10_10_or_radicand_9_9_s1;
     radicand_12_11_s2 <= radicand_12_11_s1;
   end
-  wire [4:0] root_4 = {root_3_s2, ~borrow_4_s2};
-  wire [5:0] remainder_4 = borrow_4_s2 ? remainder_3_wide_5_0_s2 : difference_4_5_0_s2;
-  wire [7:0] remainder_4_wide = {remainder_4, radicand_14_13_s2};
-  wire [7:0] difference_5 = remainder_4_wide - {1'b0, {root_4, 2'd1}};
-  wire borrow_5 = difference_5[7];
-  wire [5:0] root_5 = {root_4, ~borrow_5};
-  wire [6:0] remainder_5 = borrow_5 ? remainder_4_wide[6:0] : difference_5[6:0];
-  wire [8:0] remainder_5_wide = {remainder_5, radicand_12_11_s2};
-  wire [8:0] difference_6 = remainder_5_wide - {1'b0, {root_5, 2'd1}};
-  wire borrow_6 = difference_6[8];
+  wire [2:0] root_3 = {root_2_s2, not_partial_2_above_2_2_s2};
+  wire [4:0] partial_4_above = {partial_3_4_1_s2, carry_4_s2} + ({1'b0, {root_3, 1'b1}} ^ {5{~partial_3_above_3_3_s2}}) + {4'd0, ~partial_3_above_3_3_s2};
+  wire [2:0] partial_3_wide_2_0_s2_plus_3 = partial_3_wide_2_0_s2 + 3'd3;
+  wire carry_5 = partial_3_wide_2_0_s2_plus_3[0] & radicand_14_14_or_radicand_13_13_s2;
+  wire [6:0] partial_4 = {partial_4_above[4:1], partial_3_wide_2_0_s2_plus_3};
+  wire [8:0] partial_4_wide = {partial_4, radicand_14_13_s2};
+  wire [2:0] partial_4_wide_2_0_plus_3 = partial_4_wide[2:0] + 3'd3;
+  wire carry_6 = partial_4_wide_2_0_plus_3[0] & radicand_12_12_or_radicand_11_11_s2;
 
   // ---- stage 3 ----
-  reg borrow_6_s3;
-  reg [7:0] remainder_5_wide_7_0_s3;
-  reg [7:0] difference_6_7_0_s3;
-  reg [1:0] radicand_10_9_s3;
-  reg [5:0] root_5_s3;
-  reg [1:0] radicand_8_7_s3;
+  reg [4:0] partial_4_5_1_s3;
+  reg carry_5_s3;
+  reg [2:0] root_3_s3;
+  reg not_partial_3_above_3_3_s2_s3;
+  reg partial_4_above_4_4_s3;
+  reg carry_6_s3;
+  reg [2:0] partial_4_wide_2_0_plus_3_s3;
+  reg [1:0] radicand_12_11_s3;
+  reg radicand_10_10_or_radicand_9_9_s3;
   always @(posedge clk) begin
-    borrow_6_s3 <= borrow_6;
-    remainder_5_wide_7_0_s3 <= remainder_5_wide[7:0];
-    difference_6_7_0_s3 <= difference_6[7:0];
-    radicand_10_9_s3 <= radicand_10_9_s2;
-    root_5_s3 <= root_5;
-    radicand_8_7_s3 <= radicand_8_7_s2;
+    partial_4_5_1_s3 <= partial_4[5:1];
+    carry_5_s3 <= carry_5;
+    root_3_s3 <= root_3;
+    not_partial_3_above_3_3_s2_s3 <= ~partial_3_above_3_3_s2;
+    partial_4_above_4_4_s3 <= partial_4_above[4];
+    carry_6_s3 <= carry_6;
+    partial_4_wide_2_0_plus_3_s3 <= partial_4_wide_2_0_plus_3;
+    radicand_12_11_s3 <= radicand_12_11_s2;
+    radicand_10_10_or_radicand_9_9_s3 <= radicand_10_10_or_radicand_9_9_s2;
   end
-  wire [7:0] remainder_6 = borrow_6_s3 ? remainder_5_wide_7_0_s3 : difference_6_7_0_s3;
-  wire [9:0] remainder_6_wide = {remainder_6, radicand_10_9_s3};
-  wire [6:0] root_6 = {root_5_s3, ~borrow_6_s3};
-  wire [9:0] difference_7 = remainder_6_wide - {1'b0, {root_6, 2'd1}};
-  wire borrow_7 = difference_7[9];
-  wire [8:0] remainder_7 = borrow_7 ? remainder_6_wide[8:0] : difference_7[8:0];
-  wire [10:0] remainder_7_wide = {remainder_7, radicand_8_7_s3};
-  wire [7:0] root_7 = {root_6, ~borrow_7};
-  wire [10:0] difference_8 = remainder_7_wide - {1'b0, {root_7, 2'd1}};
-  wire borrow_8 = difference_8[10];
+  wire [3:0] root_4 = {root_3_s3, not_partial_3_above_3_3_s2_s3};
+  wire [5:0] partial_5_above = {partial_4_5_1_s3, carry_5_s3} + ({1'b0, {root_4, 1'b1}} ^ {6{~partial_4_above_4_4_s3}}) + {5'd0, ~partial_4_above_4_4_s3};
+  wire [7:0] partial_5 = {partial_5_above[5:1], partial_4_wide_2_0_plus_3_s3};
+  wire [9:0] partial_5_wide = {partial_5, radicand_12_11_s3};
+  wire [2:0] partial_5_wide_2_0_plus_3 = partial_5_wide[2:0] + 3'd3;
+  wire carry_7 = partial_5_wide_2_0_plus_3[0] & radicand_10_10_or_radicand_9_9_s3;
 
   // ---- stage 4 ----
-  reg [7:0] root_7_s4;
-  reg borrow_8_s4;
-  reg [9:0] remainder_7_wide_9_0_s4;
-  reg [9:0] difference_8_9_0_s4;
-  reg [5:0] radicand_6_5_s4_line;
-  reg [1:0] radicand_6_5_s4;
-  reg [5:0] radicand_4_3_s4_line;
-  reg [1:0] radicand_4_3_s4;
+  reg [5:0] partial_5_6_1_s4;
+  reg carry_6_s4;
+  reg [3:0] root_4_s4;
+  reg not_partial_4_above_4_4_s3_s4;
+  reg partial_5_above_5_5_s4;
+  reg carry_7_s4;
+  reg [2:0] partial_5_wide_2_0_plus_3_s4;
+  reg [5:0] radicand_10_9_s4_line;
+  reg [1:0] radicand_10_9_s4;
+  reg [2:0] radicand_8_8_or_radicand_7_7_s4_line;
+  reg radicand_8_8_or_radicand_7_7_s4;
   always @(posedge clk) begin
-    root_7_s4 <= root_7;
-    borrow_8_s4 <= borrow_8;
-    remainder_7_wide_9_0_s4 <= remainder_7_wide[9:0];
-    difference_8_9_0_s4 <= difference_8[9:0];
-    radicand_6_5_s4_line <= {radicand_6_5_s4_line[3:0], radicand[6:5]};
-    radicand_6_5_s4 <= radicand_6_5_s4_line[5:4];
-    radicand_4_3_s4_line <= {radicand_4_3_s4_line[3:0], radicand[4:3]};
-    radicand_4_3_s4 <= radicand_4_3_s4_line[5:4];
+    partial_5_6_1_s4 <= partial_5[6:1];
+    carry_6_s4 <= carry_6_s3;
+    root_4_s4 <= root_4;
+    not_partial_4_above_4_4_s3_s4 <= ~partial_4_above_4_4_s3;
+    partial_5_above_5_5_s4 <= partial_5_above[5];
+    carry_7_s4 <= carry_7;
+    partial_5_wide_2_0_plus_3_s4 <= partial_5_wide_2_0_plus_3;
+    radicand_10_9_s4_line <= {radicand_10_9_s4_line[3:0], radicand[10:9]};
+    radicand_10_9_s4 <= radicand_10_9_s4_line[5:4];
+    radicand_8_8_or_radicand_7_7_s4_line <= {radicand_8_8_or_radicand_7_7_s4_line[1:0], radicand[8] | radicand[7]};
+    radicand_8_8_or_radicand_7_7_s4 <= radicand_8_8_or_radicand_7_7_s4_line[2];
   end
-  wire [8:0] root_8 = {root_7_s4, ~borrow_8_s4};
-  wire [9:0] remainder_8 = borrow_8_s4 ? remainder_7_wide_9_0_s4 : difference_8_9_0_s4;
-  wire [11:0] remainder_8_wide = {remainder_8, radicand_6_5_s4};
-  wire [11:0] difference_9 = remainder_8_wide - {1'b0, {root_8, 2'd1}};
-  wire borrow_9 = difference_9[11];
-  wire [9:0] root_9 = {root_8, ~borrow_9};
-  wire [10:0] remainder_9 = borrow_9 ? remainder_8_wide[10:0] : difference_9[10:0];
-  wire [12:0] remainder_9_wide = {remainder_9, radicand_4_3_s4};
-  wire [12:0] difference_10 = remainder_9_wide - {1'b0, {root_9, 2'd1}};
-  wire borrow_10 = difference_10[12];
+  wire [4:0] root_5 = {root_4_s4, not_partial_4_above_4_4_s3_s4};
+  wire [6:0] partial_6_above = {partial_5_6_1_s4, carry_6_s4} + ({1'b0, {root_5, 1'b1}} ^ {7{~partial_5_above_5_5_s4}}) + {6'd0, ~partial_5_above_5_5_s4};
+  wire [8:0] partial_6 = {partial_6_above[6:1], partial_5_wide_2_0_plus_3_s4};
+  wire [10:0] partial_6_wide = {partial_6, radicand_10_9_s4};
+  wire [2:0] partial_6_wide_2_0_plus_3 = partial_6_wide[2:0] + 3'd3;
+  wire carry_8 = partial_6_wide_2_0_plus_3[0] & radicand_8_8_or_radicand_7_7_s4;
 
   // ---- stage 5 ----
-  reg borrow_10_s5;
-  reg [11:0] remainder_9_wide_11_0_s5;
-  reg [11:0] difference_10_11_0_s5;
-  reg [7:0] radicand_2_1_s5_line;
-  reg [1:0] radicand_2_1_s5;
-  reg [9:0] root_9_s5;
-  reg [7:0] radicand_wide_25_24_s5_line;
-  reg [1:0] radicand_wide_25_24_s5;
+  reg [6:0] partial_6_7_1_s5;
+  reg carry_7_s5;
+  reg [4:0] root_5_s5;
+  reg not_partial_5_above_5_5_s4_s5;
+  reg partial_6_above_6_6_s5;
+  reg carry_8_s5;
+  reg [2:0] partial_6_wide_2_0_plus_3_s5;
+  reg [7:0] radicand_8_7_s5_line;
+  reg [1:0] radicand_8_7_s5;
+  reg [3:0] radicand_6_6_or_radicand_5_5_s5_line;
+  reg radicand_6_6_or_radicand_5_5_s5;
   always @(posedge clk) begin
-    borrow_10_s5 <= borrow_10;
-    remainder_9_wide_11_0_s5 <= remainder_9_wide[11:0];
-    difference_10_11_0_s5 <= difference_10[11:0];
-    radicand_2_1_s5_line <= {radicand_2_1_s5_line[5:0], radicand[2:1]};
-    radicand_2_1_s5 <= radicand_2_1_s5_line[7:6];
-    root_9_s5 <= root_9;
-    radicand_wide_25_24_s5_line <= {radicand_wide_25_24_s5_line[5:0], radicand_wide[25:24]};
-    radicand_wide_25_24_s5 <= radicand_wide_25_24_s5_line[7:6];
+    partial_6_7_1_s5 <= partial_6[7:1];
+    carry_7_s5 <= carry_7_s4;
+    root_5_s5 <= root_5;
+    not_partial_5_above_5_5_s4_s5 <= ~partial_5_above_5_5_s4;
+    partial_6_above_6_6_s5 <= partial_6_above[6];
+    carry_8_s5 <= carry_8;
+    partial_6_wide_2_0_plus_3_s5 <= partial_6_wide_2_0_plus_3;
+    radicand_8_7_s5_line <= {radicand_8_7_s5_line[5:0], radicand[8:7]};
+    radicand_8_7_s5 <= radicand_8_7_s5_line[7:6];
+    radicand_6_6_or_radicand_5_5_s5_line <= {radicand_6_6_or_radicand_5_5_s5_line[2:0], radicand[6] | radicand[5]};
+    radicand_6_6_or_radicand_5_5_s5 <= radicand_6_6_or_radicand_5_5_s5_line[3];
   end
-  wire [11:0] remainder_10 = borrow_10_s5 ? remainder_9_wide_11_0_s5 : difference_10_11_0_s5;
-  wire [13:0] remainder_10_wide = {remainder_10, radicand_2_1_s5};
-  wire [10:0] root_10 = {root_9_s5, ~borrow_10_s5};
-  wire [13:0] difference_11 = remainder_10_wide - {1'b0, {root_10, 2'd1}};
-  wire borrow_11 = difference_11[13];
-  wire [12:0] remainder_11 = borrow_11 ? remainder_10_wide[12:0] : difference_11[12:0];
-  wire [14:0] remainder_11_wide = {remainder_11, radicand_wide_25_24_s5};
-  wire [11:0] root_11 = {root_10, ~borrow_11};
-  wire [14:0] difference_12 = remainder_11_wide - {1'b0, {root_11, 2'd1}};
-  wire borrow_12 = difference_12[14];
+  wire [5:0] root_6 = {root_5_s5, not_partial_5_above_5_5_s4_s5};
+  wire [7:0] partial_7_above = {partial_6_7_1_s5, carry_7_s5} + ({1'b0, {root_6, 1'b1}} ^ {8{~partial_6_above_6_6_s5}}) + {7'd0, ~partial_6_above_6_6_s5};
+  wire [9:0] partial_7 = {partial_7_above[7:1], partial_6_wide_2_0_plus_3_s5};
+  wire [11:0] partial_7_wide = {partial_7, radicand_8_7_s5};
+  wire [2:0] partial_7_wide_2_0_plus_3 = partial_7_wide[2:0] + 3'd3;
+  wire carry_9 = partial_7_wide_2_0_plus_3[0] & radicand_6_6_or_radicand_5_5_s5;
 
   // ---- stage 6 ----
-  reg [11:0] root_11_s6;
-  reg borrow_12_s6;
-  reg [13:0] remainder_11_wide_13_0_s6;
-  reg [13:0] difference_12_13_0_s6;
+  reg [7:0] partial_7_8_1_s6;
+  reg carry_8_s6;
+  reg [5:0] root_6_s6;
+  reg not_partial_6_above_6_6_s5_s6;
+  reg partial_7_above_7_7_s6;
+  reg carry_9_s6;
+  reg [2:0] partial_7_wide_2_0_plus_3_s6;
+  reg [9:0] radicand_6_5_s6_line;
+  reg [1:0] radicand_6_5_s6;
+  reg [4:0] radicand_4_4_or_radicand_3_3_s6_line;
+  reg radicand_4_4_or_radicand_3_3_s6;
   always @(posedge clk) begin
-    root_11_s6 <= root_11;
-    borrow_12_s6 <= borrow_12;
-    remainder_11_wide_13_0_s6 <= remainder_11_wide[13:0];
-    difference_12_13_0_s6 <= difference_12[13:0];
+    partial_7_8_1_s6 <= partial_7[8:1];
+    carry_8_s6 <= carry_8_s5;
+    root_6_s6 <= root_6;
+    not_partial_6_above_6_6_s5_s6 <= ~partial_6_above_6_6_s5;
+    partial_7_above_7_7_s6 <= partial_7_above[7];
+    carry_9_s6 <= carry_9;
+    partial_7_wide_2_0_plus_3_s6 <= partial_7_wide_2_0_plus_3;
+    radicand_6_5_s6_line <= {radicand_6_5_s6_line[7:0], radicand[6:5]};
+    radicand_6_5_s6 <= radicand_6_5_s6_line[9:8];
+    radicand_4_4_or_radicand_3_3_s6_line <= {radicand_4_4_or_radicand_3_3_s6_line[3:0], radicand[4] | radicand[3]};
+    radicand_4_4_or_radicand_3_3_s6 <= radicand_4_4_or_radicand_3_3_s6_line[4];
   end
-  wire [12:0] root_12 = {root_11_s6, ~borrow_12_s6};
-  wire [13:0] remainder_12 = borrow_12_s6 ? remainder_11_wide_13_0_s6 : difference_12_13_0_s6;
-  wire [15:0] remainder_12_wide = {remainder_12, 2'd0};
-  wire [15:0] difference_13 = remainder_12_wide - {1'b0, {root_12, 2'd1}};
-  wire borrow_13 = difference_13[15];
-  wire [13:0] root_13 = {root_12, ~borrow_13};
-  wire [14:0] remainder_13 = borrow_13 ? remainder_12_wide[14:0] : difference_13[14:0];
-  wire [16:0] remainder_13_wide = {remainder_13, 2'd0};
-  wire [16:0] difference_14 = remainder_13_wide - {1'b0, {root_13, 2'd1}};
-  wire borrow_14 = difference_14[16];
+  wire [6:0] root_7 = {root_6_s6, not_partial_6_above_6_6_s5_s6};
+  wire [8:0] partial_8_above = {partial_7_8_1_s6, carry_8_s6} + ({1'b0, {root_7, 1'b1}} ^ {9{~partial_7_above_7_7_s6}}) + {8'd0, ~partial_7_above_7_7_s6};
+  wire [10:0] partial_8 = {partial_8_above[8:1], partial_7_wide_2_0_plus_3_s6};
+  wire [12:0] partial_8_wide = {partial_8, radicand_6_5_s6};
+  wire [2:0] partial_8_wide_2_0_plus_3 = partial_8_wide[2:0] + 3'd3;
+  wire carry_10 = partial_8_wide_2_0_plus_3[0] & radicand_4_4_or_radicand_3_3_s6;
 
   // ---- stage 7 ----
-  reg borrow_14_s7;
-  reg [16:0] remainder_13_wide_s7;
-  reg [15:0] difference_14_15_0_s7;
-  reg [13:0] root_13_s7;
+  reg [8:0] partial_8_9_1_s7;
+  reg carry_9_s7;
+  reg [6:0] root_7_s7;
+  reg not_partial_7_above_7_7_s6_s7;
+  reg partial_8_above_8_8_s7;
+  reg carry_10_s7;
+  reg [2:0] partial_8_wide_2_0_plus_3_s7;
+  reg [11:0] radicand_4_3_s7_line;
+  reg [1:0] radicand_4_3_s7;
+  reg [5:0] radicand_2_2_or_radicand_1_1_s7_line;
+  reg radicand_2_2_or_radicand_1_1_s7;
   always @(posedge clk) begin
-    borrow_14_s7 <= borrow_14;
-    remainder_13_wide_s7 <= remainder_13_wide;
-    difference_14_15_0_s7 <= difference_14[15:0];
-    root_13_s7 <= root_13;
+    partial_8_9_1_s7 <= partial_8[9:1];
+    carry_9_s7 <= carry_9_s6;
+    root_7_s7 <= root_7;
+    not_partial_7_above_7_7_s6_s7 <= ~partial_7_above_7_7_s6;
+    partial_8_above_8_8_s7 <= partial_8_above[8];
+    carry_10_s7 <= carry_10;
+    partial_8_wide_2_0_plus_3_s7 <= partial_8_wide_2_0_plus_3;
+    radicand_4_3_s7_line <= {radicand_4_3_s7_line[9:0], radicand[4:3]};
+    radicand_4_3_s7 <= radicand_4_3_s7_line[11:10];
+    radicand_2_2_or_radicand_1_1_s7_line <= {radicand_2_2_or_radicand_1_1_s7_line[4:0], radicand[2] | radicand[1]};
+    radicand_2_2_or_radicand_1_1_s7 <= radicand_2_2_or_radicand_1_1_s7_line[5];
   end
-  wire [15:0] remainder_14 = borrow_14_s7 ? remainder_13_wide_s7[15:0] : difference_14_15_0_s7;
-  wire [17:0] remainder_14_wide = {remainder_14, 2'd0};
-  wire [14:0] root_14 = {root_13_s7, ~borrow_14_s7};
-  wire [17:0] difference_15 = remainder_14_wide - {1'b0, {root_14, 2'd1}};
-  wire borrow_15 = difference_15[17];
-  wire [16:0] remainder_15 = borrow_15 ? remainder_14_wide[16:0] : difference_15[16:0];
+  wire [7:0] root_8 = {root_7_s7, not_partial_7_above_7_7_s6_s7};
+  wire [9:0] partial_9_above = {partial_8_9_1_s7, carry_9_s7} + ({1'b0, {root_8, 1'b1}} ^ {10{~partial_8_above_8_8_s7}}) + {9'd0, ~partial_8_above_8_8_s7};
+  wire [11:0] partial_9 = {partial_9_above[9:1], partial_8_wide_2_0_plus_3_s7};
+  wire [13:0] partial_9_wide = {partial_9, radicand_4_3_s7};
+  wire [2:0] partial_9_wide_2_0_plus_3 = partial_9_wide[2:0] + 3'd3;
+  wire carry_11 = partial_9_wide_2_0_plus_3[0] & radicand_2_2_or_radicand_1_1_s7;
 
   // ---- stage 8 ----
-  reg [14:0] root_14_s8;
-  reg borrow_15_s8;
-  reg [16:0] remainder_15_s8;
+  reg [9:0] partial_9_10_1_s8;
+  reg carry_10_s8;
+  reg [7:0] root_8_s8;
+  reg not_partial_8_above_8_8_s7_s8;
+  reg partial_9_above_9_9_s8;
+  reg carry_11_s8;
+  reg [2:0] partial_9_wide_2_0_plus_3_s8;
+  reg [13:0] radicand_2_1_s8_line;
+  reg [1:0] radicand_2_1_s8;
+  reg [6:0] radicand_0_0_s8_line;
+  reg radicand_0_0_s8;
   always @(posedge clk) begin
-    root_14_s8 <= root_14;
-    borrow_15_s8 <= borrow_15;
-    remainder_15_s8 <= remainder_15;
+    partial_9_10_1_s8 <= partial_9[10:1];
+    carry_10_s8 <= carry_10_s7;
+    root_8_s8 <= root_8;
+    not_partial_8_above_8_8_s7_s8 <= ~partial_8_above_8_8_s7;
+    partial_9_above_9_9_s8 <= partial_9_above[9];
+    carry_11_s8 <= carry_11;
+    partial_9_wide_2_0_plus_3_s8 <= partial_9_wide_2_0_plus_3;
+    radicand_2_1_s8_line <= {radicand_2_1_s8_line[11:0], radicand[2:1]};
+    radicand_2_1_s8 <= radicand_2_1_s8_line[13:12];
+    radicand_0_0_s8_line <= {radicand_0_0_s8_line[5:0], radicand[0]};
+    radicand_0_0_s8 <= radicand_0_0_s8_line[6];
   end
-  wire [15:0] root_15 = {root_14_s8, ~borrow_15_s8};
-  wire [18:0] remainder_15_s8_wide = {remainder_15_s8, 2'd0};
-  wire [18:0] difference_16 = remainder_15_s8_wide - {1'b0, {root_15, 2'd1}};
-  wire borrow_16 = difference_16[18];
-  wire [16:0] root_16 = {root_15, ~borrow_16};
-  wire [17:0] remainder_16 = borrow_16 ? remainder_15_s8_wide[17:0] : difference_16[17:0];
-  wire [19:0] remainder_16_wide = {remainder_16, 2'd0};
-  wire [19:0] difference_17 = remainder_16_wide - {1'b0, {root_16, 2'd1}};
-  wire borrow_17 = difference_17[19];
+  wire [8:0] root_9 = {root_8_s8, not_partial_8_above_8_8_s7_s8};
+  wire [10:0] partial_10_above = {partial_9_10_1_s8, carry_10_s8} + ({1'b0, {root_9, 1'b1}} ^ {11{~partial_9_above_9_9_s8}}) + {10'd0, ~partial_9_above_9_9_s8};
+  wire [12:0] partial_10 = {partial_10_above[10:1], partial_9_wide_2_0_plus_3_s8};
+  wire [14:0] partial_10_wide = {partial_10, radicand_2_1_s8};
+  wire [2:0] partial_10_wide_2_0_plus_3 = partial_10_wide[2:0] + 3'd3;
+  wire carry_12 = partial_10_wide_2_0_plus_3[0] & radicand_0_0_s8;
 
   // ---- stage 9 ----
-  reg borrow_17_s9;
-  reg [19:0] remainder_16_wide_s9;
-  reg [18:0] difference_17_18_0_s9;
-  reg [16:0] root_16_s9;
+  reg [10:0] partial_10_11_1_s9;
+  reg carry_11_s9;
+  reg [8:0] root_9_s9;
+  reg partial_9_above_9_9_s9;
+  reg partial_10_above_10_10_s9;
+  reg carry_12_s9;
+  reg [2:0] partial_10_wide_2_0_plus_3_s9;
+  reg [15:0] radicand_wide_25_24_s9_line;
+  reg [1:0] radicand_wide_25_24_s9;
   always @(posedge clk) begin
-    borrow_17_s9 <= borrow_17;
-    remainder_16_wide_s9 <= remainder_16_wide;
-    difference_17_18_0_s9 <= difference_17[18:0];
-    root_16_s9 <= root_16;
+    partial_10_11_1_s9 <= partial_10[11:1];
+    carry_11_s9 <= carry_11_s8;
+    root_9_s9 <= root_9;
+    partial_9_above_9_9_s9 <= partial_9_above_9_9_s8;
+    partial_10_above_10_10_s9 <= partial_10_above[10];
+    carry_12_s9 <= carry_12;
+    partial_10_wide_2_0_plus_3_s9 <= partial_10_wide_2_0_plus_3;
+    radicand_wide_25_24_s9_line <= {radicand_wide_25_24_s9_line[13:0], radicand_wide[25:24]};
+    radicand_wide_25_24_s9 <= radicand_wide_25_24_s9_line[15:14];
   end
-  wire [18:0] remainder_17 = borrow_17_s9 ? remainder_16_wide_s9[18:0] : difference_17_18_0_s9;
-  wire [20:0] remainder_17_wide = {remainder_17, 2'd0};
-  wire [17:0] root_17 = {root_16_s9, ~borrow_17_s9};
-  wire [20:0] difference_18 = remainder_17_wide - {1'b0, {root_17, 2'd1}};
-  wire borrow_18 = difference_18[20];
-  wire [19:0] remainder_18 = borrow_18 ? remainder_17_wide[19:0] : difference_18[19:0];
+  wire [9:0] root_10 = {root_9_s9, ~partial_9_above_9_9_s9};
+  wire [11:0] partial_11_above = {partial_10_11_1_s9, carry_11_s9} + ({1'b0, {root_10, 1'b1}} ^ {12{~partial_10_above_10_10_s9}}) + {11'd0, ~partial_10_above_10_10_s9};
+  wire [13:0] partial_11 = {partial_11_above[11:1], partial_10_wide_2_0_plus_3_s9};
+  wire [15:0] partial_11_wide = {partial_11, radicand_wide_25_24_s9};
 
   // ---- stage 10 ----
-  reg [17:0] root_17_s10;
-  reg borrow_18_s10;
-  reg [19:0] remainder_18_s10;
+  reg [11:0] partial_11_12_1_s10;
+  reg carry_12_s10;
+  reg [9:0] root_10_s10;
+  reg partial_10_above_10_10_s10;
+  reg partial_11_above_11_11_s10;
+  reg [2:0] partial_11_wide_2_0_s10;
   always @(posedge clk) begin
-    root_17_s10 <= root_17;
-    borrow_18_s10 <= borrow_18;
-    remainder_18_s10 <= remainder_18;
+    partial_11_12_1_s10 <= partial_11[12:1];
+    carry_12_s10 <= carry_12_s9;
+    root_10_s10 <= root_10;
+    partial_10_above_10_10_s10 <= partial_10_above_10_10_s9;
+    partial_11_above_11_11_s10 <= partial_11_above[11];
+    partial_11_wide_2_0_s10 <= partial_11_wide[2:0];
   end
-  wire [18:0] root_18 = {root_17_s10, ~borrow_18_s10};
-  wire [21:0] remainder_18_s10_wide = {remainder_18_s10, 2'd0};
-  wire [21:0] difference_19 = remainder_18_s10_wide - {1'b0, {root_18, 2'd1}};
-  wire borrow_19 = difference_19[21];
-  wire [19:0] root_19 = {root_18, ~borrow_19};
-  wire [20:0] remainder_19 = borrow_19 ? remainder_18_s10_wide[20:0] : difference_19[20:0];
-  wire [22:0] remainder_19_wide = {remainder_19, 2'd0};
-  wire [22:0] difference_20 = remainder_19_wide - {1'b0, {root_19, 2'd1}};
-  wire borrow_20 = difference_20[22];
+  wire [10:0] root_11 = {root_10_s10, ~partial_10_above_10_10_s10};
+  wire [12:0] partial_12_above = {partial_11_12_1_s10, carry_12_s10} + ({1'b0, {root_11, 1'b1}} ^ {13{~partial_11_above_11_11_s10}}) + {12'd0, ~partial_11_above_11_11_s10};
+  wire [14:0] partial_12 = {partial_12_above[12:1], partial_11_wide_2_0_s10 + 3'd3};
+  wire [16:0] partial_12_wide = {partial_12, 2'd0};
 
   // ---- stage 11 ----
-  reg borrow_20_s11;
-  reg [22:0] remainder_19_wide_s11;
-  reg [21:0] difference_20_21_0_s11;
-  reg [19:0] root_19_s11;
+  reg [12:0] partial_12_13_1_s11;
+  reg [10:0] root_11_s11;
+  reg partial_11_above_11_11_s11;
+  reg partial_12_above_12_12_s11;
+  reg [2:0] partial_12_wide_2_0_s11;
   always @(posedge clk) begin
-    borrow_20_s11 <= borrow_20;
-    remainder_19_wide_s11 <= remainder_19_wide;
-    difference_20_21_0_s11 <= difference_20[21:0];
-    root_19_s11 <= root_19;
+    partial_12_13_1_s11 <= partial_12[13:1];
+    root_11_s11 <= root_11;
+    partial_11_above_11_11_s11 <= partial_11_above_11_11_s10;
+    partial_12_above_12_12_s11 <= partial_12_above[12];
+    partial_12_wide_2_0_s11 <= partial_12_wide[2:0];
   end
-  wire [21:0] remainder_20 = borrow_20_s11 ? remainder_19_wide_s11[21:0] : difference_20_21_0_s11;
-  wire [23:0] remainder_20_wide = {remainder_20, 2'd0};
-  wire [20:0] root_20 = {root_19_s11, ~borrow_20_s11};
-  wire [23:0] difference_21 = remainder_20_wide - {1'b0, {root_20, 2'd1}};
-  wire borrow_21 = difference_21[23];
-  wire [22:0] remainder_21 = borrow_21 ? remainder_20_wide[22:0] : difference_21[22:0];
+  wire [11:0] root_12 = {root_11_s11, ~partial_11_above_11_11_s11};
+  wire [13:0] partial_13_above = {partial_12_13_1_s11, 1'b0} + ({1'b0, {root_12, 1'b1}} ^ {14{~partial_12_above_12_12_s11}}) + {13'd0, ~partial_12_above_12_12_s11};
+  wire [15:0] partial_13 = {partial_13_above[13:1], partial_12_wide_2_0_s11 + 3'd3};
+  wire [17:0] partial_13_wide = {partial_13, 2'd0};
 
   // ---- stage 12 ----
-  reg [20:0] root_20_s12;
-  reg borrow_21_s12;
-  reg [22:0] remainder_21_s12;
+  reg [13:0] partial_13_14_1_s12;
+  reg [11:0] root_12_s12;
+  reg partial_12_above_12_12_s12;
+  reg partial_13_above_13_13_s12;
+  reg [2:0] partial_13_wide_2_0_s12;
   always @(posedge clk) begin
-    root_20_s12 <= root_20;
-    borrow_21_s12 <= borrow_21;
-    remainder_21_s12 <= remainder_21;
+    partial_13_14_1_s12 <= partial_13[14:1];
+    root_12_s12 <= root_12;
+    partial_12_above_12_12_s12 <= partial_12_above_12_12_s11;
+    partial_13_above_13_13_s12 <= partial_13_above[13];
+    partial_13_wide_2_0_s12 <= partial_13_wide[2:0];
   end
-  wire [21:0] root_21 = {root_20_s12, ~borrow_21_s12};
-  wire [24:0] remainder_21_s12_wide = {remainder_21_s12, 2'd0};
-  wire [24:0] difference_22 = remainder_21_s12_wide - {1'b0, {root_21, 2'd1}};
-  wire borrow_22 = difference_22[24];
-  wire [22:0] root_22 = {root_21, ~borrow_22};
-  wire [23:0] remainder_22 = borrow_22 ? remainder_21_s12_wide[23:0] : difference_22[23:0];
-  wire [25:0] remainder_22_wide = {remainder_22, 2'd0};
-  wire [25:0] difference_23 = remainder_22_wide - {1'b0, {root_22, 2'd1}};
-  wire borrow_23 = difference_23[25];
+  wire [12:0] root_13 = {root_12_s12, ~partial_12_above_12_12_s12};
+  wire [14:0] partial_14_above = {partial_13_14_1_s12, 1'b0} + ({1'b0, {root_13, 1'b1}} ^ {15{~partial_13_above_13_13_s12}}) + {14'd0, ~partial_13_above_13_13_s12};
+  wire [16:0] partial_14 = {partial_14_above[14:1], partial_13_wide_2_0_s12 + 3'd3};
+  wire [18:0] partial_14_wide = {partial_14, 2'd0};
 
   // ---- stage 13 ----
-  reg borrow_23_s13;
-  reg [25:0] remainder_22_wide_s13;
-  reg [24:0] difference_23_24_0_s13;
-  reg [22:0] root_22_s13;
+  reg [14:0] partial_14_15_1_s13;
+  reg [12:0] root_13_s13;
+  reg partial_13_above_13_13_s13;
+  reg partial_14_above_14_14_s13;
+  reg [2:0] partial_14_wide_2_0_s13;
   always @(posedge clk) begin
-    borrow_23_s13 <= borrow_23;
-    remainder_22_wide_s13 <= remainder_22_wide;
-    difference_23_24_0_s13 <= difference_23[24:0];
-    root_22_s13 <= root_22;
+    partial_14_15_1_s13 <= partial_14[15:1];
+    root_13_s13 <= root_13;
+    partial_13_above_13_13_s13 <= partial_13_above_13_13_s12;
+    partial_14_above_14_14_s13 <= partial_14_above[14];
+    partial_14_wide_2_0_s13 <= partial_14_wide[2:0];
   end
-  wire [24:0] remainder_23 = borrow_23_s13 ? remainder_22_wide_s13[24:0] : difference_23_24_0_s13;
-  wire [23:0] root_23 = {root_22_s13, ~borrow_23_s13};
-  wire [26:0] difference_24 = {remainder_23, 2'd0} - {1'b0, {root_23, 2'd1}};
-  wire borrow_24 = difference_24[26];
+  wire [13:0] root_14 = {root_13_s13, ~partial_13_above_13_13_s13};
+  wire [15:0] partial_15_above = {partial_14_15_1_s13, 1'b0} + ({1'b0, {root_14, 1'b1}} ^ {16{~partial_14_above_14_14_s13}}) + {15'd0, ~partial_14_above_14_14_s13};
+  wire [17:0] partial_15 = {partial_15_above[15:1], partial_14_wide_2_0_s13 + 3'd3};
+  wire [19:0] partial_15_wide = {partial_15, 2'd0};
 
   // ---- stage 14 ----
-  reg [12:0] a_sign_s14_line;
-  reg a_sign_s14;
-  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg [9:0] root_exponent_9_0_s14_line [0:13];
-  reg [9:0] root_exponent_9_0_s14;
-  reg [22:0] root_23_22_0_s14;
-  reg borrow_24_s14;
-  reg [12:0] a_hidden_s14_line;
-  reg a_hidden_s14;
+  reg [15:0] partial_15_16_1_s14;
+  reg [13:0] root_14_s14;
+  reg partial_14_above_14_14_s14;
+  reg partial_15_above_15_15_s14;
+  reg [2:0] partial_15_wide_2_0_s14;
   always @(posedge clk) begin
-    a_sign_s14_line <= {a_sign_s14_line[11:0], a_sign};
-    a_sign_s14 <= a_sign_s14_line[12];
-    root_exponent_9_0_s14_line[delay_14] <= root_exponent[9:0];
-    root_exponent_9_0_s14 <= root_exponent_9_0_s14_line[delay_14_next];
-    root_23_22_0_s14 <= root_23[22:0];
-    borrow_24_s14 <= borrow_24;
-    a_hidden_s14_line <= {a_hidden_s14_line[11:0], a_hidden};
-    a_hidden_s14 <= a_hidden_s14_line[12];
+    partial_15_16_1_s14 <= partial_15[16:1];
+    root_14_s14 <= root_14;
+    partial_14_above_14_14_s14 <= partial_14_above_14_14_s13;
+    partial_15_above_15_15_s14 <= partial_15_above[15];
+    partial_15_wide_2_0_s14 <= partial_15_wide[2:0];
   end
-  wire [32:0] truncated = {root_exponent_9_0_s14, root_23_22_0_s14};
-  wire guard = ~borrow_24_s14;
+  wire [14:0] root_15 = {root_14_s14, ~partial_14_above_14_14_s14};
+  wire [16:0] partial_16_above = {partial_15_16_1_s14, 1'b0} + ({1'b0, {root_15, 1'b1}} ^ {17{~partial_15_above_15_15_s14}}) + {16'd0, ~partial_15_above_15_15_s14};
+  wire [18:0] partial_16 = {partial_16_above[16:1], partial_15_wide_2_0_s14 + 3'd3};
+  wire [20:0] partial_16_wide = {partial_16, 2'd0};
+
+  // ---- stage 15 ----
+  reg [16:0] partial_16_17_1_s15;
+  reg [14:0] root_15_s15;
+  reg partial_15_above_15_15_s15;
+  reg partial_16_above_16_16_s15;
+  reg [2:0] partial_16_wide_2_0_s15;
+  always @(posedge clk) begin
+    partial_16_17_1_s15 <= partial_16[17:1];
+    root_15_s15 <= root_15;
+    partial_15_above_15_15_s15 <= partial_15_above_15_15_s14;
+    partial_16_above_16_16_s15 <= partial_16_above[16];
+    partial_16_wide_2_0_s15 <= partial_16_wide[2:0];
+  end
+  wire [15:0] root_16 = {root_15_s15, ~partial_15_above_15_15_s15};
+  wire [17:0] partial_17_above = {partial_16_17_1_s15, 1'b0} + ({1'b0, {root_16, 1'b1}} ^ {18{~partial_16_above_16_16_s15}}) + {17'd0, ~partial_16_above_16_16_s15};
+  wire [19:0] partial_17 = {partial_17_above[17:1], partial_16_wide_2_0_s15 + 3'd3};
+  wire [21:0] partial_17_wide = {partial_17, 2'd0};
+
+  // ---- stage 16 ----
+  reg [17:0] partial_17_18_1_s16;
+  reg [15:0] root_16_s16;
+  reg partial_16_above_16_16_s16;
+  reg partial_17_above_17_17_s16;
+  reg [2:0] partial_17_wide_2_0_s16;
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [9:0] root_exponent_9_0_s16_line [0:15];
+  reg [9:0] root_exponent_9_0_s16;
+  always @(posedge clk) begin
+    partial_17_18_1_s16 <= partial_17[18:1];
+    root_16_s16 <= root_16;
+    partial_16_above_16_16_s16 <= partial_16_above_16_16_s15;
+    partial_17_above_17_17_s16 <= partial_17_above[17];
+    partial_17_wide_2_0_s16 <= partial_17_wide[2:0];
+    root_exponent_9_0_s16_line[delay_16] <= root_exponent[9:0];
+    root_exponent_9_0_s16 <= root_exponent_9_0_s16_line[delay_16_next];
+  end
+  wire [16:0] root_17 = {root_16_s16, ~partial_16_above_16_16_s16};
+  wire [18:0] partial_18_above = {partial_17_18_1_s16, 1'b0} + ({1'b0, {root_17, 1'b1}} ^ {19{~partial_17_above_17_17_s16}}) + {18'd0, ~partial_17_above_17_17_s16};
+  wire [20:0] partial_18 = {partial_18_above[18:1], partial_17_wide_2_0_s16 + 3'd3};
+  wire [22:0] partial_18_wide = {partial_18, 2'd0};
+
+  // ---- stage 17 ----
+  reg [18:0] partial_18_19_1_s17;
+  reg [16:0] root_17_s17;
+  reg partial_17_above_17_17_s17;
+  reg partial_18_above_18_18_s17;
+  reg [2:0] partial_18_wide_2_0_s17;
+  always @(posedge clk) begin
+    partial_18_19_1_s17 <= partial_18[19:1];
+    root_17_s17 <= root_17;
+    partial_17_above_17_17_s17 <= partial_17_above_17_17_s16;
+    partial_18_above_18_18_s17 <= partial_18_above[18];
+    partial_18_wide_2_0_s17 <= partial_18_wide[2:0];
+  end
+  wire [17:0] root_18 = {root_17_s17, ~partial_17_above_17_17_s17};
+  wire [19:0] partial_19_above = {partial_18_19_1_s17, 1'b0} + ({1'b0, {root_18, 1'b1}} ^ {20{~partial_18_above_18_18_s17}}) + {19'd0, ~partial_18_above_18_18_s17};
+  wire [21:0] partial_19 = {partial_19_above[19:1], partial_18_wide_2_0_s17 + 3'd3};
+  wire [23:0] partial_19_wide = {partial_19, 2'd0};
+
+  // ---- stage 18 ----
+  reg [19:0] partial_19_20_1_s18;
+  reg [17:0] root_18_s18;
+  reg partial_18_above_18_18_s18;
+  reg partial_19_above_19_19_s18;
+  reg [2:0] partial_19_wide_2_0_s18;
+  always @(posedge clk) begin
+    partial_19_20_1_s18 <= partial_19[20:1];
+    root_18_s18 <= root_18;
+    partial_18_above_18_18_s18 <= partial_18_above_18_18_s17;
+    partial_19_above_19_19_s18 <= partial_19_above[19];
+    partial_19_wide_2_0_s18 <= partial_19_wide[2:0];
+  end
+  wire [18:0] root_19 = {root_18_s18, ~partial_18_above_18_18_s18};
+  wire [20:0] partial_20_above = {partial_19_20_1_s18, 1'b0} + ({1'b0, {root_19, 1'b1}} ^ {21{~partial_19_above_19_19_s18}}) + {20'd0, ~partial_19_above_19_19_s18};
+  wire [22:0] partial_20 = {partial_20_above[20:1], partial_19_wide_2_0_s18 + 3'd3};
+  wire [24:0] partial_20_wide = {partial_20, 2'd0};
+
+  // ---- stage 19 ----
+  reg [20:0] partial_20_21_1_s19;
+  reg [18:0] root_19_s19;
+  reg partial_19_above_19_19_s19;
+  reg partial_20_above_20_20_s19;
+  reg [2:0] partial_20_wide_2_0_s19;
+  always @(posedge clk) begin
+    partial_20_21_1_s19 <= partial_20[21:1];
+    root_19_s19 <= root_19;
+    partial_19_above_19_19_s19 <= partial_19_above_19_19_s18;
+    partial_20_above_20_20_s19 <= partial_20_above[20];
+    partial_20_wide_2_0_s19 <= partial_20_wide[2:0];
+  end
+  wire [19:0] root_20 = {root_19_s19, ~partial_19_above_19_19_s19};
+  wire [21:0] partial_21_above = {partial_20_21_1_s19, 1'b0} + ({1'b0, {root_20, 1'b1}} ^ {22{~partial_20_above_20_20_s19}}) + {21'd0, ~partial_20_above_20_20_s19};
+  wire [23:0] partial_21 = {partial_21_above[21:1], partial_20_wide_2_0_s19 + 3'd3};
+  wire [25:0] partial_21_wide = {partial_21, 2'd0};
+
+  // ---- stage 20 ----
+  reg [21:0] partial_21_22_1_s20;
+  reg [19:0] root_20_s20;
+  reg partial_20_above_20_20_s20;
+  reg partial_21_above_21_21_s20;
+  reg [2:0] partial_21_wide_2_0_s20;
+  always @(posedge clk) begin
+    partial_21_22_1_s20 <= partial_21[22:1];
+    root_20_s20 <= root_20;
+    partial_20_above_20_20_s20 <= partial_20_above_20_20_s19;
+    partial_21_above_21_21_s20 <= partial_21_above[21];
+    partial_21_wide_2_0_s20 <= partial_21_wide[2:0];
+  end
+  wire [20:0] root_21 = {root_20_s20, ~partial_20_above_20_20_s20};
+  wire [22:0] partial_22_above = {partial_21_22_1_s20, 1'b0} + ({1'b0, {root_21, 1'b1}} ^ {23{~partial_21_above_21_21_s20}}) + {22'd0, ~partial_21_above_21_21_s20};
+  wire [24:0] partial_22 = {partial_22_above[22:1], partial_21_wide_2_0_s20 + 3'd3};
+  wire [26:0] partial_22_wide = {partial_22, 2'd0};
+
+  // ---- stage 21 ----
+  reg [22:0] partial_22_23_1_s21;
+  reg [20:0] root_21_s21;
+  reg not_partial_21_above_21_21_s20_s21;
+  reg partial_22_above_22_22_s21;
+  reg [2:0] partial_22_wide_2_0_s21;
+  always @(posedge clk) begin
+    partial_22_23_1_s21 <= partial_22[23:1];
+    root_21_s21 <= root_21;
+    not_partial_21_above_21_21_s20_s21 <= ~partial_21_above_21_21_s20;
+    partial_22_above_22_22_s21 <= partial_22_above[22];
+    partial_22_wide_2_0_s21 <= partial_22_wide[2:0];
+  end
+  wire [21:0] root_22 = {root_21_s21, not_partial_21_above_21_21_s20_s21};
+  wire [23:0] partial_23_above = {partial_22_23_1_s21, 1'b0} + ({1'b0, {root_22, 1'b1}} ^ {24{~partial_22_above_22_22_s21}}) + {23'd0, ~partial_22_above_22_22_s21};
+  wire [22:0] root_23 = {root_22, ~partial_22_above_22_22_s21};
+  wire [25:0] partial_23 = {partial_23_above[23:1], partial_22_wide_2_0_s21 + 3'd3};
+  wire [23:0] root_24 = {root_23, ~partial_23_above[23]};
+
+  // ---- stage 22 ----
+  reg [23:0] partial_23_24_1_s22;
+  reg [22:0] root_23_s22;
+  reg partial_23_above_23_23_s22;
+  reg [22:0] root_24_22_0_s22;
+  always @(posedge clk) begin
+    partial_23_24_1_s22 <= partial_23[24:1];
+    root_23_s22 <= root_23;
+    partial_23_above_23_23_s22 <= partial_23_above[23];
+    root_24_22_0_s22 <= root_24[22:0];
+  end
+  wire [24:0] partial_24_above = {partial_23_24_1_s22, 1'b0} + ({1'b0, {root_23_s22, 1'b1}} ^ {25{~partial_23_above_23_23_s22}}) + {24'd0, ~partial_23_above_23_23_s22};
+
+  // ---- stage 23 ----
+  reg [21:0] a_sign_s23_line;
+  reg a_sign_s23;
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [9:0] root_exponent_9_0_s23_line [0:6];
+  reg [9:0] root_exponent_9_0_s23;
+  reg [22:0] root_24_22_0_s23;
+  reg partial_24_above_24_24_s23;
+  reg [21:0] a_hidden_s23_line;
+  reg a_hidden_s23;
+  always @(posedge clk) begin
+    a_sign_s23_line <= {a_sign_s23_line[20:0], a_sign};
+    a_sign_s23 <= a_sign_s23_line[21];
+    root_exponent_9_0_s23_line[delay_7] <= root_exponent_9_0_s16;
+    root_exponent_9_0_s23 <= root_exponent_9_0_s23_line[delay_7_next];
+    root_24_22_0_s23 <= root_24_22_0_s22;
+    partial_24_above_24_24_s23 <= partial_24_above[24];
+    a_hidden_s23_line <= {a_hidden_s23_line[20:0], a_hidden};
+    a_hidden_s23 <= a_hidden_s23_line[21];
+  end
+  wire [32:0] truncated = {root_exponent_9_0_s23, root_24_22_0_s23};
+  wire guard = ~partial_24_above_24_24_s23;
   wire [32:0] rounded = truncated + {32'd0, guard};
-  wire [32:0] magnitude = a_hidden_s14 ? rounded : 33'd0;
+  wire [32:0] magnitude = a_hidden_s23 ? rounded : 33'd0;
 
   // ---- registered outputs ----
   always @(posedge clk) begin
-    result <= {a_sign_s14, magnitude};
+    result <= {a_sign_s23, magnitude};
   end
 
   // Bits that nothing needs.
-  wire unused = &{1'b0, remainder_22_wide_s13[25], difference_24[25:0], remainder_19_wide_s11[22],
-    remainder_16_wide_s9[19], remainder_13_wide_s7[16], radicand_wide[23:0], radicand_wide[49:26],
-    a_exponent_wide_wide_plus_511[0], root_exponent[10]};
+  wire unused = &{1'b0, partial_24_above[23:0], partial_23_above[0], partial_22_above[0],
+    partial_21_above[0], partial_20_above[0], partial_19_above[0], partial_18_above[0],
+    partial_17_above[0], partial_16_above[0], partial_15_above[0], partial_14_above[0],
+    partial_13_above[0], partial_12_above[0], partial_11_above[0], partial_10_above[0],
+    partial_9_above[0], partial_8_above[0], partial_7_above[0], partial_6_above[0],
+    partial_5_above[0], partial_4_above[0], partial_2_above[0], partial_3_above[0],
+    partial_1_wide[5:3], partial_2_wide[6:3], partial_3_wide[7:3], partial_4_wide[8:3],
+    partial_5_wide[9:3], partial_6_wide[10:3], partial_7_wide[11:3], partial_8_wide[12:3],
+    partial_9_wide[13:3], partial_10_wide[14:3], partial_11_wide[15:3], radicand_wide[23:0],
+    radicand_wide[49:26], partial_12_wide[16:3], partial_13_wide[17:3], partial_14_wide[18:3],
+    partial_15_wide[19:3], partial_16_wide[20:3], partial_17_wide[21:3], partial_18_wide[22:3],
+    partial_19_wide[23:3], partial_20_wide[24:3], partial_21_wide[25:3], partial_23[0],
+    partial_23[25], partial_22_wide[26:3], root_24[23], a_exponent_wide_wide_plus_511[0],
+    root_exponent[10]};
 
 endmodule
 

@@ -18,73 +18,79 @@ module fp_square_e10f23z_normal (
   wire [9:0] a_exponent = a[32:23];
   wire a_hidden = |a_exponent;
   wire [22:0] a_fraction = a[22:0];
-  wire [23:0] tile_0_0 = {12'd0, a_fraction[11:0]} * {12'd0, a_fraction[11:0]};
   wire [23:0] a_significand = {1'b1, a_fraction};
-  wire [23:0] tile_1_0 = {12'd0, a_significand[23:12]} * {12'd0, a_fraction[11:0]};
-  wire [23:0] tile_1_1 = {12'd0, a_significand[23:12]} * {12'd0, a_significand[23:12]};
-  wire [47:0] tiles_0_0 = {tile_1_1, tile_0_0};
   wire [12:0] a_exponent_wide_wide_wide = {{1'b0, {1'b0, a_exponent}}, 1'b1};
   wire [12:0] a_exponent_wide_wide_wide_plus = a_exponent_wide_wide_wide + a_exponent_wide_wide_wide;
   wire [11:0] exponent_sum = a_exponent_wide_wide_wide_plus[12:1];
   wire [11:0] product_exponent = {exponent_sum[11:9] - 3'd1, exponent_sum[8:0]};
+  wire [23:0] tile_1_1;
+  multiplier_12x12 tile_1_1_block (
+    .clk     (clk),
+    .a       (a_significand[23:12]),
+    .b       (a_significand[23:12]),
+    .product (tile_1_1)
+  );
+  wire [23:0] tile_0_0;
+  multiplier_12x12 tile_0_0_block (
+    .clk     (clk),
+    .a       (a_fraction[11:0]),
+    .b       (a_fraction[11:0]),
+    .product (tile_0_0)
+  );
+  wire [23:0] tile_1_0;
+  multiplier_12x12 tile_1_0_block (
+    .clk     (clk),
+    .a       (a_significand[23:12]),
+    .b       (a_fraction[11:0]),
+    .product (tile_1_0)
+  );
 
-  // ---- stage 1 ----
-  reg a_hidden_s1;
-  reg [34:0] tiles_0_0_47_13_s1;
-  reg [23:0] tile_1_0_s1;
-  reg [12:0] tile_0_0_12_0_s1;
-  reg [9:0] product_exponent_9_0_s1;
-  always @(posedge clk) begin
-    a_hidden_s1 <= a_hidden;
-    tiles_0_0_47_13_s1 <= tiles_0_0[47:13];
-    tile_1_0_s1 <= tile_1_0;
-    tile_0_0_12_0_s1 <= tile_0_0[12:0];
-    product_exponent_9_0_s1 <= product_exponent[9:0];
-  end
-  wire [34:0] tiles_sum = tiles_0_0_47_13_s1 + {11'd0, tile_1_0_s1};
+  // ---- stage 2 ----
+  wire [47:0] tiles_0_0 = {tile_1_1, tile_0_0};
+  wire [34:0] tiles_sum = tiles_0_0[47:13] + {11'd0, tile_1_0};
   wire product_at_least_two = tiles_sum[34];
-  wire [47:0] square = {tiles_sum, tile_0_0_12_0_s1};
+  wire [47:0] square = {tiles_sum, tile_0_0[12:0]};
   wire [47:0] normalised = product_at_least_two ? square : {square[46:0], 1'b0};
   wire [23:0] significand = normalised[47:24];
   wire guard = normalised[23];
 
-  // ---- stage 2 ----
-  reg a_hidden_s2;
-  reg guard_s2;
-  reg [22:0] normalised_22_0_s2;
-  reg significand_0_0_s2;
-  reg product_at_least_two_s2;
-  reg [22:0] significand_22_0_s2;
-  reg [9:0] product_exponent_9_0_s2;
-  always @(posedge clk) begin
-    a_hidden_s2 <= a_hidden_s1;
-    guard_s2 <= guard;
-    normalised_22_0_s2 <= normalised[22:0];
-    significand_0_0_s2 <= significand[0];
-    product_at_least_two_s2 <= product_at_least_two;
-    significand_22_0_s2 <= significand[22:0];
-    product_exponent_9_0_s2 <= product_exponent_9_0_s1;
-  end
-  wire sticky = |normalised_22_0_s2;
-  wire round_up = guard_s2 & (sticky | significand_0_0_s2);
-
   // ---- stage 3 ----
-  reg [9:0] product_exponent_9_0_s3;
-  reg [22:0] significand_22_0_s3;
+  reg guard_s3;
+  reg [22:0] normalised_22_0_s3;
+  reg significand_0_0_s3;
   reg product_at_least_two_s3;
-  reg round_up_s3;
-  reg a_hidden_s3;
+  reg [22:0] significand_22_0_s3;
   always @(posedge clk) begin
-    product_exponent_9_0_s3 <= product_exponent_9_0_s2;
-    significand_22_0_s3 <= significand_22_0_s2;
-    product_at_least_two_s3 <= product_at_least_two_s2;
-    round_up_s3 <= round_up;
-    a_hidden_s3 <= a_hidden_s2;
+    guard_s3 <= guard;
+    normalised_22_0_s3 <= normalised[22:0];
+    significand_0_0_s3 <= significand[0];
+    product_at_least_two_s3 <= product_at_least_two;
+    significand_22_0_s3 <= significand[22:0];
   end
-  wire [32:0] truncated = {product_exponent_9_0_s3, significand_22_0_s3};
-  wire [32:0] increments = {{9'd0, product_at_least_two_s3}, {22'd0, round_up_s3}};
+  wire sticky = |normalised_22_0_s3;
+  wire round_up = guard_s3 & (sticky | significand_0_0_s3);
+
+  // ---- stage 4 ----
+  reg [29:0] product_exponent_9_0_s4_line;
+  reg [9:0] product_exponent_9_0_s4;
+  reg [22:0] significand_22_0_s4;
+  reg product_at_least_two_s4;
+  reg round_up_s4;
+  reg [2:0] a_hidden_s4_line;
+  reg a_hidden_s4;
+  always @(posedge clk) begin
+    product_exponent_9_0_s4_line <= {product_exponent_9_0_s4_line[19:0], product_exponent[9:0]};
+    product_exponent_9_0_s4 <= product_exponent_9_0_s4_line[29:20];
+    significand_22_0_s4 <= significand_22_0_s3;
+    product_at_least_two_s4 <= product_at_least_two_s3;
+    round_up_s4 <= round_up;
+    a_hidden_s4_line <= {a_hidden_s4_line[1:0], a_hidden};
+    a_hidden_s4 <= a_hidden_s4_line[2];
+  end
+  wire [32:0] truncated = {product_exponent_9_0_s4, significand_22_0_s4};
+  wire [32:0] increments = {{9'd0, product_at_least_two_s4}, {22'd0, round_up_s4}};
   wire [32:0] rounded = truncated + increments;
-  wire [32:0] magnitude = a_hidden_s3 ? rounded : 33'd0;
+  wire [32:0] magnitude = a_hidden_s4 ? rounded : 33'd0;
 
   // ---- registered outputs ----
   always @(posedge clk) begin
@@ -92,7 +98,7 @@ module fp_square_e10f23z_normal (
   end
 
   // Bits that nothing needs.
-  wire unused = &{1'b0, a[33], significand[23], a_significand[11:0], tiles_0_0[12:0],
+  wire unused = &{1'b0, a[33], tiles_0_0[12:0], significand[23], a_significand[11:0],
     a_exponent_wide_wide_wide_plus[0], product_exponent[11:10]};
 
 endmodule

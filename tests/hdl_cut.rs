@@ -16,6 +16,7 @@ fn simple() -> DelayModel {
         carry_out: 0.0,
         multiplier: 50.0,
         multiplier_bits: 18,
+        margin: 0.0,
         ..DelayModel::guess()
     }
 }

@@ -288,8 +288,8 @@ fn pipelines_compute_the_same() {
         for (operator, clock_mhz) in ARITHMETIC.into_iter().chain([convert]).zip([100.0, 200.0, 300.0].iter().cycle()) {
             // With multiplier blocks of both kinds.
             let model = match format.fraction_bits() {
-                23 => DelayModel::default().with_registered_multipliers(None),
-                _ => DelayModel::default(),
+                23 => DelayModel::default(),
+                _ => DelayModel::ecp5(),
             };
             let module = pipelined(operator, format, &model, *clock_mhz).unwrap();
             let mut evaluator = Evaluator::new(&module, &[]).unwrap();

@@ -116,15 +116,18 @@ fn a_million_of_wide_without_its_ends() {
     }
 }
 
-/// What synthesis reads: the primitive in the place of the product, which a model of it in `tb/` stands for here.
+/// What synthesis reads: primitives in the place of products and of chains that add or subtract, for which models in `tb/`
+/// stand here.
 #[test]
-fn a_primitive_multiplies_as_its_twin_does() {
-    let model = include_str!("../tb/mult18x18d.v");
+fn primitives_compute_as_their_twins_do() {
+    let models = concat!(include_str!("../tb/mult18x18d.v"), include_str!("../tb/ccu2c.v"));
     let delays = DelayModel::default().with_registered_multipliers(Some(Primitive::Mult18x18d));
+    let delays = delays.with_adders(Primitive::Ccu2c);
     for synthesis in [true, false] {
-        let define = if synthesis { "`define SYNTHESIS\n" } else { "" };
-        let first = File { name: "mult18x18d.v".to_owned(), text: define.to_owned() + model };
-        for operator in [Operator::Mul, Operator::Square] {
+        let first = File { name: "primitives.v".to_owned(), text: format!("`define SYNTHESIS\n{models}") };
+        let operators =
+            [Operator::Mul, Operator::Square, Operator::Add, Operator::Div, Operator::Sqrt, Operator::Recip];
+        for operator in operators {
             let domain = Domain::from(Format::BINARY32);
             let first = if synthesis { vec![first.clone()] } else { vec![] };
             run(&build_for(&delays, operator, domain, first), operator, domain, 200_000);

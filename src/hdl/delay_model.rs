@@ -25,6 +25,9 @@ pub struct DelayModel {
     pub lut_inputs: u32,
     /// One level of two-way multiplexers, beside what its select line takes.
     pub mux: f64,
+    /// Of the period, what is kept for what no model of operations knows: where things come to lie, seed by seed.
+    #[serde(default)]
+    pub margin: f64,
     /// A line that goes to 2^n places takes n times this longer.
     #[serde(default)]
     pub fanout: f64,
@@ -32,6 +35,10 @@ pub struct DelayModel {
     pub carry: f64,
     /// One bit of a carry chain.
     pub carry_bit: f64,
+    /// From logic to the carry at the beginning of a chain, where it is not a constant. Not fitted: read off routed roots
+    /// and quotients.
+    #[serde(default)]
+    pub carry_in: f64,
     /// Out of a carry chain at its end, as a comparison does, beyond what a sum needs.
     pub carry_out: f64,
     /// One multiplier block.
@@ -48,12 +55,17 @@ pub struct DelayModel {
     /// The primitive a multiplier block with registers is written as; without one synthesis has to find it.
     #[serde(default)]
     pub multiplier_primitive: Option<Primitive>,
+    /// The primitive that sums which may be differences are written as, where synthesis does not fold the complement
+    /// into the carry chain by itself.
+    #[serde(default)]
+    pub adder_primitive: Option<Primitive>,
 }
 
 impl Default for DelayModel {
-    /// [`DelayModel::guess`]: what `rtl/` is cut with, for any family. A target of its own has a fitted one.
+    /// What `rtl/` is cut with, for any family: fitted to the one router there is, without a vendor's primitives. Synthesis
+    /// has to find the multiplier blocks' registers, as Quartus, Vivado and Yosys do.
     fn default() -> Self {
-        Self::guess()
+        Self::ecp5().with_registered_multipliers(None)
     }
 }
 
@@ -69,7 +81,9 @@ impl DelayModel {
             fanout: 0.13,
             carry: 0.696,
             carry_bit: 0.035,
+
             carry_out: 0.691,
+
             multiplier: 4.454,
             ..Self::guess()
         }
@@ -81,6 +95,7 @@ impl DelayModel {
     pub fn guess() -> Self {
         Self {
             name: "ecp5".to_owned(),
+            margin: 0.1,
             register: 1.0,
             lut: 0.62,
             spread: 0.0,
@@ -90,12 +105,14 @@ impl DelayModel {
             fanout: 0.0,
             carry: 0.85,
             carry_bit: 0.0295,
+            carry_in: 0.6,
             carry_out: 0.52,
             multiplier: 4.5,
             multiplier_bits: 18,
             multiplier_registers: 0,
             multiplier_output: 0.0,
             multiplier_primitive: None,
+            adder_primitive: None,
         }
     }
 
@@ -119,16 +136,16 @@ impl DelayModel {
     /// The longest way through a combinational module, from inputs to outputs.
     pub fn longest(&self, module: &Module) -> f64 {
         let mut arrival: Vec<f64> = Vec::with_capacity(module.nodes.len());
-        for node in &module.nodes {
+        for (node, delay) in module.nodes.iter().zip(self.delays(module)) {
             let before = node.operands.iter().filter_map(|id| arrival.get(id.index())).copied().fold(0.0, f64::max);
-            arrival.push(before + self.delay(module, node));
+            arrival.push(before + delay);
         }
         arrival.into_iter().fold(0.0, f64::max)
     }
 
-    /// The time between two register ranks at `clock_mhz` that is left for logic.
+    /// The time between two register ranks at `clock_mhz` that logic is given: what is left but for the margin.
     pub fn budget(&self, clock_mhz: f64) -> f64 {
-        1000.0 / clock_mhz - self.register
+        1000.0 / clock_mhz * (1.0 - self.margin) - self.register
     }
 
     /// The clock, in MHz, at which logic that takes `logic` runs between two registers.
@@ -144,23 +161,42 @@ impl DelayModel {
         Self { multiplier_registers: 2, multiplier_primitive: primitive, ..self }
     }
 
+    /// The same target with differences that may be sums written as `primitive`.
+    #[must_use]
+    pub fn with_adders(self, primitive: Primitive) -> Self {
+        Self { adder_primitive: Some(primitive), ..self }
+    }
+
     /// Register ranks inside an operation: only a product that one multiplier block takes has any.
     pub(super) fn ranks(&self, module: &Module, node: &Node) -> u32 {
         let fits = |id: &NodeId| module.node(*id).width <= self.multiplier_bits;
         if node.op == Op::Mul && node.operands.iter().all(fits) { self.multiplier_registers } else { 0 }
     }
 
-    /// From the operands' arrival to the result of a combinational node; wiring takes no time.
-    pub fn delay(&self, module: &Module, node: &Node) -> f64 {
+    /// From the operands' arrival to the result of each node of a combinational module; wiring takes no time.
+    pub fn delays(&self, module: &Module) -> Vec<f64> {
+        let loads = loads(module);
+        module.nodes.iter().map(|node| self.delay(module, node, &loads)).collect()
+    }
+
+    /// `loads` is how many places each value chooses in.
+    fn delay(&self, module: &Module, node: &Node, loads: &[u32]) -> f64 {
+        let load = |position: usize| self.line(loads[chooser(module, node.operands[position]).index()]);
         let width = |position: usize| module.node(node.operands[position]).width;
         let constant = |position: usize| matches!(module.node(node.operands[position]).op, Op::Constant(_));
         match node.op {
-            // An inverter is absorbed by the table before or after it.
+            // An inverter is absorbed by the table before or after it; behind a carry chain it is a table.
+            Op::Not if is_chained(module, node.operands[0]) => self.carry_out,
             Op::Not | Op::Wire | Op::Slice { .. } | Op::Concat => 0.0,
-            Op::And | Op::Or | Op::Xor => self.gate + self.line(copies(module, node)),
-            Op::Mux if constant(1) || constant(2) => self.gate + self.line(node.width),
-            Op::Mux => self.mux + self.line(node.width),
+            Op::And | Op::Or | Op::Xor => {
+                let repeated = [0, 1].into_iter().filter(|&position| is_repeated(module, node.operands[position]));
+                self.gate + repeated.map(load).fold(0.0, f64::max)
+            }
+            Op::Mux if constant(1) || constant(2) => self.gate + load(0),
+            Op::Mux => self.mux + load(0),
             Op::Add | Op::Sub => self.adder(node.width),
+            // The complement shares the look-up tables of the chain, or is as fast as a gate before it.
+            Op::SubAdd => load(2) + self.carry_in + self.adder(node.width),
             Op::Less => self.tree(2 * width(0)).min(self.adder(width(0)) + self.carry_out),
             Op::Equal if constant(0) || constant(1) => self.tree(width(0)),
             Op::Equal => self.tree(2 * width(0)).min(self.adder(width(0)) + self.carry_out),
@@ -213,16 +249,46 @@ impl DelayModel {
     }
 }
 
-/// How often the most repeated bit stands in an operand: a gate with it is a line to so many places.
-fn copies(module: &Module, node: &Node) -> u32 {
-    let repeats = |id: &NodeId| {
-        let operand = module.node(*id);
-        match (&operand.op, operand.operands.first()) {
-            (Op::Concat, Some(first)) if operand.operands.iter().all(|part| part == first) => operand.operands.len(),
-            _ => 1,
+/// The value that drives a line to many places: itself, what it is the complement of, or the bit that it repeats.
+fn chooser(module: &Module, id: NodeId) -> NodeId {
+    match module.node(id).op {
+        Op::Not => chooser(module, module.node(id).operands[0]),
+        Op::Concat if is_repeated(module, id) => chooser(module, module.node(id).operands[0]),
+        _ => id,
+    }
+}
+
+/// Whether a value comes straight out of a carry chain.
+fn is_chained(module: &Module, id: NodeId) -> bool {
+    match module.node(id).op {
+        Op::Slice { .. } => is_chained(module, module.node(id).operands[0]),
+        Op::Add | Op::Sub | Op::SubAdd => true,
+        _ => false,
+    }
+}
+
+/// Whether a value is one bit, repeated.
+fn is_repeated(module: &Module, id: NodeId) -> bool {
+    let node = module.node(id);
+    node.op == Op::Concat && node.operands.iter().all(|part| *part == node.operands[0])
+}
+
+/// How many places each value chooses in, by node: bits of the choices, of the gates and of the differences or sums that
+/// it is the condition of.
+fn loads(module: &Module) -> Vec<u32> {
+    let mut loads = vec![0; module.nodes.len()];
+    for node in &module.nodes {
+        let chooses = |position: usize| match node.op {
+            Op::Mux => position == 0,
+            Op::SubAdd => position == 2,
+            Op::And | Op::Or | Op::Xor => is_repeated(module, node.operands[position]),
+            _ => false,
+        };
+        for position in (0..node.operands.len()).filter(|&position| chooses(position)) {
+            loads[chooser(module, node.operands[position]).index()] += node.width;
         }
-    };
-    node.operands.iter().map(repeats).max().unwrap_or(1) as u32
+    }
+    loads
 }
 
 #[cfg(test)]
@@ -235,7 +301,7 @@ mod tests {
         g.output("y", build(g.input("a", width), g.input("b", width)));
         let module = g.finish().unwrap();
         let model = DelayModel::guess();
-        model.clock(module.nodes.iter().map(|node| model.delay(&module, node)).sum())
+        model.clock(model.delays(&module).into_iter().sum())
     }
 
     #[test]

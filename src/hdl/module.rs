@@ -35,6 +35,9 @@ pub enum Op {
     Add,
     /// Difference modulo 2^width.
     Sub,
+    /// Operands: two of the node's width, and one bit. First − second modulo 2^width, or first + second where the bit
+    /// is set: one carry chain for both, which Sub, Add and Mux are not.
+    SubAdd,
     /// Unsigned product: as wide as both operands together.
     Mul,
     /// One bit: operands (of equal width) are equal.
@@ -167,13 +170,16 @@ pub enum Primitive {
     /// Lattice ECP5: 18 × 18 bits, with registers of factors and product.
     #[serde(rename = "MULT18X18D")]
     Mult18x18d,
+    /// Lattice ECP5: two bits of a carry chain, each with the look-up table before it.
+    #[serde(rename = "CCU2C")]
+    Ccu2c,
 }
 
 impl Primitive {
     /// What a module's name ends in that stands for it.
     pub(super) const fn suffix(self) -> &'static str {
         match self {
-            Self::Mult18x18d => "_ecp5",
+            Self::Mult18x18d | Self::Ccu2c => "_ecp5",
         }
     }
 }
@@ -222,7 +228,12 @@ pub const LONGEST_REGISTER_DELAY: u32 = 3;
 /// pointer costs more than it saves.
 const NARROWEST_MEMORY_DELAY: u32 = 12;
 /// But a shift register never has more bits than this.
-const MOST_SHIFT_REGISTER_BITS: u32 = 128;
+const MOST_SHIFT_REGISTER_BITS: u32 = 64;
+/// A memory deeper than this is block RAM.
+pub(super) const DEEPEST_DISTRIBUTED: u32 = 64;
+/// One primitive of distributed memory is so deep on every family (ECP5 16, 7 series and Cyclone V 32). A longer delay in
+/// distributed memory is several, one behind the other: so no choice of primitives lies before the register.
+pub(super) const DISTRIBUTED_DEPTH: u32 = 16;
 
 /// Whether a delay of a value of `width` bits is a memory with a pointer.
 pub(super) fn is_memory_delay(cycles: u32, width: u32) -> bool {

@@ -3,7 +3,9 @@
 use std::collections::{BTreeMap, HashMap};
 
 use super::graph::Inner;
-use super::module::{LONGEST_REGISTER_DELAY, Node, NodeId, Op};
+use super::module::{
+    DEEPEST_DISTRIBUTED, DISTRIBUTED_DEPTH, LONGEST_REGISTER_DELAY, Node, NodeId, Op, is_memory_delay,
+};
 
 /// Makes every live delay one of a value that is not itself delayed, so that what merely led to it can go.
 pub(super) fn collapse(inner: &mut Inner, live: &[NodeId]) {
@@ -50,16 +52,14 @@ pub(super) fn chain(inner: &mut Inner, live: &[NodeId]) {
     for (source, delays) in of {
         let (mut from, mut distance) = (source, 0);
         for (cycles, id) in delays {
-            // A few cycles are as many registers, each with a name of its own.
-            if cycles - distance <= LONGEST_REGISTER_DELAY {
-                while cycles - distance > 1 {
-                    let node =
-                        Node { op: Op::Delay { cycles: 1 }, operands: vec![from], ..inner.nodes[id.index()].clone() };
-                    from = NodeId(inner.nodes.len() as u32);
-                    inner.nodes.push(Node { name: None, ..node });
-                    inner.places.push(inner.places[id.index()]);
-                    distance += 1;
-                }
+            let width = inner.nodes[id.index()].width;
+            while let Some(step) = step(cycles - distance, width) {
+                let node = inner.nodes[id.index()].clone();
+                let node = Node { op: Op::Delay { cycles: step }, operands: vec![from], name: None, ..node };
+                from = NodeId(inner.nodes.len() as u32);
+                inner.nodes.push(node);
+                inner.places.push(inner.places[id.index()]);
+                distance += step;
             }
             let node = &mut inner.nodes[id.index()];
             node.op = Op::Delay { cycles: cycles - distance };
@@ -75,5 +75,16 @@ pub(super) fn chain(inner: &mut Inner, live: &[NodeId]) {
             }
             id
         });
+    }
+}
+
+/// How much of a delay stands apart before the rest of it: a few cycles are as many registers, each with a name of its
+/// own; many are several memories, each of one primitive's depth.
+fn step(cycles: u32, width: u32) -> Option<u32> {
+    match cycles {
+        0 | 1 => None,
+        2..=LONGEST_REGISTER_DELAY => Some(1),
+        _ if cycles > DEEPEST_DISTRIBUTED || !is_memory_delay(cycles, width) => None,
+        _ => Some(DISTRIBUTED_DEPTH).filter(|depth| cycles > *depth),
     }
 }

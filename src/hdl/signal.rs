@@ -182,6 +182,28 @@ impl<'g> Signal<'g> {
         self.binary(self.same(value), "minus", Op::Sub, None, Location::caller())
     }
 
+    /// Difference to a value as wide, or sum where `add` (1 bit) is set; modulo 2^width, on one carry chain.
+    #[track_caller]
+    pub fn minus_or_plus(self, other: Self, add: Self) -> Self {
+        let (what, place) = ("minus or plus", Location::caller());
+        match add.as_constant() {
+            Some(0) => return self.binary(other, what, Op::Sub, None, place),
+            Some(_) => return self.binary(other, what, Op::Add, None, place),
+            None => {}
+        }
+        let Some(ids) = self.graph.own(what, &[self, other, add], place) else { return Self::poison(self.graph) };
+        if self.width() != other.width() {
+            self.graph.error(self.widths(what, other), place);
+            return Self::poison(self.graph);
+        }
+        if add.width() != 1 {
+            let message = format!("{what}: `{}` has {} bits, a condition has 1", add.describe(), add.width());
+            self.graph.error(message, place);
+            return Self::poison(self.graph);
+        }
+        self.graph.shared(Op::SubAdd, self.width(), ids, place)
+    }
+
     /// One bit: some bit is set.
     #[track_caller]
     pub fn any(self) -> Self {

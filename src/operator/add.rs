@@ -35,11 +35,7 @@ pub fn add<'g>(a: Signal<'g>, b: Signal<'g>, domain: Domain, subtract: bool, rou
     let width = domain.significand_bits() + 4;
     let addend = aligned.concat(sticky.named("aligned_sticky")).extend(width).named("addend");
     let augend = large_significand.append_zeros(3).extend(width).named("augend");
-    // One adder does both: the complement, and a carry into an extra lowest bit.
-    let complemented = (addend ^ effective_subtraction.repeat(width)).named("complemented");
-    let one = augend.graph().constant(1, 1);
-    let sum = (augend.concat(one) + complemented.concat(effective_subtraction)).named("sum_and_carry_in");
-    let sum = sum.drop_low(1).named("sum");
+    let sum = augend.minus_or_plus(addend, !effective_subtraction).named("sum");
 
     let (rounded, sum_is_zero) = match domain.keeps_subnormals() {
         true => gradual(domain, rounding, sum, large_exponent),

@@ -1,5 +1,5 @@
-//! Quotient, by restoring digit recurrence: each step subtracts the divisor once and keeps the difference if it is
-//! not negative. The remainder stays exact, so the result is rounded correctly.
+//! Quotient, by digit recurrence without restoring: each step adds or subtracts the divisor once. The remainder stays
+//! exact, so the result is rounded correctly.
 
 use super::Domain;
 use super::parts::{Operand, Rounding, Special, Unrounded, pack, round};
@@ -18,14 +18,13 @@ pub fn div<'g>(a: Signal<'g>, b: Signal<'g>, domain: Domain) -> Signal<'g> {
     let toward_zero = domain.rounding() == Rounding::TowardZero;
     let guard_bits = u32::from(!toward_zero);
     let precision = domain.significand_bits();
-    let mut remainder = dividend.extend(precision + 1);
-    let mut digits = Vec::new();
-    for index in 0..precision + 1 + guard_bits {
-        let step = Step::new(remainder, divisor, index);
-        digits.push(step.digit);
-        remainder = step.remainder.append_zeros(1);
+    let mut step = Step::after(dividend.extend(precision + 1) - divisor.extend(precision + 1), 0);
+    let mut zeros = vec![step.negative];
+    for index in 1..precision + 1 + guard_bits {
+        step = step.next(divisor, index);
+        zeros.push(step.negative);
     }
-    let quotient = Signal::join(&digits).named("quotient");
+    let quotient = (!Signal::join(&zeros)).named("quotient");
     let at_least_one = quotient.msb().named("quotient_at_least_one");
     let normalised = at_least_one
         .select(quotient.high(precision + guard_bits), quotient.low(precision + guard_bits))
@@ -40,7 +39,8 @@ pub fn div<'g>(a: Signal<'g>, b: Signal<'g>, domain: Domain) -> Signal<'g> {
 
     // A quotient of p-bit significands never has exactly p + 1 bits: its product with the divisor would have more
     // than p. So a normal result is never a tie, and only a subnormal one asks whether anything is left.
-    let sticky = if domain.keeps_subnormals() { remainder.any() | last_digit } else { sign.graph().constant(1, 1) };
+    let sticky =
+        if domain.keeps_subnormals() { step.is_inexact(divisor) | last_digit } else { sign.graph().constant(1, 1) };
     let unrounded = Unrounded {
         exponent,
         significand: normalised.drop_low(guard_bits).named("significand"),
@@ -53,25 +53,33 @@ pub fn div<'g>(a: Signal<'g>, b: Signal<'g>, domain: Domain) -> Signal<'g> {
     pack(domain, sign, round(domain, unrounded), special)
 }
 
-/// One digit of a quotient.
+/// One digit of a quotient, without restoring: what subtracting the divisor leaves stays as it is, negative or not, and
+/// after a negative one the divisor is added instead. The signs are those that restoring would see, so the digits are the
+/// quotient's own, complemented; a digit costs one carry chain and nothing else.
+#[derive(Clone, Copy)]
 pub struct Step<'g> {
-    /// Whether the divisor fits.
-    pub digit: Signal<'g>,
-    /// What is left: less than the divisor.
-    pub remainder: Signal<'g>,
+    /// What is left: at least −divisor and less than it, in two's complement with one bit more than it.
+    pub partial: Signal<'g>,
+    /// Whether that is negative: the divisor does not fit, the digit is 0.
+    pub negative: Signal<'g>,
 }
 
 impl<'g> Step<'g> {
-    /// `remainder`, one bit wider than `divisor` and less than twice as large.
-    pub fn new(remainder: Signal<'g>, divisor: Signal<'g>, index: u32) -> Self {
-        let width = divisor.width();
-        let difference = (remainder - divisor.extend(width + 1)).named(&format!("difference_{index}"));
-        let negative = difference.msb().named(&format!("borrow_{index}"));
-        Self {
-            digit: (!negative).named(&format!("digit_{index}")),
-            remainder: negative
-                .select(remainder.low(width), difference.low(width))
-                .named(&format!("remainder_{index}")),
-        }
+    /// `partial`, which is what remains after digit `index`.
+    pub fn after(partial: Signal<'g>, index: u32) -> Self {
+        let partial = partial.named(&format!("partial_{index}"));
+        Self { partial, negative: partial.msb() }
+    }
+
+    /// The next digit: of twice what is left.
+    pub fn next(self, divisor: Signal<'g>, index: u32) -> Self {
+        let doubled = self.partial.low(divisor.width()).append_zeros(1);
+        Self::after(doubled.minus_or_plus(divisor.extend(doubled.width()), self.negative), index)
+    }
+
+    /// Whether anything is left at all: a negative partial remainder is the divisor short of what is.
+    pub fn is_inexact(self, divisor: Signal<'g>) -> Signal<'g> {
+        let restored = self.partial + divisor.extend(self.partial.width()).gate(self.negative);
+        restored.any()
     }
 }

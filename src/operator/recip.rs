@@ -20,15 +20,14 @@ pub fn recip(a: Signal<'_>, domain: Domain) -> Signal<'_> {
     let guard_bits = u32::from(!toward_zero);
     let precision = domain.significand_bits();
     let digit_one = graph.constant(1, 1);
-    let mut digits = vec![digit_one];
+    let mut zeros = vec![graph.constant(1, 0)];
     // 2 − divisor: what the digit 1 leaves, one place further on.
-    let mut remainder = (divisor.same(0) - divisor).named("remainder_1");
+    let mut step = Step::after((divisor.same(0) - divisor).extend(precision + 1), 1);
     for index in 2..precision + 1 + guard_bits {
-        let step = Step::new(remainder.append_zeros(1), divisor, index);
-        digits.push(step.digit);
-        remainder = step.remainder;
+        step = step.next(divisor, index);
+        zeros.push(step.negative);
     }
-    let quotient = Signal::join(&digits).named("quotient");
+    let quotient = (!Signal::join(&zeros)).named("quotient");
     let exponent = a_exponent.subtracted_from(2 * i64::from(domain.bias()) - 1).named("quotient_exponent");
 
     if toward_zero {

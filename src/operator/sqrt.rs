@@ -1,4 +1,4 @@
-//! Square root, by restoring digit recurrence: each step tries a 1 as the root's next digit.
+//! Square root, by digit recurrence without restoring: each step tries a 1 as the root's next digit.
 
 use super::Domain;
 use super::parts::{Operand, Rounding, Special, Unrounded, pack, round};
@@ -24,10 +24,10 @@ pub fn sqrt(a: Signal<'_>, domain: Domain) -> Signal<'_> {
         let significand = root.named("significand");
         return finish(domain, a, Unrounded { exponent, significand, guard: zero, sticky: zero, doubled: None });
     }
-    let (root, remainder) = root(radicand, precision + 1);
+    let (root, is_inexact) = root(radicand, precision + 1);
     // A root of p + 1 bits exactly would need a radicand of more than 2p bits, so a normal result is never a tie,
     // and only a subnormal one asks whether anything is left.
-    let sticky = if exponent.min() > 0 { graph.constant(1, 1) } else { remainder.any().named("sticky") };
+    let sticky = if exponent.min() > 0 { graph.constant(1, 1) } else { is_inexact.named("sticky") };
     let unrounded = Unrounded {
         exponent,
         significand: root.drop_low(1).named("significand"),
@@ -46,24 +46,37 @@ pub fn finish<'g>(domain: Domain, a: Operand<'g>, unrounded: Unrounded<'g>) -> S
 }
 
 /// The first `count` digits of the root of `radicand`, which has two bits before the point and is at least 1; and
-/// the remainder.
+/// whether anything is left.
+///
+/// With the root so far r and m left, a digit 1 takes 4r + 1 from 4m + the next two bits, n. Where that is negative, it
+/// stays as it is, t: the digit is 0, and the next trial is 4t + n + (4r + 3), r with that 0 behind it. So a digit costs one
+/// carry chain, and its sign is the one that restoring would see. In the lowest three places either is a sum with 3, since
+/// −5 and 3 are one there; so the last digit, which has only just come, is wanted as a sign alone.
 fn root(radicand: Signal<'_>, count: u32) -> (Signal<'_>, Signal<'_>) {
+    const PLACES: u32 = 3;
     let graph = radicand.graph();
     let radicand = radicand.append_zeros(2 * count - radicand.width());
     let next_two = |index: u32| radicand.slice(2 * (count - 1 - index), 2);
-    // The first digit is always 1, and leaves the radicand's first two bits less 1.
-    let mut root = graph.constant(1, 1);
-    let mut remainder = next_two(0).minus(1).named("remainder_0");
-    for index in 1..count {
-        // With the root so far r and the remainder m, a digit 1 takes 4r + 1 from 4m + the next two bits.
-        let shifted = remainder.concat(next_two(index));
-        let one = graph.constant(2, 1);
-        let trial = root.concat(one).extend(shifted.width());
-        let difference = (shifted - trial).named(&format!("difference_{index}"));
-        let negative = difference.msb().named(&format!("borrow_{index}"));
-        let width = shifted.width() - 1;
+    let one = graph.constant(1, 1);
+    // The first digit is always 1, and leaves the radicand's first two bits less 1: less than 3.
+    let first = next_two(0).minus(1).concat(next_two(1)).minus(5);
+    let mut partial = first.named("partial_1");
+    // Of the digits all but the last, and that complemented.
+    let (mut root, mut negative) = (one, partial.msb());
+    for index in 2..count {
+        let shifted = partial.concat(next_two(index)).low(index + PLACES);
+        let low = shifted.low(PLACES);
+        let carry = (low.bit(2) & (low.bit(1) | low.bit(0))).named(&format!("carry_{index}"));
+        let above = shifted.drop_low(PLACES).concat(carry);
+        // The carry counts, or not, whatever the sign: a one below it sees to that.
+        let trial = root.concat(one).extend(above.width());
+        let above = above.minus_or_plus(trial, negative).named(&format!("partial_{index}_above"));
+        partial = above.drop_low(1).concat(low.plus(3)).named(&format!("partial_{index}"));
         root = root.concat(!negative).named(&format!("root_{index}"));
-        remainder = negative.select(shifted.low(width), difference.low(width)).named(&format!("remainder_{index}"));
+        negative = partial.msb();
     }
-    (root.named("root"), remainder)
+    let root = root.concat(!negative).named("root");
+    // A negative one is 2r + 1 short of what is left.
+    let short = root.concat(one).extend(partial.width()).gate(negative);
+    (root, (partial + short).any())
 }

@@ -74,9 +74,11 @@ impl Target {
     /// its router; it serves the others too, whose synthesis finds the multiplier blocks' registers.
     pub fn delays(self) -> DelayModel {
         match self {
-            Self::Ecp5 => DelayModel::ecp5().with_registered_multipliers(Some(Primitive::Mult18x18d)),
+            Self::Ecp5 => DelayModel::ecp5()
+                .with_registered_multipliers(Some(Primitive::Mult18x18d))
+                .with_adders(Primitive::Ccu2c),
             Self::Ice40 => DelayModel::ecp5(),
-            Self::Cyclonev | Self::Xilinx => DelayModel::ecp5().with_registered_multipliers(None),
+            Self::Cyclonev | Self::Xilinx => DelayModel::default(),
         }
     }
 

@@ -1,34 +1,56 @@
-//! Multiplier blocks with registers inside: each is an instance of a module of its own, which synthesis maps to one
-//! block with its registers, or which names the target's primitive.
+//! What a target has blocks for: each is an instance of a module of its own. A multiplier block with registers inside is
+//! one that synthesis maps to, or the target's primitive by name; differences that may be sums are only ever the latter.
 
 use std::sync::Arc;
 
 use crate::hdl::delay_model::DelayModel;
 use crate::hdl::error::Errors;
 use crate::hdl::graph::{Graph, Inner};
-use crate::hdl::module::{Instance, InstanceCount, Module, NodeId, Op};
+use crate::hdl::module::{Instance, InstanceCount, Module, NodeId, Op, Primitive};
 
 /// Puts an instance of a multiplier block in the place of the product `id`, whose operands are those of the block's
 /// first rank.
-pub(super) fn instantiate(inner: &mut Inner, id: NodeId, model: &DelayModel) -> Result<(), Errors> {
-    let node = inner.nodes[id.index()].clone();
-    let [a, b] = [0, 1].map(|position| inner.nodes[node.operands[position].index()].width);
+pub(super) fn instantiate_multiplier(inner: &mut Inner, id: NodeId, model: &DelayModel) -> Result<(), Errors> {
+    let operands = inner.nodes[id.index()].operands.clone();
+    let [a, b] = [0, 1].map(|position: usize| inner.nodes[operands[position].index()].width);
     // The wider factor first: so the factors' order makes no second module.
     let (first, second) = if a >= b { (0, 1) } else { (1, 0) };
     let module = multiplier([a.max(b), a.min(b)], model)?;
+    replace(inner, id, &module, &[("a", operands[first]), ("b", operands[second])], "product");
+    Ok(())
+}
+
+/// Puts an instance of the target's carry chain in the place of the difference or sum `id`.
+pub(super) fn instantiate_sub_add(inner: &mut Inner, id: NodeId, primitive: Primitive) -> Result<(), Errors> {
+    let node = &inner.nodes[id.index()];
+    let (operands, module) = (node.operands.clone(), sub_add(node.width, primitive)?);
+    let inputs: Vec<_> = ["a", "b", "add"].into_iter().zip(operands).collect();
+    replace(inner, id, &module, &inputs, "sum");
+    Ok(())
+}
+
+/// Puts an instance of `module`, which has one output, in the place of node `id`.
+fn replace(inner: &mut Inner, id: NodeId, module: &Arc<Module>, inputs: &[(&str, NodeId)], what: &str) {
     let number = inner.instances.len();
-    let name = node.name.as_ref().map_or_else(|| format!("product_{number}"), |name| format!("{name}_block"));
-    let inputs = module.ports.iter().map(|port| match port.name.as_str() {
-        "a" => Some(node.operands[first]),
-        "b" => Some(node.operands[second]),
-        _ => None,
-    });
-    let instance = Instance { name, inputs: inputs.collect(), count: InstanceCount::One, module: module.clone() };
+    let node = &inner.nodes[id.index()];
+    let name = node.name.as_ref().map_or_else(|| format!("{what}_{number}"), |name| format!("{name}_block"));
+    let value = |port: &str| inputs.iter().find(|(name, _)| *name == port).map(|(_, value)| *value);
+    let inputs = module.ports.iter().map(|port| value(&port.name)).collect();
+    inner.instances.push(Instance { name, inputs, count: InstanceCount::One, module: module.clone() });
     let port = module.ports.iter().position(|port| port.output).unwrap_or_default();
-    inner.instances.push(instance);
     inner.nodes[id.index()].op = Op::InstanceOutput { instance: number, port };
     inner.nodes[id.index()].operands.clear();
-    Ok(())
+}
+
+/// a − b, or a + b.
+fn sub_add(width: u32, primitive: Primitive) -> Result<Arc<Module>, Errors> {
+    let graph = Graph::new(format!("sub_add_{width}{}", primitive.suffix()));
+    graph.about("a - b, or a + b where add is set: one carry chain, the complement in its own look-up tables");
+    let (a, b) = (graph.input("a", width), graph.input("b", width));
+    graph.output("result", a.minus_or_plus(b, graph.input("add", 1)));
+    let mut module = graph.finish()?;
+    Arc::make_mut(&mut module).primitive = Some(primitive);
+    Ok(module)
 }
 
 /// a · b, with registers before and behind the product.

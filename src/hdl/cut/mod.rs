@@ -34,7 +34,7 @@ pub struct Timing {
 /// [`Module::latency`] cycles after their inputs. Operations are not divided: one that takes longer than the period
 /// gets a stage of its own, and [`Module::timing`] says what clock remains. Constants, and what is computed from
 /// constants and parameters alone, are never delayed. A product that fits a multiplier block with registers inside
-/// becomes an instance of one.
+/// becomes an instance of one; a difference that may be a sum one of the target's carry chain, if the model names it.
 ///
 /// # Errors
 /// A clock that is not a positive number; anything in `module` that is clocked, and instances.
@@ -114,7 +114,11 @@ fn registered(
         }
         inner.nodes[id.index()].operands = operands;
         if stage != begin {
-            block::instantiate(&mut inner, id, model)?;
+            block::instantiate_multiplier(&mut inner, id, model)?;
+        } else if module.node(id).op == Op::SubAdd
+            && let Some(primitive) = model.adder_primitive
+        {
+            block::instantiate_sub_add(&mut inner, id, primitive)?;
         }
         let node = &mut inner.nodes[id.index()];
         node.stage = (!matches!(node.op, Op::Constant(_))).then_some(stage);

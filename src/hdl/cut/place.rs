@@ -61,7 +61,7 @@ impl<'a> Plan<'a> {
         let mut plan = Self {
             module,
             budget: budget + ROUNDING,
-            delay: module.nodes.iter().map(|node| model.delay(module, node)).collect(),
+            delay: model.delays(module),
             ranks: module.nodes.iter().map(|node| model.ranks(module, node)).collect(),
             users: vec![Vec::new(); count],
             is_output: vec![false; count],

@@ -167,6 +167,13 @@ impl Lowered {
             Op::Xor => self.bitwise(Kind::Xor, operands),
             Op::Add => self.sum(operands, node.width, [Kind::Add, Kind::AddCarry, Kind::CarryOut]),
             Op::Sub => self.sum(operands, node.width, [Kind::Sub, Kind::SubBorrow, Kind::BorrowOut]),
+            Op::SubAdd => {
+                let terms = &operands[..2];
+                let sum = self.sum(terms, node.width, [Kind::Add, Kind::AddCarry, Kind::CarryOut]);
+                let difference = self.sum(terms, node.width, [Kind::Sub, Kind::SubBorrow, Kind::BorrowOut]);
+                let pairs = sum.into_iter().zip(difference);
+                pairs.map(|(sum, difference)| self.step(Kind::Mux, [operands[2][0], sum, difference], 0)).collect()
+            }
             Op::Mul => self.product(&operands[0], &operands[1], count),
             Op::Equal => {
                 let equal = self.bitwise(Kind::Equal, operands);

@@ -25,7 +25,7 @@ impl Expressions<'_> {
         let in_place = |id: NodeId| self.names.declared[id.index()].is_none();
         let compares = |id: NodeId| in_place(id) && matches!(self.module.node(id).op, Op::Less | Op::Equal);
         let compound = match node.op {
-            Op::And | Op::Or | Op::Xor | Op::Add | Op::Sub | Op::Mul => true,
+            Op::And | Op::Or | Op::Xor | Op::Add | Op::Sub | Op::SubAdd | Op::Mul => true,
             Op::Equal | Op::Less | Op::Mux | Op::OneHot => true,
             Op::Not => compares(node.operands[0]),
             _ => false,
@@ -51,6 +51,7 @@ impl Expressions<'_> {
             Op::Xor => self.chain(node, "^"),
             Op::Add => infix("+"),
             Op::Sub => infix("-"),
+            Op::SubAdd => self.sub_add(node),
             Op::Mul => self.product(node),
             Op::Equal => infix("=="),
             Op::Less => infix("<"),
@@ -103,6 +104,21 @@ impl Expressions<'_> {
             && self.module.node(mask_node.operands[0]).width == 1;
         let condition = mask_node.operands.first().filter(|_| repeated)?;
         Some(format!("{} ? {} : {}", self.term(*condition), self.term(value), constant(node.width, 0)))
+    }
+
+    /// The complement and a carry in, as carry chains have it: no tool makes two chains and a choice of that.
+    fn sub_add(&self, node: &Node) -> String {
+        let [left, right] = [0, 1].map(|position| self.term(node.operands[position]));
+        let add = node.operands[2];
+        let subtract = match self.module.node(add).op {
+            Op::Not if self.names.declared[add.index()].is_none() => self.term(self.module.node(add).operands[0]),
+            _ => format!("~{}", self.term(add)),
+        };
+        let complement = format!("{right} ^ {{{}{{{subtract}}}}}", node.width);
+        match node.width {
+            1 => format!("{left} + ({complement}) + {subtract}"),
+            width => format!("{left} + ({complement}) + {{{}, {subtract}}}", constant(width - 1, 0)),
+        }
     }
 
     fn product(&self, node: &Node) -> String {

@@ -76,6 +76,7 @@ impl Names {
             Op::Xor => two("xor"),
             Op::Add => two("plus"),
             Op::Sub => two("minus"),
+            Op::SubAdd => two("minus_or_plus"),
             Op::Mul => two("times"),
             Op::Equal => two("equals"),
             Op::Less => two("below"),

@@ -1,4 +1,4 @@
-//! Reciprocal: the state is the remainder and the digits so far; the divisor stays.
+//! Reciprocal: the state is the partial remainder and the digits so far, complemented; the divisor stays.
 
 use super::recurrence::Recurrence;
 use crate::hdl::Signal;
@@ -30,24 +30,24 @@ impl Recurrence for Reciprocal {
     fn begin<'g>(&self, a: Signal<'g>) -> (Vec<Signal<'g>>, Vec<Signal<'g>>) {
         let (_, divisor) = Operand::unpack(a, self.domain, "a").normalised();
         // 2 − divisor: what the digit 1 leaves, one place further on.
-        let remainder = divisor.same(0) - divisor;
-        (vec![remainder], vec![divisor])
+        let partial = (divisor.same(0) - divisor).extend(divisor.width() + 1);
+        (vec![partial], vec![divisor])
     }
 
     fn fit<'g>(&self, state: &[Signal<'g>], _: u32, end: u32) -> Vec<Signal<'g>> {
-        let digits = state.get(1).map_or_else(|| state[0].graph().constant(end, 0), |digits| digits.extend(end));
-        vec![state[0], digits]
+        let zeros = state.get(1).map_or_else(|| state[0].graph().constant(end, 0), |zeros| zeros.extend(end));
+        vec![state[0], zeros]
     }
 
     fn step<'g>(&self, state: &[Signal<'g>], kept: &[Signal<'g>], index: u32) -> Vec<Signal<'g>> {
-        let (remainder, digits) = (state[0], state[1]);
-        let step = Step::new(remainder.append_zeros(1), kept[0], index);
-        let digits = if digits.width() == 1 { step.digit } else { digits.low(digits.width() - 1).concat(step.digit) };
-        vec![step.remainder, digits]
+        let (partial, zeros) = (state[0], state[1]);
+        let Step { partial, negative } = Step { partial, negative: partial.msb() }.next(kept[0], index);
+        let zeros = if zeros.width() == 1 { negative } else { zeros.low(zeros.width() - 1).concat(negative) };
+        vec![partial, zeros]
     }
 
     fn outcome<'g>(&self, state: &[Signal<'g>]) -> Vec<Signal<'g>> {
-        vec![state[1]]
+        vec![!state[1]]
     }
 
     fn finish<'g>(&self, a: Signal<'g>, outcome: &[Signal<'g>]) -> Signal<'g> {

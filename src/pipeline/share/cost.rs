@@ -39,6 +39,8 @@ fn of(module: &Module, node: &Node) -> u32 {
     let operand = || node.operands.first().map_or(0, width);
     match node.op {
         Op::Add | Op::Sub => node.width,
+        // Without a primitive the complement has look-up tables of its own.
+        Op::SubAdd => 2 * node.width,
         Op::Less => operand(),
         Op::Equal => operand() * 2 / 3,
         Op::Any | Op::All => operand() / 3,
