@@ -22,7 +22,7 @@ impl Spread {
     /// Of both together.
     #[must_use]
     pub fn plus(self, other: &Self) -> Self {
-        let count = self.count + other.count;
+        let count = self.count.saturating_add(other.count);
         let sum = self.mean * self.count as f64 + other.mean * other.count as f64;
         Self {
             count,

@@ -61,20 +61,20 @@ impl Tally {
         self.raise([depth, normal, position]);
     }
 
-    /// Both together.
+    /// Both together. Counts end at the largest number: a file of results may say anything.
     #[must_use]
     pub fn plus(mut self, other: &Self) -> Self {
-        self.pairs += other.pairs;
-        self.contacts += other.contacts;
-        self.missed += other.missed;
-        self.false_hits += other.false_hits;
-        self.non_finite += other.non_finite;
-        self.normal += other.normal;
-        self.direction += other.direction;
-        self.depth += other.depth;
-        self.position += other.position;
-        self.bad += other.bad;
-        self.unsettled += other.unsettled;
+        self.pairs = self.pairs.saturating_add(other.pairs);
+        self.contacts = self.contacts.saturating_add(other.contacts);
+        self.missed = self.missed.saturating_add(other.missed);
+        self.false_hits = self.false_hits.saturating_add(other.false_hits);
+        self.non_finite = self.non_finite.saturating_add(other.non_finite);
+        self.normal = self.normal.saturating_add(other.normal);
+        self.direction = self.direction.saturating_add(other.direction);
+        self.depth = self.depth.saturating_add(other.depth);
+        self.position = self.position.saturating_add(other.position);
+        self.bad = self.bad.saturating_add(other.bad);
+        self.unsettled = self.unsettled.saturating_add(other.unsettled);
         self.raise([other.depth_ulps, other.normal_ulps, other.position_ulps]);
         self
     }

@@ -88,7 +88,7 @@ impl Point {
     /// Wrong decisions on all pairs.
     pub fn wrong(&self) -> u64 {
         let tally = self.tally();
-        tally.missed + tally.false_hits
+        tally.missed.saturating_add(tally.false_hits)
     }
 
     /// Its errors on the sets of these names.

@@ -155,7 +155,7 @@ impl Results {
 
     /// Pairs of all sets.
     pub fn pairs(&self) -> u64 {
-        self.sets.iter().map(|set| set.pairs).sum()
+        self.sets.iter().fold(0, |sum, set| sum.saturating_add(set.pairs))
     }
 
     /// The point of this name.

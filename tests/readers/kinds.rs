@@ -1,0 +1,226 @@
+//! Every kind of file that is read: right ones, and what reads them.
+
+use std::fs;
+use std::path::Path;
+
+use contact_afu::accuracy::trade::{self, Bounds, Time};
+use contact_afu::accuracy::{self, Task};
+use contact_afu::config::{self, Config, Profile, Results, Shell};
+use contact_afu::kernel::ContactRecord;
+use contact_afu::link::{Description, Link, LinkModel};
+use contact_afu::scene::{Plan, Query, Scene};
+use contact_afu::synth::{self, Figures};
+use contact_afu::{pairs, report, sweep};
+use serde_json::{Value, json};
+
+use crate::mutate::Form;
+
+/// A kind of file: its name (in a folder of its own), something right in it, and what reads it; true if it is accepted.
+pub struct Kind {
+    pub name: &'static str,
+    pub form: Form,
+    pub seeds: Vec<Vec<u8>>,
+    pub read: fn(&Path) -> bool,
+}
+
+fn link(path: &Path) -> bool {
+    let Ok(text) = fs::read_to_string(path) else { return false };
+    let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+    let Ok(described) = Description::parse(name, &text) else { return false };
+    [1.0, 200.0, 1e6].into_iter().filter_map(|mhz| described.at(mhz).ok()).all(|model| Link::new(model, 1).is_ok())
+}
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn file(name: &str) -> Vec<u8> {
+    fs::read(root().join(name)).unwrap()
+}
+
+/// Pairs and contacts.
+fn of_pairs(room: &Path) -> Vec<Kind> {
+    let some = pairs::load("random:6", 3).unwrap();
+    let contacts: Vec<_> = some.iter().map(|pair| ContactRecord(pair.0)).collect();
+    let real = Config::default();
+    let real = contact_afu::kernel::Reference::new(real.profile.format(), real.contact).run_all(&some);
+    let written = |name: &str, write: &dyn Fn(&Path)| {
+        let path = room.join(name);
+        write(&path);
+        vec![fs::read(path).unwrap()]
+    };
+    let corpus = file("tb/corpus/hard.csv");
+    let lines: Vec<&[u8]> = corpus.split_inclusive(|&byte| byte == b'\n').take(12).collect();
+    let pairs = |path: &Path| pairs::read_pairs(path).is_ok();
+    let records = |path: &Path| pairs::read_contacts(path).is_ok();
+    vec![
+        Kind {
+            name: "pairs.csv",
+            form: Form::Csv,
+            seeds: [written("a.csv", &|path| pairs::write_pairs(path, &some).unwrap()), vec![lines.concat()]].concat(),
+            read: pairs,
+        },
+        Kind {
+            name: "pairs.npy",
+            form: Form::Bytes,
+            seeds: written("a.npy", &|path| pairs::write_pairs(path, &some).unwrap()),
+            read: pairs,
+        },
+        Kind {
+            name: "contacts.csv",
+            form: Form::Csv,
+            seeds: written("c.csv", &|path| pairs::write_contacts(path, &real).unwrap()),
+            read: records,
+        },
+        Kind {
+            name: "contacts.npy",
+            form: Form::Bytes,
+            seeds: written("c.npy", &|path| pairs::write_contacts(path, &contacts).unwrap()),
+            read: records,
+        },
+    ]
+}
+
+/// What a user writes: scenes with the files that they name, link models, lists of Verilog.
+fn of_users(room: &Path) -> Vec<Kind> {
+    let models = [LinkModel::hostile(), LinkModel::late()].iter().map(|m| serde_json::to_vec(m).unwrap()).collect();
+    // Scenes whose spheres are in the file that is read, and what a list of Verilog names.
+    for name in ["spheres.csv", "spheres.ply"] {
+        let scene = format!(
+            "scene = 1\nwant = [\"touching\"]\n[[bodies]]\nshape = \"stack\"\ncount = 2\nradius = 1.0\n[[queries]]\n\
+             shape = \"file\"\nfile = \"{name}\"\nradius = 0.5\n"
+        );
+        fs::write(room.join(format!("{name}.toml")), scene).unwrap();
+    }
+    for name in ["one.v", "two.v"] {
+        fs::write(room.join(name), "module m;\nendmodule\n").unwrap();
+    }
+    let spheres = |path: &Path| {
+        let scene =
+            Scene::read(&path.with_extension(if path.ends_with("spheres.csv") { "csv.toml" } else { "ply.toml" }));
+        scene.is_ok_and(|scene| Query::of(&scene).is_ok())
+    };
+    let ply = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nproperty float \
+               radius\nend_header\n0 1 2 0.5\n3 4 5 1.5\n";
+    vec![
+        Kind {
+            name: "scene.toml",
+            form: Form::Toml,
+            seeds: ["diamond", "billiards", "column", "touching", "gas"]
+                .map(|name| file(&format!("examples/scenes/{name}.toml")))
+                .to_vec(),
+            read: |path| Scene::read(path).is_ok_and(|scene| Plan::of(&scene).is_ok()),
+        },
+        Kind {
+            name: "spheres.csv",
+            form: Form::Csv,
+            seeds: vec![b"x,y,z,r\n0,1,2,0.5\n3,4,5,1.5\n".to_vec(), b"x,y,z\n0,1,2\n".to_vec()],
+            read: spheres,
+        },
+        Kind { name: "spheres.ply", form: Form::Bytes, seeds: vec![ply.into()], read: spheres },
+        Kind { name: "link.json", form: Form::Json, seeds: models, read: link },
+        Kind {
+            name: "link.toml",
+            form: Form::Toml,
+            seeds: vec![file("src/link/presets/harp1.toml"), file("examples/links/lossy.toml")],
+            read: link,
+        },
+        Kind {
+            name: "verilog.f",
+            form: Form::Bytes,
+            seeds: vec![b"// files\none.v\ntwo.v # the other\n".to_vec()],
+            read: |path| contact_afu::cosim::Source::from_list(path, "m").is_ok(),
+        },
+    ]
+}
+
+/// What the program wrote and reads again: manifests, chosen configurations, studies to be resumed, figures.
+fn of_the_program() -> Vec<Kind> {
+    let profile = |name: &str| name.parse::<Profile>().unwrap();
+    let chosen = [
+        Config { scpus: 3, profile: profile("exact"), ..Config::default() },
+        Config { profile: profile("e8f15"), shell: Shell::Line, results: Results::Hits, ..Config::default() },
+    ];
+    let chosen = chosen.map(|config| json!({ "schema": config::MANIFEST_SCHEMA, "config": config }));
+    let mut results = trade::committed().unwrap();
+    results.points.truncate(2);
+    let area = json!({ "luts": 7, "ffs": 5, "dsps": 1, "brams": 0 });
+    let mut figures = json!({
+        "schema": synth::SCHEMA, "version": "0.1.0", "unit": "add", "profile": "wide", "module": "m", "target": "ecp5",
+        "asked_mhz": 200.0, "modelled_mhz": 210.0, "clock_mhz": 190.5, "latency_cycles": 9, "latency_ns": 47.2,
+        "wrapper": area, "trimmed": { "inputs": 0, "outputs": 0 }, "seeds": [{ "seed": 1, "clock_mhz": 190.5 }],
+        "critical": [{ "signal": "a.b", "stage": 3, "routing_ns": 1.5, "logic_ns": 0.5 }],
+        "verilog_sha256": "0", "tools": { "yosys": "y", "nextpnr": "n" },
+    });
+    figures.as_object_mut().unwrap().extend(area.as_object().unwrap().clone());
+    let text = |value: &Value| serde_json::to_vec(value).unwrap();
+    let hard = accuracy::Record::new(Task { pairs: 0, seed: 1 }, &["somebody"]);
+    let swept = sweep::Record::new("random:5", "0".repeat(64), "ideal", 1, &Config::default());
+    vec![
+        Kind {
+            name: "manifest.json",
+            form: Form::Json,
+            seeds: [vec![file("rtl/manifest.json")], chosen.iter().map(text).collect()].concat(),
+            read: |path| config::read(path).is_ok_and(|config| config.flags().len() < 100),
+        },
+        Kind {
+            name: "results.json",
+            form: Form::Json,
+            seeds: vec![serde_json::to_vec(&results).unwrap()],
+            read: |path| {
+                let results = serde_json::from_slice::<trade::Results>(&fs::read(path).unwrap());
+                results.is_ok_and(|results| {
+                    let bounds = Bounds { error: Some(1e-3), bad: Some(0.0), ..Bounds::default() };
+                    let _ = trade::choose(&results, &bounds, Time::Link);
+                    !trade::table(&results).is_empty()
+                })
+            },
+        },
+        Kind {
+            name: "hard/manifest.json",
+            form: Form::Json,
+            seeds: vec![serde_json::to_vec(&hard).unwrap()],
+            read: |path| {
+                let task = Task { pairs: 0, seed: 1 };
+                let mut record = accuracy::Record::new(task, &[]);
+                accuracy::fill(&mut record, &mut [], task, Some((path.parent().unwrap(), false)), |_, _| ()).is_ok()
+            },
+        },
+        Kind {
+            name: "sweep/manifest.json",
+            form: Form::Json,
+            seeds: vec![serde_json::to_vec(&swept).unwrap()],
+            read: |path| {
+                let record = sweep::Record::new("random:5", "0".repeat(64), "ideal", 1, &Config::default());
+                record.earlier(path.parent().unwrap(), false).is_ok()
+            },
+        },
+        Kind {
+            name: "synth.json",
+            form: Form::Json,
+            seeds: vec![text(&figures)],
+            read: |path| {
+                let figures = serde_json::from_slice::<Figures>(&fs::read(path).unwrap());
+                figures.is_ok_and(|figures| report::operators::page(&[figures]).is_ok())
+            },
+        },
+        Kind {
+            name: "simulated.json",
+            form: Form::Json,
+            seeds: vec![text(&json!({ "task": "0", "points": [{ "collisions": 3, "transactions": 2, "cycles": 7.5,
+                "least_cycles": 7, "most_cycles": 8, "limit_cycles": 5.0, "contacts": 1 }] }))],
+            read: |path| {
+                serde_json::from_slice::<contact_afu::paper::Simulated>(&fs::read(path).unwrap())
+                    .is_ok_and(|simulated| simulated.points.len() < 100)
+            },
+        },
+    ]
+}
+
+/// All kinds. `room` has a folder for each that has one in its name.
+pub fn kinds(room: &Path) -> Vec<Kind> {
+    for folder in ["hard", "sweep"] {
+        fs::create_dir(room.join(folder)).unwrap();
+    }
+    [of_pairs(room), of_users(room), of_the_program()].into_iter().flatten().collect()
+}
