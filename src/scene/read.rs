@@ -244,11 +244,11 @@ impl Scene {
             ));
         }
         let most = if moves { MOST_MOVING } else { MOST };
-        let mut all = 0;
+        let mut all = 0_u64;
         for (key, group) in
             self.bodies.iter().map(|group| ("bodies", group)).chain(self.queries.iter().map(|group| ("queries", group)))
         {
-            all += group.shape.count();
+            all = all.saturating_add(group.shape.count());
             if all > most {
                 let why =
                     format!("{all} spheres by now: {most} at most{}", if moves { " where bodies move" } else { "" });
