@@ -97,7 +97,6 @@ fn what_is_not_built_yet_or_out_of_range_is_one_line_and_exit_2() {
     let room = tempfile::tempdir().expect("a temporary folder");
     for (arguments, word) in [
         (["--interval", "65"], "interval 65"),
-        (["--interval", "auto"], "interval auto"),
         (["--interval", "fast"], "--interval fast"),
         (["--input", "indexed"], "input indexed"),
         (["--input", "all"], "input all"),
@@ -128,4 +127,24 @@ fn what_is_not_built_yet_or_out_of_range_is_one_line_and_exit_2() {
         afu(room.path(), &[&["rtl", "--out", "out"][..], &arguments].concat()).code(2);
     }
     assert_eq!(fs::read_dir(room.path()).expect("there").count(), 0, "nothing is written");
+}
+
+/// Ten SCPUs take a line a cycle at 5, which is what an ideal link brings; over a slower one they may be slower.
+#[test]
+fn interval_auto_is_what_the_link_needs() {
+    let room = tempfile::tempdir().expect("a temporary folder");
+    let interval = |arguments: &[&str]| {
+        let all =
+            [&["rtl", "--out", "out", "--force", "--interval", "auto", "--profile", "half"][..], arguments].concat();
+        afu(room.path(), &all).success();
+        let manifest = fs::read_to_string(room.path().join("out/manifest.json")).expect("written");
+        let manifest: serde_json::Value = serde_json::from_str(&manifest).expect("JSON");
+        manifest["config"]["interval"].as_u64().expect("a number")
+    };
+    assert_eq!(interval(&[]), 5);
+    assert_eq!(interval(&["--scpus", "1"]), 1);
+    assert_eq!(interval(&["--scpus", "16"]), 8);
+    assert!(interval(&["--link", "harp1"]) > 5);
+    let refused = afu(room.path(), &["rtl", "--out", "new", "--interval", "auto", "--link", "none"]).code(2);
+    assert!(said(&refused).contains("none"), "{}", said(&refused));
 }

@@ -49,7 +49,6 @@ fn wrong_sweeps_are_exit_2_and_leave_no_folder() {
         &["--scpus", "1,65"],
         &["--scpus", ""],
         &["--interval", "1,65"],
-        &["--synth"],
         &["--pairs", "absent.csv"],
         &["--link", "none"],
     ] {

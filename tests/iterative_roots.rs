@@ -107,3 +107,64 @@ fn only_roots_that_are_rounded_correctly() {
     assert!(!of(Operator::Recip, "e10f23zr") && !of(Operator::Sqrt, "e10f23zr"));
     assert!(!of(Operator::Mul, "e10f23z") && !of(Operator::Div, "e10f23z"));
 }
+
+/// The Verilog, compiled by Verilator, of the default AFU's arithmetic.
+#[cfg(feature = "cosim")]
+mod verilated {
+    use contact_afu::cosim::{File, Model, Source, Trace};
+    use contact_afu::hdl::verilog::{Style, emit};
+
+    use super::*;
+
+    fn stream(operator: Operator, domain: Domain, interval: u32, words: impl Iterator<Item = u128>) {
+        let module = root(operator, domain, interval, 200.0);
+        let file =
+            |module: Arc<Module>| File { name: format!("{}.v", module.name), text: emit(&module, &Style::default()) };
+        let files = module.hierarchy().into_iter().map(file).collect();
+        let model = Model::build(&Source::new(&module.name, files), Trace::Off).unwrap();
+        let instance = model.instance(1).unwrap();
+        let clock = instance.clock("clk").unwrap();
+        let a = instance.input("a", domain.width()).unwrap();
+        let phase = instance.input("phase", interval).unwrap();
+        let result = instance.output("result", domain.width()).unwrap();
+        let mut pending = std::collections::VecDeque::new();
+        let mut cycle = 0_u32;
+        for word in words.map(Some).chain(std::iter::repeat_n(None, module.latency as usize)) {
+            a.set(word.unwrap_or_default() as u64);
+            pending.extend(word.map(|word| (word, cycle + module.latency)));
+            for later in 0..interval {
+                phase.set(1 << later);
+                clock.tick(1).unwrap();
+                cycle += 1;
+                // Between numbers there is nonsense.
+                a.set(u64::from(cycle));
+                if let Some(&(word, _)) = pending.front().filter(|(_, when)| *when == cycle) {
+                    pending.pop_front();
+                    let wanted = operator.twin(domain.format(), word, 0);
+                    assert_eq!(u128::from(result.get()), wanted, "{} of {word:#x}", operator.name());
+                }
+            }
+        }
+        assert!(pending.is_empty());
+    }
+
+    fn significands(step: usize) {
+        let domain = Domain::new(Format::WIDE, Values::Normal);
+        let one = (Format::WIDE.bias() as u128) << 23;
+        for (operator, interval) in [(Operator::Recip, 16), (Operator::Sqrt, 16), (Operator::Sqrt, 5)] {
+            // Both parities of the exponent.
+            stream(operator, domain, interval, (one..one + (2 << 23)).step_by(step));
+        }
+    }
+
+    #[test]
+    fn some_significands_of_24_bits() {
+        significands(1_009);
+    }
+
+    #[test]
+    #[ignore = "some minutes: every significand of 24 bits"]
+    fn every_significand_of_24_bits() {
+        significands(1);
+    }
+}

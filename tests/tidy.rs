@@ -42,7 +42,7 @@ const HOUSE: &[(&str, &[&str])] = &[
         &["report", "plot", "verify", "host", "cosim", "config", "ode", "afu", "link", "pairs", "kernel", "number"],
     ),
     ("scene", &["report", "plot", "synth", "ode", "config", "afu", "pipeline", "kernel", "pairs", "number"]),
-    ("sweep", &["report", "verify", "host", "cosim", "config", "afu", "link", "pairs", "kernel", "number"]),
+    ("sweep", &["report", "synth", "verify", "host", "cosim", "config", "afu", "link", "pairs", "kernel", "number"]),
 ];
 
 /// Longer than this, a file is two things.

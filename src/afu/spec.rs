@@ -1,6 +1,6 @@
 //! What an accelerator is generated from: the configuration, and what only proofs and integrators change.
 
-use crate::config::Config;
+use crate::config::{Config, INTERVALS};
 use crate::hdl::{DelayModel, Reset};
 
 use super::{COUNT_BITS, Layout};
@@ -70,6 +70,23 @@ impl Spec {
         self.layout().pairs_per_line()
     }
 
+    /// The SCPUs that turns go round at an interval: all, or as many as take a whole number of full lines a cycle.
+    pub fn scpus_in_turn(&self, interval: u32) -> u32 {
+        let whole = self.lanes() * interval;
+        match self.config.scpus {
+            scpus if interval > 1 && scpus > whole => scpus / whole * whole,
+            scpus => scpus,
+        }
+    }
+
+    /// The longest interval at which the SCPUs take `pairs_a_cycle`, or what a line has of them if that is less; 1 where
+    /// they do not at any.
+    pub fn longest_interval(&self, pairs_a_cycle: f64) -> u32 {
+        let wanted = pairs_a_cycle.min(f64::from(self.lanes())) * (1.0 - 1e-9);
+        let takes = |interval: u32| f64::from(self.scpus_in_turn(interval)) / f64::from(interval);
+        INTERVALS.rev().find(|interval| takes(*interval) >= wanted).unwrap_or(1)
+    }
+
     /// Bits that hold a number of pairs from none to all lanes.
     pub(super) fn group_bits(&self) -> u32 {
         self.lanes().ilog2() + 1
@@ -108,5 +125,20 @@ impl Spec {
             return Err(SpecError::Outstanding(self.max_outstanding));
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_longest_interval_takes_what_comes() {
+        let of =
+            |scpus, pairs_a_cycle| Spec::from(Config { scpus, ..Config::default() }).longest_interval(pairs_a_cycle);
+        // Two pairs a line, and no more than a line a cycle.
+        assert_eq!([1, 2, 3, 4, 10, 11, 64].map(|scpus| of(scpus, 2.0)), [1, 1, 1, 2, 5, 5, 32]);
+        assert_eq!(of(10, 100.0), 5);
+        assert_eq!([0.5, 0.3, 1.0, 1.1, 0.01].map(|rate| of(10, rate)), [20, 33, 10, 9, 64]);
     }
 }

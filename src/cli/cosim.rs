@@ -155,7 +155,7 @@ impl Cosim {
         let spinner = progress::spinner("making the model of the AFU (Verilator and C++ compiler)");
         let bench = match &self.rtl {
             Some(folder) => Bench::of_folder(folder, self.one.only_scpus()?, trace),
-            None => Bench::traced(&self.one.config()?, trace),
+            None => Bench::traced(&self.one.config_over(&self.link)?, trace),
         };
         spinner.finish_and_clear();
         let bench = bench?;

@@ -3,11 +3,13 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use contact_afu::afu::Spec;
 use contact_afu::config::{self, Config, Input, Profile, Record, Results, Shell};
 use contact_afu::kernel::Fields;
 use contact_afu::number::{FormatError, Roots, Rounding, Subnormals};
 
 use super::failure::{Classify, Failure, Kind};
+use super::link;
 
 /// Everything but how many SCPUs and how fast each takes pairs: a sweep has lists of those.
 #[derive(Args, Debug)]
@@ -103,7 +105,8 @@ pub struct One {
     /// Sphere Collision Processing Units, 1 to 64 [default: 10]
     #[arg(long, value_name = "N", help_heading = "The AFU")]
     pub scpus: Option<u32>,
-    /// Cycles from one pair to the next in one SCPU, 1 to 64: above 1 it has fewer operators [default: 1]
+    /// Cycles from one pair to the next in one SCPU, 1 to 64: above 1 it has fewer operators. auto: the most at which the
+    /// link is still what limits [default: 1]
     #[arg(long, value_name = "II", help_heading = "The AFU")]
     pub interval: Option<String>,
     #[command(flatten)]
@@ -113,18 +116,29 @@ pub struct One {
 impl One {
     /// The configuration, known to be one that can be generated.
     pub fn config(&self) -> Result<Config, Failure> {
-        self.with(self.machine.config()?)
+        self.config_over("ideal")
+    }
+
+    /// The same, with `auto` for that link: its name or file.
+    pub fn config_over(&self, link: &str) -> Result<Config, Failure> {
+        self.with(self.machine.config()?, link)
     }
 
     /// The same, whatever the target is.
     pub fn config_for_any_target(&self) -> Result<Config, Failure> {
-        self.with(self.machine.config_for_any_target()?)
+        self.with(self.machine.config_for_any_target()?, "ideal")
     }
 
-    fn with(&self, mut config: Config) -> Result<Config, Failure> {
+    fn with(&self, mut config: Config, link: &str) -> Result<Config, Failure> {
         set(&mut config.scpus, &self.scpus);
-        if let Some(interval) = &self.interval {
-            config.interval = interval_of(interval)?;
+        match self.interval.as_deref() {
+            None => {}
+            Some("auto") => {
+                config.interval = 1;
+                config.check()?;
+                config.interval = longest_interval(&config, link)?;
+            }
+            Some(interval) => config.interval = interval_of(interval)?,
         }
         config.check()?;
         Ok(config)
@@ -162,16 +176,22 @@ impl One {
     }
 }
 
-/// `--interval`: a number of cycles; `auto` is for a link model to choose, which is not built yet.
+/// `--interval`: a number of cycles.
 fn interval_of(text: &str) -> Result<u32, Failure> {
-    text.parse().map_err(|_| {
-        let message = match text {
-            "auto" => "interval auto: not built yet; an SCPU takes a pair every cycle (1)".to_owned(),
-            _ => format!("--interval {text}: give a number of cycles"),
-        };
-        Failure::new(Kind::Usage, message)
-    })
+    text.parse().map_err(|_| Failure::new(Kind::Usage, format!("--interval {text}: give a number of cycles, or auto")))
 }
+
+/// The longest interval at which SCPUs still take all pairs that the link brings, and takes contacts of.
+fn longest_interval(config: &Config, link: &str) -> Result<u32, Failure> {
+    let (spec, link) = (Spec::from(config.clone()), link::read(link, config.clock_mhz)?);
+    // Contacts alone may be none.
+    let contacts = if config.results == Results::Hits { 0 } else { MANY };
+    let cycles = link.limit_cycles(spec.layout().source_lines(MANY), spec.layout().destination_lines(contacts));
+    Ok(spec.longest_interval(MANY as f64 / cycles))
+}
+
+/// Pairs of a job long enough for a rate.
+const MANY: u64 = 1 << 20;
 
 fn set<T: Clone>(to: &mut T, given: &Option<T>) {
     if let Some(given) = given {

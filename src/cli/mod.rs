@@ -12,7 +12,6 @@ mod doctor;
 mod experiment;
 mod failure;
 mod hard;
-#[cfg(feature = "cosim")]
 mod link;
 mod list;
 mod machine;

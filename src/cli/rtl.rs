@@ -22,6 +22,9 @@ pub struct Rtl {
     /// Reset level, and whether it acts without a clock edge
     #[arg(long, value_enum, value_name = "STYLE", default_value_t = Style::High, help_heading = "The AFU")]
     reset: Style,
+    /// Link that --interval auto is for: ideal, late, shuffled, hostile, harp1, harp2, pcie3x8, or a file of a link
+    #[arg(long, value_name = "NAME|FILE", default_value = "ideal", help_heading = "The AFU")]
+    link: String,
     #[command(flatten)]
     one: One,
 }
@@ -44,7 +47,7 @@ impl From<Style> for Reset {
 }
 
 pub fn run(options: &Rtl) -> Result<(), Failure> {
-    let config = options.one.config()?;
+    let config = options.one.config_over(&options.link)?;
     folder::check(&options.out, options.force)?;
     let afu = Afu::generate(Spec { reset: options.reset.into(), ..Spec::from(config) })?;
     let folder = Folder::begin(&options.out, options.force)?;

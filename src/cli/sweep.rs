@@ -21,7 +21,7 @@ pub struct Sweep {
     /// Numbers of SCPUs: 1,2,4 or 1..16 (16 included)
     #[arg(long, value_name = "LIST", default_value = "1,2,3,7,10,16")]
     scpus: List,
-    /// Cycles from one pair to the next in one SCPU: 1
+    /// Cycles from one pair to the next in one SCPU, 1 to 64: a list as above
     #[arg(long, value_name = "LIST", default_value = "1")]
     interval: List,
     /// Pairs: diamond:H, random:N, dense:N, hard:N, or a .csv or .npy file
@@ -42,8 +42,8 @@ pub struct Sweep {
     /// Write the figures as JSON too (schema contact-afu/sweep/1); - is standard output
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Synthesise each AFU too: not built yet
-    #[arg(long, hide = true)]
+    /// Count the cells of one SCPU of each AFU too, with Yosys for an ECP5
+    #[arg(long)]
     synth: bool,
     #[command(flatten)]
     machine: Machine,
@@ -54,11 +54,14 @@ pub fn run(options: &Sweep) -> Result<(), Failure> {
     let base = options.machine.config()?;
     let link = link::read(&options.link, base.clock_mhz)?;
     let pairs = pairs::load(&options.pairs, options.seed)?;
-    let task = Task { pairs: &pairs, link: &link, seed: options.seed };
+    let task = Task { pairs: &pairs, link: &link, seed: options.seed, counts: options.synth };
     let mut record = Record::new(&options.pairs, fingerprint(&pairs), &options.link, options.seed, &base);
     let bar = progress::spinner("");
     let resumed = fill(&mut record, &configs, &task, &options.out, options.force, |config| {
-        bar.set_message(format!("{} SCPUs: building the model and running it", config.scpus));
+        bar.set_message(format!(
+            "{} SCPUs, interval {}: building the model and running it",
+            config.scpus, config.interval
+        ));
     });
     bar.finish_and_clear();
     let resumed = resumed?;
@@ -81,9 +84,6 @@ pub fn run(options: &Sweep) -> Result<(), Failure> {
 impl Sweep {
     /// The AFUs, each known to be one that can be generated.
     fn configs(&self) -> Result<Vec<Config>, Failure> {
-        if self.synth {
-            return Err(Failure::new(Kind::Usage, "--synth: not built yet; a sweep simulates"));
-        }
         let base = self.machine.config()?;
         let mut configs = Vec::new();
         for &interval in &self.interval.0 {
@@ -101,6 +101,7 @@ impl From<SweepError> for Failure {
     fn from(error: SweepError) -> Self {
         match error {
             SweepError::Verify(error) => error.into(),
+            SweepError::Synth(error) => error.into(),
             SweepError::Record(RecordError::Folder(error)) => error.into(),
             SweepError::Record(_) | SweepError::Cache(_) => Self::caused(Kind::Other, error),
         }

@@ -9,7 +9,8 @@ use contact_afu::kernel::Fields;
 use contact_afu::number::Format;
 use contact_afu::operator::{Operator, Values};
 use contact_afu::pipeline::is_normal;
-use contact_afu::report::{operators, synth as report};
+use contact_afu::report::folder::replace_file;
+use contact_afu::report::{intervals, operators, synth as report};
 use contact_afu::synth::{self, Figures, SynthError, Target, Unit, synthesise};
 
 use super::failure::{Failure, Kind};
@@ -32,6 +33,12 @@ pub struct Synth {
     /// Read figures that --json wrote, and print docs/operators.md: them beside the best public cores
     #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with_all = ["operator", "kernel", "json", "check", "fit"])]
     table: Vec<PathBuf>,
+    /// Read an SCPU's figures at several intervals that --json wrote, and print docs/interval.md
+    #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with_all = ["operator", "kernel", "json", "check", "fit", "table"])]
+    intervals: Vec<PathBuf>,
+    /// With --intervals: write the picture, an SVG file
+    #[arg(long, value_name = "FILE", requires = "intervals")]
+    picture: Option<PathBuf>,
     /// Seeds of the placer; the clock is their median
     #[arg(long, value_name = "LIST", default_value = "1,2,3")]
     seeds: List,
@@ -51,6 +58,9 @@ pub struct Synth {
 pub fn run(options: &Synth) -> Result<(), Failure> {
     if !options.table.is_empty() {
         return page(&options.table);
+    }
+    if !options.intervals.is_empty() {
+        return by_interval(&options.intervals, options.picture.as_deref());
     }
     let target = match &options.one.machine.target {
         Some(word) => word.parse().map_err(|error| Failure::caused(Kind::Usage, error))?,
@@ -87,7 +97,21 @@ pub fn run(options: &Synth) -> Result<(), Failure> {
     }
 }
 
+fn by_interval(files: &[PathBuf], picture: Option<&Path>) -> Result<(), Failure> {
+    let all = figures_in(files)?;
+    if let Some(path) = picture {
+        replace_file(path, intervals::picture(&all).svg().as_bytes())?;
+    }
+    output::show(intervals::page(&all).trim_end(), false)
+}
+
 fn page(files: &[PathBuf]) -> Result<(), Failure> {
+    let page = operators::page(&figures_in(files)?).map_err(|error| Failure::caused(Kind::Other, error))?;
+    output::show(page.trim_end(), false)
+}
+
+/// The figures of all files.
+fn figures_in(files: &[PathBuf]) -> Result<Vec<Figures>, Failure> {
     let mut all: Vec<Figures> = Vec::new();
     for file in files {
         let fail = |error: &dyn std::fmt::Display| Failure::new(Kind::Usage, format!("{}: {error}", file.display()));
@@ -99,8 +123,7 @@ fn page(files: &[PathBuf]) -> Result<(), Failure> {
             all.push(serde_json::from_str(&text).map_err(|error| fail(&error))?);
         }
     }
-    let page = operators::page(&all).map_err(|error| Failure::caused(Kind::Other, error))?;
-    output::show(page.trim_end(), false)
+    Ok(all)
 }
 
 fn fit(file: &Path, target: Target, seeds: &[u32]) -> Result<(), Failure> {

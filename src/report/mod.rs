@@ -4,6 +4,7 @@
 pub mod cosim;
 pub mod doctor;
 pub mod folder;
+pub mod intervals;
 #[cfg(feature = "cosim")]
 pub mod junit;
 pub mod manifest;

@@ -14,6 +14,7 @@ use sha2::{Digest, Sha256};
 use crate::config::Config;
 use crate::kernel::PairRecord;
 use crate::link::LinkModel;
+use crate::synth::{Area, Options, SynthError, Target, Unit, synthesise};
 use crate::verify::{Bench, VerifyError, rtl_sha256};
 
 /// What every AFU of a sweep is given.
@@ -25,6 +26,8 @@ pub struct Task<'a> {
     pub link: &'a LinkModel,
     /// Seed of the link and of registers that no reset reaches.
     pub seed: u64,
+    /// Whether Yosys counts the cells of one SCPU as well.
+    pub counts: bool,
 }
 
 /// Fills `record` with a row for each of `configs`: those of an earlier run whose Verilog is still the same, and the
@@ -56,10 +59,20 @@ pub fn fill(
             record.rows = rows.iter().flatten().cloned().collect();
             record.save(folder)?;
         }
+        if let Some(row) = rows[index].take_if(|row| task.counts && row.scpu_luts.is_none()) {
+            rows[index] = Some(row.with_area(area(&configs[index])?));
+        }
     }
     record.rows = rows.into_iter().flatten().collect();
     record.save(folder)?;
     Ok(resumed)
+}
+
+/// What one SCPU takes of an ECP5.
+fn area(config: &Config) -> Result<Area, SynthError> {
+    let target = Target::Ecp5;
+    let unit = Unit::scpu_for(config, target)?;
+    Ok(synthesise(&unit, &Options { target, seeds: Vec::new() }, |_| ())?.area)
 }
 
 /// Builds the AFU of `config` from nothing, so that build times can be compared, and runs the task on it.
@@ -85,6 +98,9 @@ pub enum SweepError {
     /// No folder for its model.
     #[error("no temporary folder for models: {0}")]
     Cache(std::io::Error),
+    /// No count of cells.
+    #[error(transparent)]
+    Synth(#[from] SynthError),
     /// No model, or no end of the job.
     #[error(transparent)]
     Verify(#[from] VerifyError),

@@ -129,6 +129,9 @@ mod tests {
         Row {
             scpus,
             interval: 1,
+            scpu_luts: None,
+            scpu_ffs: None,
+            scpu_dsps: None,
             pairs: 10,
             contacts: 3,
             mismatches: 0,

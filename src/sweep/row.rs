@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::config::Config;
 use crate::report::table::{figure, grouped};
 use crate::report::tally::Tally;
+use crate::synth::Area;
 use crate::verify::Verdict;
 
 /// One AFU's figures. The columns of the CSV and the keys of the JSON are these fields.
@@ -43,6 +44,15 @@ pub struct Row {
     pub build_seconds: f64,
     /// Seconds the simulation took.
     pub simulation_seconds: f64,
+    /// Look-up tables of one SCPU on an ECP5, as Yosys counts them, where it was asked.
+    #[serde(default)]
+    pub scpu_luts: Option<u64>,
+    /// Flip-flops of one SCPU, likewise.
+    #[serde(default)]
+    pub scpu_ffs: Option<u64>,
+    /// Multiplier blocks of one SCPU, likewise.
+    #[serde(default)]
+    pub scpu_dsps: Option<u64>,
     /// SHA-256 of the Verilog.
     pub rtl_sha256: String,
 }
@@ -69,8 +79,17 @@ impl Row {
             clock_mhz: config.clock_mhz,
             build_seconds,
             simulation_seconds: tally.host_seconds,
+            scpu_luts: None,
+            scpu_ffs: None,
+            scpu_dsps: None,
             rtl_sha256: rtl_sha256.to_owned(),
         }
+    }
+
+    /// With what one SCPU takes of a device.
+    pub(super) fn with_area(self, area: Area) -> Self {
+        let Area { luts, ffs, dsps, .. } = area;
+        Self { scpu_luts: Some(luts), scpu_ffs: Some(ffs), scpu_dsps: Some(dsps), ..self }
     }
 
     /// Whether every bit was right.
@@ -79,8 +98,9 @@ impl Row {
     }
 
     /// The heading of the table for people.
-    pub(super) const HEADING: [&'static str; 10] = [
+    pub(super) const HEADING: [&'static str; 13] = [
         "SCPUs",
+        "interval",
         "pairs",
         "mismatches",
         "cycles",
@@ -88,21 +108,27 @@ impl Row {
         "M pairs/s",
         "of the link",
         "latency",
+        "LUT an SCPU",
+        "DSP an SCPU",
         "build s",
         "simulation s",
     ];
 
     /// The row of the table for people.
-    pub(super) fn cells(&self) -> [String; 10] {
+    pub(super) fn cells(&self) -> [String; 13] {
+        let count = |count: Option<u64>| count.map_or_else(|| "-".to_owned(), grouped);
         [
             self.scpus.to_string(),
+            self.interval.to_string(),
             grouped(self.pairs),
             grouped(self.mismatches),
             grouped(self.cycles),
             figure(self.cycles_per_pair, 3),
             figure(self.pairs_per_second.map(|pairs| pairs / 1e6), 1),
             self.efficiency.map_or_else(|| "-".to_owned(), |share| format!("{:.1} %", 100.0 * share)),
-            self.latency_cycles.map_or_else(|| "-".to_owned(), grouped),
+            count(self.latency_cycles),
+            count(self.scpu_luts),
+            count(self.scpu_dsps),
             format!("{:.1}", self.build_seconds),
             format!("{:.1}", self.simulation_seconds),
         ]

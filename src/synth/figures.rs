@@ -19,6 +19,9 @@ pub struct Figures {
     pub unit: String,
     /// Its arithmetic.
     pub profile: Profile,
+    /// Of an SCPU or an AFU: cycles from one pair to the next in one SCPU.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub interval: Option<u32>,
     /// The module's name in Verilog.
     pub module: String,
     /// The family.

@@ -17,6 +17,8 @@ pub struct Unit {
     pub name: String,
     /// The arithmetic.
     pub profile: Profile,
+    /// Of an SCPU or an AFU: cycles from one pair to the next in one SCPU.
+    pub interval: Option<u32>,
     /// The clock that its stages were cut for, MHz.
     pub clock_mhz: f64,
     /// Its module.
@@ -44,7 +46,7 @@ impl Unit {
     /// A pipeline that is already there.
     pub fn pipeline(name: &str, profile: &Profile, clock_mhz: f64, module: Arc<Module>) -> Self {
         let latency = Some(module.latency);
-        Self { name: name.to_owned(), profile: profile.clone(), clock_mhz, module, latency }
+        Self { name: name.to_owned(), profile: profile.clone(), interval: None, clock_mhz, module, latency }
     }
 
     /// The SCPU of a configuration: its kernel with detection of invalid pairs.
@@ -87,6 +89,7 @@ impl Unit {
         Self {
             name: format!("afu of {} SCPUs", config.scpus),
             profile: config.profile.clone(),
+            interval: Some(config.interval),
             clock_mhz: config.clock_mhz,
             module: afu.core().clone(),
             latency: None,
@@ -101,7 +104,8 @@ impl Unit {
 
     /// It and its arithmetic, for messages.
     pub fn title(&self) -> String {
-        format!("{} {}", self.name, self.profile)
+        let every = self.interval.filter(|interval| *interval > 1).map(|interval| format!(" every {interval}"));
+        format!("{} {}{}", self.name, self.profile, every.unwrap_or_default())
     }
 
     /// The Verilog of `top` and all below it, a file a module: file name and text.
