@@ -51,24 +51,41 @@ module contact_afu #(
   // Elaboration stops here when SCPUS is out of range.
   localparam [0:0] unused_SCPUS_in_range = {((SCPUS >= 32'd1) && (SCPUS <= 32'd64)){1'b1}};
 
-  // Place of the newest word in the delay lines of 100 cycles.
-  reg [6:0] delay_100;
-  wire [6:0] delay_100_next = (delay_100 == 7'd99) ? 7'd0 : (delay_100 + 7'd1);
+  // Place of the newest word in the delay lines of 16 cycles.
+  reg [3:0] delay_16;
+  wire [3:0] delay_16_next = (delay_16 == 4'd15) ? 4'd0 : (delay_16 + 4'd1);
   always @(posedge clk) begin
     if (rst) begin
-      delay_100 <= 7'd0;
+      delay_16 <= 4'd0;
     end else begin
-      delay_100 <= delay_100_next;
+      delay_16 <= delay_16_next;
     end
   end
 
   // ---- state ----
   reg [1:0] group_done;
   reg [1:0] group_answered;
-  (* ram_style = "block", ramstyle = "M20K, no_rw_check" *)
-  reg [8:0] travelled_line [0:99];
+  reg [26:0] travelled_line;
   reg [8:0] travelled;
   reg [6:0] cycles_since_reset;
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [8:0] feeder_issue_group_wide_d96_line [0:15];
+  reg [8:0] feeder_issue_group_wide_d96;
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [8:0] feeder_issue_group_wide_d80_line [0:15];
+  reg [8:0] feeder_issue_group_wide_d80;
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [8:0] feeder_issue_group_wide_d64_line [0:15];
+  reg [8:0] feeder_issue_group_wide_d64;
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [8:0] feeder_issue_group_wide_d48_line [0:15];
+  reg [8:0] feeder_issue_group_wide_d48;
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [8:0] feeder_issue_group_wide_d32_line [0:15];
+  reg [8:0] feeder_issue_group_wide_d32;
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [8:0] feeder_issue_group_wide_d16_line [0:15];
+  reg [8:0] feeder_issue_group_wide_d16;
   reg [255:0] slots_record_0_d1;
   reg slots_contact_0_d1;
   reg slots_invalid_0_d1;
@@ -131,8 +148,20 @@ module contact_afu #(
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
-    travelled_line[delay_100] <= {feeder_issue_group, feeder_issue_turn};
-    travelled <= travelled_line[delay_100_next];
+    travelled_line <= {travelled_line[17:0], feeder_issue_group_wide_d96};
+    travelled <= travelled_line[26:18];
+    feeder_issue_group_wide_d96_line[delay_16] <= feeder_issue_group_wide_d80;
+    feeder_issue_group_wide_d96 <= feeder_issue_group_wide_d96_line[delay_16_next];
+    feeder_issue_group_wide_d80_line[delay_16] <= feeder_issue_group_wide_d64;
+    feeder_issue_group_wide_d80 <= feeder_issue_group_wide_d80_line[delay_16_next];
+    feeder_issue_group_wide_d64_line[delay_16] <= feeder_issue_group_wide_d48;
+    feeder_issue_group_wide_d64 <= feeder_issue_group_wide_d64_line[delay_16_next];
+    feeder_issue_group_wide_d48_line[delay_16] <= feeder_issue_group_wide_d32;
+    feeder_issue_group_wide_d48 <= feeder_issue_group_wide_d48_line[delay_16_next];
+    feeder_issue_group_wide_d32_line[delay_16] <= feeder_issue_group_wide_d16;
+    feeder_issue_group_wide_d32 <= feeder_issue_group_wide_d32_line[delay_16_next];
+    feeder_issue_group_wide_d16_line[delay_16] <= {feeder_issue_group, feeder_issue_turn};
+    feeder_issue_group_wide_d16 <= feeder_issue_group_wide_d16_line[delay_16_next];
     slots_record_0_d1 <= slots_record_0;
     slots_contact_0_d1 <= slots_contact_0;
     slots_invalid_0_d1 <= slots_invalid_0;

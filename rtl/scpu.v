@@ -15,21 +15,15 @@ module scpu (
   output wire         invalid_pair
 );
 
-  // Place of the newest word in the delay lines of 100 cycles.
-  reg [6:0] delay_100;
-  wire [6:0] delay_100_next = (delay_100 == 7'd99) ? 7'd0 : (delay_100 + 7'd1);
-  always @(posedge clk) begin
-    if (rst) begin
-      delay_100 <= 7'd0;
-    end else begin
-      delay_100 <= delay_100_next;
-    end
-  end
-
   // ---- state ----
-  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg invalid_out_line [0:99];
+  reg [50:0] invalid_out_line;
   reg invalid_out;
+  reg [14:0] invalid_d48_line;
+  reg invalid_d48;
+  reg [14:0] invalid_d32_line;
+  reg invalid_d32;
+  reg [14:0] invalid_d16_line;
+  reg invalid_d16;
 
   // ---- outputs of instances ----
   wire hit;
@@ -68,8 +62,14 @@ module scpu (
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
-    invalid_out_line[delay_100] <= invalid;
-    invalid_out <= invalid_out_line[delay_100_next];
+    invalid_out_line <= {invalid_out_line[49:0], invalid_d48};
+    invalid_out <= invalid_out_line[50];
+    invalid_d48_line <= {invalid_d48_line[13:0], invalid_d32};
+    invalid_d48 <= invalid_d48_line[14];
+    invalid_d32_line <= {invalid_d32_line[13:0], invalid_d16};
+    invalid_d32 <= invalid_d32_line[14];
+    invalid_d16_line <= {invalid_d16_line[13:0], invalid};
+    invalid_d16 <= invalid_d16_line[14];
   end
 
   sphere_kernel kernel (

@@ -31,6 +31,17 @@ module sphere_kernel (
   output reg  [31:0] depth
 );
 
+  // Place of the newest word in the delay lines of 4 cycles.
+  reg [1:0] delay_4;
+  wire [1:0] delay_4_next = (delay_4 == 2'd3) ? 2'd0 : (delay_4 + 2'd1);
+  always @(posedge clk) begin
+    if (rst) begin
+      delay_4 <= 2'd0;
+    end else begin
+      delay_4 <= delay_4_next;
+    end
+  end
+
   // Place of the newest word in the delay lines of 5 cycles.
   reg [2:0] delay_5;
   wire [2:0] delay_5_next = (delay_5 == 3'd4) ? 3'd0 : (delay_5 + 3'd1);
@@ -105,17 +116,6 @@ module sphere_kernel (
       delay_16 <= 4'd0;
     end else begin
       delay_16 <= delay_16_next;
-    end
-  end
-
-  // Place of the newest word in the delay lines of 84 cycles.
-  reg [6:0] delay_84;
-  wire [6:0] delay_84_next = (delay_84 == 7'd83) ? 7'd0 : (delay_84 + 7'd1);
-  always @(posedge clk) begin
-    if (rst) begin
-      delay_84 <= 7'd0;
-    end else begin
-      delay_84 <= delay_84_next;
     end
   end
 
@@ -235,6 +235,25 @@ module sphere_kernel (
     .result (dx_squared_plus_dy_squared)
   );
 
+  // ---- stage 19 ----
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [33:0] x1_e10f23z_s19_line [0:15];
+  reg [33:0] x1_e10f23z_s19;
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [33:0] y1_e10f23z_s19_line [0:15];
+  reg [33:0] y1_e10f23z_s19;
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [33:0] z1_e10f23z_s19_line [0:15];
+  reg [33:0] z1_e10f23z_s19;
+  always @(posedge clk) begin
+    x1_e10f23z_s19_line[delay_16] <= x1_e10f23z;
+    x1_e10f23z_s19 <= x1_e10f23z_s19_line[delay_16_next];
+    y1_e10f23z_s19_line[delay_16] <= y1_e10f23z;
+    y1_e10f23z_s19 <= y1_e10f23z_s19_line[delay_16_next];
+    z1_e10f23z_s19_line[delay_16] <= z1_e10f23z;
+    z1_e10f23z_s19 <= z1_e10f23z_s19_line[delay_16_next];
+  end
+
   // ---- stage 21 ----
   (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
   reg [33:0] dz_squared_s21_line [0:4];
@@ -291,6 +310,25 @@ module sphere_kernel (
     dy_s27 <= dy_s27_line[delay_16_next];
     dz_s27_line[delay_16] <= dz;
     dz_s27 <= dz_s27_line[delay_16_next];
+  end
+
+  // ---- stage 35 ----
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [33:0] x1_e10f23z_s35_line [0:15];
+  reg [33:0] x1_e10f23z_s35;
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [33:0] y1_e10f23z_s35_line [0:15];
+  reg [33:0] y1_e10f23z_s35;
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [33:0] z1_e10f23z_s35_line [0:15];
+  reg [33:0] z1_e10f23z_s35;
+  always @(posedge clk) begin
+    x1_e10f23z_s35_line[delay_16] <= x1_e10f23z_s19;
+    x1_e10f23z_s35 <= x1_e10f23z_s35_line[delay_16_next];
+    y1_e10f23z_s35_line[delay_16] <= y1_e10f23z_s19;
+    y1_e10f23z_s35 <= y1_e10f23z_s35_line[delay_16_next];
+    z1_e10f23z_s35_line[delay_16] <= z1_e10f23z_s19;
+    z1_e10f23z_s35 <= z1_e10f23z_s35_line[delay_16_next];
   end
 
   // ---- stage 40 ----
@@ -378,9 +416,24 @@ module sphere_kernel (
   // ---- stage 51 ----
   reg [49:0] valid_s51_line;
   reg valid_s51;
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [33:0] x1_e10f23z_s51_line [0:15];
+  reg [33:0] x1_e10f23z_s51;
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [33:0] y1_e10f23z_s51_line [0:15];
+  reg [33:0] y1_e10f23z_s51;
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [33:0] z1_e10f23z_s51_line [0:15];
+  reg [33:0] z1_e10f23z_s51;
   always @(posedge clk) begin
     valid_s51_line <= {valid_s51_line[48:0], valid};
     valid_s51 <= valid_s51_line[49];
+    x1_e10f23z_s51_line[delay_16] <= x1_e10f23z_s35;
+    x1_e10f23z_s51 <= x1_e10f23z_s51_line[delay_16_next];
+    y1_e10f23z_s51_line[delay_16] <= y1_e10f23z_s35;
+    y1_e10f23z_s51 <= y1_e10f23z_s51_line[delay_16_next];
+    z1_e10f23z_s51_line[delay_16] <= z1_e10f23z_s35;
+    z1_e10f23z_s51 <= z1_e10f23z_s51_line[delay_16_next];
   end
   wire hit_early = valid_s51 & ~distance_above_radius_sum;
   wire grazing_early = hit_early & distance_at_most_0;
@@ -426,6 +479,25 @@ module sphere_kernel (
     .a      (depth_e10f23z_s59),
     .result (depth_early)
   );
+
+  // ---- stage 67 ----
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [33:0] x1_e10f23z_s67_line [0:15];
+  reg [33:0] x1_e10f23z_s67;
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [33:0] y1_e10f23z_s67_line [0:15];
+  reg [33:0] y1_e10f23z_s67;
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [33:0] z1_e10f23z_s67_line [0:15];
+  reg [33:0] z1_e10f23z_s67;
+  always @(posedge clk) begin
+    x1_e10f23z_s67_line[delay_16] <= x1_e10f23z_s51;
+    x1_e10f23z_s67 <= x1_e10f23z_s67_line[delay_16_next];
+    y1_e10f23z_s67_line[delay_16] <= y1_e10f23z_s51;
+    y1_e10f23z_s67 <= y1_e10f23z_s67_line[delay_16_next];
+    z1_e10f23z_s67_line[delay_16] <= z1_e10f23z_s51;
+    z1_e10f23z_s67 <= z1_e10f23z_s67_line[delay_16_next];
+  end
 
   // ---- stage 75 ----
   (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
@@ -555,23 +627,42 @@ module sphere_kernel (
     .result (normal_z_early)
   );
 
+  // ---- stage 83 ----
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [33:0] x1_e10f23z_s83_line [0:15];
+  reg [33:0] x1_e10f23z_s83;
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [33:0] y1_e10f23z_s83_line [0:15];
+  reg [33:0] y1_e10f23z_s83;
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [33:0] z1_e10f23z_s83_line [0:15];
+  reg [33:0] z1_e10f23z_s83;
+  always @(posedge clk) begin
+    x1_e10f23z_s83_line[delay_16] <= x1_e10f23z_s67;
+    x1_e10f23z_s83 <= x1_e10f23z_s83_line[delay_16_next];
+    y1_e10f23z_s83_line[delay_16] <= y1_e10f23z_s67;
+    y1_e10f23z_s83 <= y1_e10f23z_s83_line[delay_16_next];
+    z1_e10f23z_s83_line[delay_16] <= z1_e10f23z_s67;
+    z1_e10f23z_s83 <= z1_e10f23z_s83_line[delay_16_next];
+  end
+
   // ---- stage 87 ----
-  (* ram_style = "block", ramstyle = "M20K, no_rw_check" *)
-  reg [33:0] x1_e10f23z_s87_line [0:83];
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [33:0] x1_e10f23z_s87_line [0:3];
   reg [33:0] x1_e10f23z_s87;
-  (* ram_style = "block", ramstyle = "M20K, no_rw_check" *)
-  reg [33:0] y1_e10f23z_s87_line [0:83];
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [33:0] y1_e10f23z_s87_line [0:3];
   reg [33:0] y1_e10f23z_s87;
-  (* ram_style = "block", ramstyle = "M20K, no_rw_check" *)
-  reg [33:0] z1_e10f23z_s87_line [0:83];
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [33:0] z1_e10f23z_s87_line [0:3];
   reg [33:0] z1_e10f23z_s87;
   always @(posedge clk) begin
-    x1_e10f23z_s87_line[delay_84] <= x1_e10f23z;
-    x1_e10f23z_s87 <= x1_e10f23z_s87_line[delay_84_next];
-    y1_e10f23z_s87_line[delay_84] <= y1_e10f23z;
-    y1_e10f23z_s87 <= y1_e10f23z_s87_line[delay_84_next];
-    z1_e10f23z_s87_line[delay_84] <= z1_e10f23z;
-    z1_e10f23z_s87 <= z1_e10f23z_s87_line[delay_84_next];
+    x1_e10f23z_s87_line[delay_4] <= x1_e10f23z_s83;
+    x1_e10f23z_s87 <= x1_e10f23z_s87_line[delay_4_next];
+    y1_e10f23z_s87_line[delay_4] <= y1_e10f23z_s83;
+    y1_e10f23z_s87 <= y1_e10f23z_s87_line[delay_4_next];
+    z1_e10f23z_s87_line[delay_4] <= z1_e10f23z_s83;
+    z1_e10f23z_s87 <= z1_e10f23z_s87_line[delay_4_next];
   end
   wire [33:0] x1_e10f23z_plus_nx_times_offset;
   fp_add_e10f23z_normal add_x1_e10f23z_plus_nx_times_offset (

@@ -114,12 +114,7 @@ pub struct One {
 }
 
 impl One {
-    /// The configuration, known to be one that can be generated.
-    pub fn config(&self) -> Result<Config, Failure> {
-        self.config_over("ideal")
-    }
-
-    /// The same, with `auto` for that link: its name or file.
+    /// The configuration, known to be one that can be generated, with `auto` for that link: its name or file.
     pub fn config_over(&self, link: &str) -> Result<Config, Failure> {
         self.with(self.machine.config()?, link)
     }

@@ -234,6 +234,9 @@ pub(super) const DEEPEST_DISTRIBUTED: u32 = 64;
 /// One primitive of distributed memory is so deep on every family (ECP5 16, 7 series and Cyclone V 32). A longer delay in
 /// distributed memory is several, one behind the other: so no choice of primitives lies before the register.
 pub(super) const DISTRIBUTED_DEPTH: u32 = 16;
+/// A longer delay is one memory, a block RAM. Not sooner: on ECP5 a word takes 5.2 ns out of a block RAM without its own
+/// output register, which synthesis does not find, and what follows a delay would have to be as slow.
+pub(super) const LONGEST_DISTRIBUTED_DELAY: u32 = 256;
 
 /// Whether a delay of a value of `width` bits is a memory with a pointer.
 pub(super) fn is_memory_delay(cycles: u32, width: u32) -> bool {

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use super::graph::Inner;
 use super::module::{
-    DEEPEST_DISTRIBUTED, DISTRIBUTED_DEPTH, LONGEST_REGISTER_DELAY, Node, NodeId, Op, is_memory_delay,
+    DISTRIBUTED_DEPTH, LONGEST_DISTRIBUTED_DELAY, LONGEST_REGISTER_DELAY, Node, NodeId, Op, is_memory_delay,
 };
 
 /// Makes every live delay one of a value that is not itself delayed, so that what merely led to it can go.
@@ -84,7 +84,7 @@ fn step(cycles: u32, width: u32) -> Option<u32> {
     match cycles {
         0 | 1 => None,
         2..=LONGEST_REGISTER_DELAY => Some(1),
-        _ if cycles > DEEPEST_DISTRIBUTED || !is_memory_delay(cycles, width) => None,
+        _ if cycles > LONGEST_DISTRIBUTED_DELAY || !is_memory_delay(cycles, width) => None,
         _ => Some(DISTRIBUTED_DEPTH).filter(|depth| cycles > *depth),
     }
 }

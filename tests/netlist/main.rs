@@ -1,9 +1,11 @@
 //! The same bits from a second simulator, with four states, and from the netlist after synthesis: operators and SCPUs as
 //! they are printed, as Yosys makes gates of them, and as cells of an ECP5, all in Icarus, against the twins and the
-//! reference kernel. An unknown bit in an output is a difference.
+//! reference kernel. An unknown bit in an output is a difference. SCPUs of full width after synthesis run in Verilator,
+//! since Icarus takes hours to compile them.
 
 mod simulate;
 mod synthesise;
+mod verilated;
 
 use std::sync::Arc;
 
@@ -121,15 +123,25 @@ fn a_spoilt_netlist_is_found_out() {
 }
 
 #[test]
-#[ignore = "half an hour: SCPUs of full width through Yosys"]
+#[ignore = "minutes: SCPUs of full width through Yosys and Verilator"]
 fn every_profile_after_synthesis() {
     let corpus = concat!(env!("CARGO_MANIFEST_DIR"), "/tb/corpus/hard.csv");
     let mut pairs = pairs::read_pairs(corpus.as_ref()).expect("the corpus");
-    pairs.extend(mixed(600));
+    pairs.extend(mixed(6000));
     for profile in ["wide", "paper", "exact"] {
+        let profile: Profile = profile.parse().expect("a profile");
+        let config = Config { scpus: 1, profile, shell: Shell::Line, ..Config::default() };
+        let unit = Unit::scpu(&config).expect("it can be generated");
+        let wanted = config.profile.reference(config.contact).run_all(&pairs);
         for form in [As::Gates, As::Ecp5] {
-            scpu(profile, "hit,depth,normal,position", &[form], &pairs);
-            println!("{profile}, {form:?}: {} pairs", pairs.len());
+            let files = verilog(&unit.module, form);
+            let found = verilated::scpu(&unit.module.name, &files, unit.latency.expect("a pipeline"), &pairs);
+            for ((pair, found), wanted) in pairs.iter().zip(&found).zip(&wanted) {
+                let flags = (wanted.is_contact(), !pair.is_valid());
+                assert_eq!(*found, (wanted.0, flags), "{}, {form:?}, of {pair:x?}", unit.title());
+            }
+            assert_eq!(found.len(), pairs.len());
+            println!("{}, {form:?}: {} pairs", unit.title(), pairs.len());
         }
     }
 }
