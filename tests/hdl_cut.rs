@@ -91,6 +91,22 @@ fn a_product_of_one_block_has_its_registers_inside() {
     }
 }
 
+/// Values may share a name, as those of four squares do; instances that come of them have each their own.
+#[test]
+fn blocks_of_one_name_are_instances_of_two() {
+    let g = Graph::new("twice");
+    let (a, b) = (g.input("a", 12), g.input("b", 12));
+    g.output("y", (a * a).named("tile") ^ (b * b).named("tile"));
+    let pipeline = cut(&g.finish().unwrap(), &simple().with_registered_multipliers(None), period(50.0)).unwrap();
+    let names: Vec<_> = pipeline.instances.iter().map(|instance| instance.name.as_str()).collect();
+    assert_eq!(names, ["tile_block", "tile_block_1"]);
+    let mut evaluator = Evaluator::new(&pipeline, &[]).unwrap();
+    evaluator.set("a", 30);
+    evaluator.set("b", 50);
+    (0..pipeline.latency).for_each(|_| evaluator.step());
+    assert_eq!(evaluator.get("y"), 900 ^ 2500);
+}
+
 #[test]
 fn outputs_are_registered_and_aligned_and_constants_never_wait() {
     let g = Graph::new("aligned");

@@ -349,11 +349,11 @@ fn cost(
                 missing = Some(format!("place and route: {tool}"));
                 None
             }
-            // One that does not route leaves the others their points.
-            Err(error @ SynthError::Failed { .. }) if !seeds.is_empty() => {
+            // One that a program refuses leaves the others their figures.
+            Err(error @ SynthError::Failed { .. }) => {
+                let what = if seeds.is_empty() { "area and clock" } else { "place and route" };
                 let text = error.to_string();
-                missing =
-                    Some(format!("place and route of {}: {}", name(config), text.lines().next().unwrap_or_default()));
+                missing = Some(format!("{what} of {}: {}", name(config), text.lines().next().unwrap_or_default()));
                 None
             }
             Err(error) => return Err(error.into()),

@@ -33,7 +33,11 @@ pub(super) fn instantiate_sub_add(inner: &mut Inner, id: NodeId, primitive: Prim
 fn replace(inner: &mut Inner, id: NodeId, module: &Arc<Module>, inputs: &[(&str, NodeId)], what: &str) {
     let number = inner.instances.len();
     let node = &inner.nodes[id.index()];
-    let name = node.name.as_ref().map_or_else(|| format!("{what}_{number}"), |name| format!("{name}_block"));
+    let mut name = node.name.as_ref().map_or_else(|| format!("{what}_{number}"), |name| format!("{name}_block"));
+    // Values may share a name, instances may not.
+    if inner.instances.iter().any(|instance| instance.name == name) {
+        name = format!("{name}_{number}");
+    }
     let value = |port: &str| inputs.iter().find(|(name, _)| *name == port).map(|(_, value)| *value);
     let inputs = module.ports.iter().map(|port| value(&port.name)).collect();
     inner.instances.push(Instance { name, inputs, count: InstanceCount::One, module: module.clone() });
