@@ -17,7 +17,7 @@ pub fn bar(title: &str, unit: &str, length: u64) -> ProgressBar {
 }
 
 /// A bar over work whose length is guessed, and so is told only as a share.
-#[cfg(all(feature = "cosim", feature = "ode"))]
+#[cfg(feature = "cosim")]
 pub fn share(title: &str) -> ProgressBar {
     let bar = ProgressBar::new(0);
     if let Ok(style) = ProgressStyle::with_template("{prefix} [{bar:30}] {percent} %, {elapsed}, about {eta} left") {
