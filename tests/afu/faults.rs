@@ -41,10 +41,10 @@ fn a_wrong_gate_a_wrong_rounding_and_a_flipped_bit_are_mismatches() {
     let config = config(2, "bfloat", "depth");
     let right = verdict(&config, "fp_square_e8f7.v", "wire round_up = ", str::to_owned);
     assert!(right.is_good(), "without a fault: {:?} {:?}", right.mismatches.first(), right.unmet);
-    // Truncated squares; a gate of another kind; the lowest bit of what a subtraction adds.
+    // Truncated squares; a gate of another kind; the lowest bit of what a subtraction takes away.
     let truncated = verdict(&config, "fp_square_e8f7.v", "wire round_up = ", |_| "1'b0".to_owned());
     let gate = verdict(&config, "fp_sub_e8f7.v", "wire effective_subtraction = ", |value| value.replace('^', "|"));
-    let flipped = verdict(&config, "fp_sub_e8f7.v", " complemented = ", |value| format!("({value}) ^ 1"));
+    let flipped = verdict(&config, "fp_sub_e8f7.v", " addend = ", |value| format!("({value}) ^ 1"));
     for (what, verdict) in [("truncated", truncated), ("gate", gate), ("flipped", flipped)] {
         assert!(!verdict.mismatches.is_empty() && !verdict.is_good(), "{what}");
         // And nothing else: most pairs don't meet the fault, and what they give is right.

@@ -13,7 +13,7 @@ const SCPUS: u32 = 3;
 
 /// Early cycles one by one, later ones with growing distance: the whole life of a job of some hundred cycles.
 fn moments() -> impl Iterator<Item = u64> {
-    (0..12).chain((12..100).step_by(7)).chain((100..700).step_by(53))
+    (0..12).chain((12..100).step_by(7)).chain((100..900).step_by(53))
 }
 
 fn afu(seed: u64) -> Instance {
