@@ -22,6 +22,17 @@ module top #(
   // Elaboration stops here when SCPUS is out of range.
   localparam [0:0] unused_SCPUS_in_range = {((SCPUS >= 32'd1) && (SCPUS <= 32'd64)){1'b1}};
 
+  // Place of the newest word in the delay lines of 6 cycles.
+  reg [2:0] delay_6;
+  wire [2:0] delay_6_next = (delay_6 == 3'd5) ? 3'd0 : (delay_6 + 3'd1);
+  always @(posedge clk) begin
+    if (rst) begin
+      delay_6 <= 3'd0;
+    end else begin
+      delay_6 <= delay_6_next;
+    end
+  end
+
   // Place of the newest word in the delay lines of 9 cycles.
   reg [3:0] delay_9;
   wire [3:0] delay_9_next = (delay_9 == 4'd8) ? 4'd0 : (delay_9 + 4'd1);
@@ -33,14 +44,14 @@ module top #(
     end
   end
 
-  // Place of the newest word in the delay lines of 70 cycles.
-  reg [6:0] delay_70;
-  wire [6:0] delay_70_next = (delay_70 == 7'd69) ? 7'd0 : (delay_70 + 7'd1);
+  // Place of the newest word in the delay lines of 16 cycles.
+  reg [3:0] delay_16;
+  wire [3:0] delay_16_next = (delay_16 == 4'd15) ? 4'd0 : (delay_16 + 4'd1);
   always @(posedge clk) begin
     if (rst) begin
-      delay_70 <= 7'd0;
+      delay_16 <= 4'd0;
     end else begin
-      delay_70 <= delay_70_next;
+      delay_16 <= delay_16_next;
     end
   end
 
@@ -52,8 +63,20 @@ module top #(
   reg [3:0] position;
   (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
   reg [11:0] late_line [0:8];
-  (* ram_style = "block", ramstyle = "M20K, no_rw_check" *)
-  reg [11:0] later_line [0:69];
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [11:0] later_line [0:5];
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [11:0] data_d73_line [0:15];
+  reg [11:0] data_d73;
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [11:0] data_d57_line [0:15];
+  reg [11:0] data_d57;
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [11:0] data_d41_line [0:15];
+  reg [11:0] data_d41;
+  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
+  reg [11:0] data_d25_line [0:15];
+  reg [11:0] data_d25;
 
   // ---- outputs of instances ----
   wire [SCPUS*7-1:0] result_all;
@@ -67,8 +90,16 @@ module top #(
     stored <= store[position];
     late_line[delay_9] <= data;
     late <= late_line[delay_9_next];
-    later_line[delay_70] <= late;
-    later <= later_line[delay_70_next];
+    later_line[delay_6] <= data_d73;
+    later <= later_line[delay_6_next];
+    data_d73_line[delay_16] <= data_d57;
+    data_d73 <= data_d73_line[delay_16_next];
+    data_d57_line[delay_16] <= data_d41;
+    data_d57 <= data_d57_line[delay_16_next];
+    data_d41_line[delay_16] <= data_d25;
+    data_d41 <= data_d41_line[delay_16_next];
+    data_d25_line[delay_16] <= late;
+    data_d25 <= data_d25_line[delay_16_next];
     if (enable) store[position] <= data;
   end
   always @(posedge clk) begin
