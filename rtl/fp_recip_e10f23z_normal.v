@@ -391,9 +391,8 @@ module fp_recip_e10f23z_normal (
     a_significand_wide_s23 <= a_significand_wide_s22;
   end
   wire [24:0] partial_25 = {partial_24_23_0_s23, 1'b0} + (a_significand_wide_s23 ^ {25{~partial_24_24_24_s23}}) + {24'd0, ~partial_24_24_24_s23};
-  wire [24:0] quotient = ~{1'b0, partial_2_24_24_s23, partial_3_24_24_s23, partial_4_24_24_s23, partial_5_24_24_s23, partial_6_24_24_s23, partial_7_24_24_s23, partial_8_24_24_s23, partial_9_24_24_s23, partial_10_24_24_s23, partial_11_24_24_s23, partial_12_24_24_s23, partial_13_24_24_s23, partial_14_24_24_s23, partial_15_24_24_s23, partial_16_24_24_s23, partial_17_24_24_s23, partial_18_24_24_s23, partial_19_24_24_s23, partial_20_24_24_s23, partial_21_24_24_s23, partial_22_24_24_s23, partial_23_24_24_s23, partial_24_24_24_s23, partial_25[24]};
+  wire [23:0] quotient = ~{partial_2_24_24_s23, partial_3_24_24_s23, partial_4_24_24_s23, partial_5_24_24_s23, partial_6_24_24_s23, partial_7_24_24_s23, partial_8_24_24_s23, partial_9_24_24_s23, partial_10_24_24_s23, partial_11_24_24_s23, partial_12_24_24_s23, partial_13_24_24_s23, partial_14_24_24_s23, partial_15_24_24_s23, partial_16_24_24_s23, partial_17_24_24_s23, partial_18_24_24_s23, partial_19_24_24_s23, partial_20_24_24_s23, partial_21_24_24_s23, partial_22_24_24_s23, partial_23_24_24_s23, partial_24_24_24_s23, partial_25[24]};
   wire guard = quotient[0];
-  wire [23:0] significand = quotient[24:1];
 
   // ---- stage 24 ----
   reg [22:0] a_sign_s24_line;
@@ -401,17 +400,17 @@ module fp_recip_e10f23z_normal (
   (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
   reg [9:0] quotient_exponent_9_0_s24_line [0:7];
   reg [9:0] quotient_exponent_9_0_s24;
-  reg [22:0] significand_22_0_s24;
+  reg [22:0] quotient_23_1_s24;
   reg guard_s24;
   always @(posedge clk) begin
     a_sign_s24_line <= {a_sign_s24_line[21:0], a_sign};
     a_sign_s24 <= a_sign_s24_line[22];
     quotient_exponent_9_0_s24_line[delay_8] <= quotient_exponent_9_0_s16;
     quotient_exponent_9_0_s24 <= quotient_exponent_9_0_s24_line[delay_8_next];
-    significand_22_0_s24 <= significand[22:0];
+    quotient_23_1_s24 <= quotient[23:1];
     guard_s24 <= guard;
   end
-  wire [32:0] truncated = {quotient_exponent_9_0_s24, significand_22_0_s24};
+  wire [32:0] truncated = {quotient_exponent_9_0_s24, quotient_23_1_s24};
   wire [32:0] rounded = truncated + {32'd0, guard_s24};
 
   // ---- registered outputs ----
@@ -420,7 +419,7 @@ module fp_recip_e10f23z_normal (
   end
 
   // Bits that nothing needs.
-  wire unused = &{1'b0, partial_25[23:0], significand[23], quotient_exponent[10]};
+  wire unused = &{1'b0, partial_25[23:0], quotient_exponent[10]};
 
 endmodule
 

@@ -55,7 +55,7 @@ pub struct DelayModel {
     /// The primitive a multiplier block with registers is written as; without one synthesis has to find it.
     #[serde(default)]
     pub multiplier_primitive: Option<Primitive>,
-    /// The primitive that sums which may be differences are written as, where synthesis does not fold the complement
+    /// The primitive that differences which may be sums are written as, where synthesis does not fold the complement
     /// into the carry chain by itself.
     #[serde(default)]
     pub adder_primitive: Option<Primitive>,
@@ -81,9 +81,7 @@ impl DelayModel {
             fanout: 0.13,
             carry: 0.696,
             carry_bit: 0.035,
-
             carry_out: 0.691,
-
             multiplier: 4.454,
             ..Self::guess()
         }
@@ -189,7 +187,8 @@ impl DelayModel {
             Op::Not if is_chained(module, node.operands[0]) => self.carry_out,
             Op::Not | Op::Wire | Op::Slice { .. } | Op::Concat => 0.0,
             Op::And | Op::Or | Op::Xor => {
-                let repeated = [0, 1].into_iter().filter(|&position| is_repeated(module, node.operands[position]));
+                let repeated =
+                    [0, 1].into_iter().filter(|&position| module.repeated_bit(node.operands[position]).is_some());
                 self.gate + repeated.map(load).fold(0.0, f64::max)
             }
             Op::Mux if constant(1) || constant(2) => self.gate + load(0),
@@ -253,8 +252,7 @@ impl DelayModel {
 fn chooser(module: &Module, id: NodeId) -> NodeId {
     match module.node(id).op {
         Op::Not => chooser(module, module.node(id).operands[0]),
-        Op::Concat if is_repeated(module, id) => chooser(module, module.node(id).operands[0]),
-        _ => id,
+        _ => module.repeated_bit(id).map_or(id, |bit| chooser(module, bit)),
     }
 }
 
@@ -267,12 +265,6 @@ fn is_chained(module: &Module, id: NodeId) -> bool {
     }
 }
 
-/// Whether a value is one bit, repeated.
-fn is_repeated(module: &Module, id: NodeId) -> bool {
-    let node = module.node(id);
-    node.op == Op::Concat && node.operands.iter().all(|part| *part == node.operands[0])
-}
-
 /// How many places each value chooses in, by node: bits of the choices, of the gates and of the differences or sums that
 /// it is the condition of.
 fn loads(module: &Module) -> Vec<u32> {
@@ -281,7 +273,7 @@ fn loads(module: &Module) -> Vec<u32> {
         let chooses = |position: usize| match node.op {
             Op::Mux => position == 0,
             Op::SubAdd => position == 2,
-            Op::And | Op::Or | Op::Xor => is_repeated(module, node.operands[position]),
+            Op::And | Op::Or | Op::Xor => module.repeated_bit(node.operands[position]).is_some(),
             _ => false,
         };
         for position in (0..node.operands.len()).filter(|&position| chooses(position)) {

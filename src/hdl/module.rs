@@ -229,8 +229,6 @@ pub const LONGEST_REGISTER_DELAY: u32 = 3;
 const NARROWEST_MEMORY_DELAY: u32 = 12;
 /// But a shift register never has more bits than this.
 const MOST_SHIFT_REGISTER_BITS: u32 = 64;
-/// A memory deeper than this is block RAM.
-pub(super) const DEEPEST_DISTRIBUTED: u32 = 64;
 /// One primitive of distributed memory is so deep on every family (ECP5 16, 7 series and Cyclone V 32). A longer delay in
 /// distributed memory is several, one behind the other: so no choice of primitives lies before the register.
 pub(super) const DISTRIBUTED_DEPTH: u32 = 16;
@@ -248,6 +246,13 @@ impl Module {
     /// The node behind an id.
     pub fn node(&self, id: NodeId) -> &Node {
         &self.nodes[id.index()]
+    }
+
+    /// The bit that a value is copies of, side by side.
+    pub(super) fn repeated_bit(&self, id: NodeId) -> Option<NodeId> {
+        let node = self.node(id);
+        let first = *node.operands.first().filter(|_| node.op == Op::Concat)?;
+        (self.node(first).width == 1 && node.operands.iter().all(|part| *part == first)).then_some(first)
     }
 
     /// The port of that name and its index.

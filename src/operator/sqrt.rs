@@ -6,39 +6,47 @@ use crate::hdl::Signal;
 
 /// √a. √−0 is −0; of any other negative number it is NaN.
 pub fn sqrt(a: Signal<'_>, domain: Domain) -> Signal<'_> {
-    let graph = a.graph();
     let a = Operand::unpack(a, domain, "a");
-    let (a_exponent, significand) = a.normalised();
+    let (root, is_inexact) = root(radicand(&a), digits(domain));
+    rounded(domain, a, root, is_inexact)
+}
 
-    // The bias is odd, so an even biased exponent stands for an odd one, of which one goes into the radicand.
-    let precision = domain.significand_bits();
-    let exponent_is_odd = (!a_exponent.bits(1)).named("exponent_is_odd");
-    let radicand = exponent_is_odd.select(significand.append_zeros(1), significand.extend(precision + 1));
-    let radicand = radicand.named("radicand");
+/// The significand of the number whose root is taken, with two bits before the point. The bias is odd, so an even biased
+/// exponent stands for an odd one, of which one goes into the radicand.
+pub fn radicand<'g>(a: &Operand<'g>) -> Signal<'g> {
+    let (exponent, significand) = a.normalised();
+    let is_odd = (!exponent.bits(1)).named("exponent_is_odd");
+    is_odd.select(significand.append_zeros(1), significand.extend(significand.width() + 1)).named("radicand")
+}
+
+/// Digits of the root. Toward zero nobody asks for what is below the significand.
+pub fn digits(domain: Domain) -> u32 {
+    domain.significand_bits() + u32::from(domain.rounding() != Rounding::TowardZero)
+}
+
+/// The root's word, of its digits and whether anything is left.
+pub fn rounded<'g>(domain: Domain, a: Operand<'g>, root: Signal<'g>, is_inexact: Signal<'g>) -> Signal<'g> {
+    let (a_exponent, _) = a.normalised();
     let exponent = a_exponent.offset(i64::from(domain.bias())).half().named("root_exponent");
-
-    if domain.rounding() == Rounding::TowardZero {
-        // Nobody asks for what is below the significand.
-        let (root, _) = root(radicand, precision);
-        let zero = graph.constant(1, 0);
-        let significand = root.named("significand");
-        return finish(domain, a, Unrounded { exponent, significand, guard: zero, sticky: zero, doubled: None });
-    }
-    let (root, is_inexact) = root(radicand, precision + 1);
-    // A root of p + 1 bits exactly would need a radicand of more than 2p bits, so a normal result is never a tie,
-    // and only a subnormal one asks whether anything is left.
-    let sticky = if exponent.min() > 0 { graph.constant(1, 1) } else { is_inexact.named("sticky") };
-    let unrounded = Unrounded {
-        exponent,
-        significand: root.drop_low(1).named("significand"),
-        guard: root.bit(0).named("guard"),
-        sticky,
-        doubled: None,
+    let [zero, one] = [0, 1].map(|bit| root.graph().constant(1, bit));
+    let unrounded = if domain.rounding() == Rounding::TowardZero {
+        Unrounded { exponent, significand: root.named("significand"), guard: zero, sticky: zero, doubled: None }
+    } else {
+        // A root of p + 1 bits exactly would need a radicand of more than 2p bits, so a normal result is never a tie,
+        // and only a subnormal one asks whether anything is left.
+        let sticky = if exponent.min() > 0 { one } else { is_inexact.named("sticky") };
+        Unrounded {
+            exponent,
+            significand: root.drop_low(1).named("significand"),
+            guard: root.bit(0).named("guard"),
+            sticky,
+            doubled: None,
+        }
     };
     finish(domain, a, unrounded)
 }
 
-/// The root's word.
+/// A rounded root's word.
 pub fn finish<'g>(domain: Domain, a: Operand<'g>, unrounded: Unrounded<'g>) -> Signal<'g> {
     let negative = a.sign & !a.is_zero();
     let special = Special { nan: a.is_nan() | negative, infinity: a.is_infinity(), zero: a.is_zero() };

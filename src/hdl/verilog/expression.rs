@@ -97,13 +97,8 @@ impl Expressions<'_> {
     /// `x & {8{c}}` reads better as a choice.
     fn gated(&self, node: &Node) -> Option<String> {
         let [value, mask] = node.operands[..] else { return None };
-        let mask_node = self.module.node(mask);
-        let repeated = mask_node.op == Op::Concat
-            && self.names.declared[mask.index()].is_none()
-            && mask_node.operands.iter().all(|o| *o == mask_node.operands[0])
-            && self.module.node(mask_node.operands[0]).width == 1;
-        let condition = mask_node.operands.first().filter(|_| repeated)?;
-        Some(format!("{} ? {} : {}", self.term(*condition), self.term(value), constant(node.width, 0)))
+        let condition = self.module.repeated_bit(mask).filter(|_| self.names.declared[mask.index()].is_none())?;
+        Some(format!("{} ? {} : {}", self.term(condition), self.term(value), constant(node.width, 0)))
     }
 
     /// The complement and a carry in, as carry chains have it: no tool makes two chains and a choice of that.

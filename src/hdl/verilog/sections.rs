@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::super::module::{DEEPEST_DISTRIBUTED, Instance, InstanceCount, Memory, Module, NodeId, Op};
+use super::super::module::{Instance, InstanceCount, Memory, Module, NodeId, Op};
 use super::super::state::address_width;
 use super::Style;
 use super::delay::DelayKind;
@@ -11,6 +11,8 @@ use super::lookup::lookup;
 use super::names::stage;
 use super::print::is_register;
 
+/// Up to this depth a memory goes to look-up tables, above it to block RAM.
+const DEEPEST_DISTRIBUTED: u32 = 64;
 /// A memory narrower than this would waste a block RAM.
 const NARROWEST_BLOCK: u32 = 8;
 

@@ -2,7 +2,7 @@
 
 use super::recurrence::Recurrence;
 use crate::hdl::Signal;
-use crate::operator::parts::{Operand, Rounding, Unrounded};
+use crate::operator::parts::Operand;
 use crate::operator::{Domain, sqrt};
 
 /// √a, as [`sqrt::sqrt`] has it.
@@ -11,10 +11,6 @@ pub(super) struct Root {
 }
 
 impl Root {
-    fn digits(&self) -> u32 {
-        self.domain.significand_bits() + u32::from(self.domain.rounding() != Rounding::TowardZero)
-    }
-
     /// Bits of the radicand behind its first two that are not zero by themselves, a step taking two.
     fn rest_bits(&self) -> u32 {
         (self.domain.significand_bits() - 1).next_multiple_of(2)
@@ -28,15 +24,12 @@ impl Recurrence for Root {
 
     /// The first digit is always 1.
     fn steps(&self) -> u32 {
-        self.digits() - 1
+        sqrt::digits(self.domain) - 1
     }
 
     fn begin<'g>(&self, a: Signal<'g>) -> (Vec<Signal<'g>>, Vec<Signal<'g>>) {
-        let (exponent, significand) = Operand::unpack(a, self.domain, "a").normalised();
-        // The bias is odd, so an even biased exponent stands for an odd one, of which one goes into the radicand.
-        let is_odd = (!exponent.bits(1)).named("exponent_is_odd");
-        let width = significand.width() + 1;
-        let radicand = is_odd.select(significand.append_zeros(1), significand.extend(width)).named("radicand");
+        let radicand = sqrt::radicand(&Operand::unpack(a, self.domain, "a"));
+        let width = radicand.width();
         let remainder = radicand.high(2).minus(1);
         let rest = radicand.low(width - 2).append_zeros(self.rest_bits() + 2 - width);
         (vec![remainder, rest], Vec::new())
@@ -75,26 +68,7 @@ impl Recurrence for Root {
     }
 
     fn finish<'g>(&self, a: Signal<'g>, outcome: &[Signal<'g>]) -> Signal<'g> {
-        let domain = self.domain;
-        let operand = Operand::unpack(a, domain, "a");
-        let (a_exponent, _) = operand.normalised();
-        let exponent = a_exponent.offset(i64::from(domain.bias())).half().named("root_exponent");
-        let graph = a.graph();
         let (root, remainder) = (outcome[0], outcome[1]);
-        let unrounded = if domain.rounding() == Rounding::TowardZero {
-            let zero = graph.constant(1, 0);
-            Unrounded { exponent, significand: root.named("significand"), guard: zero, sticky: zero, doubled: None }
-        } else {
-            // A normal result is never a tie; only a subnormal one asks whether anything is left.
-            let sticky = if exponent.min() > 0 { graph.constant(1, 1) } else { remainder.any() };
-            Unrounded {
-                exponent,
-                significand: root.drop_low(1).named("significand"),
-                guard: root.bit(0).named("guard"),
-                sticky: sticky.named("sticky"),
-                doubled: None,
-            }
-        };
-        sqrt::finish(domain, operand, unrounded)
+        sqrt::rounded(self.domain, Operand::unpack(a, self.domain, "a"), root, remainder.any())
     }
 }
