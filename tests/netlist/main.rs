@@ -128,20 +128,18 @@ fn every_profile_after_synthesis() {
     let corpus = concat!(env!("CARGO_MANIFEST_DIR"), "/tb/corpus/hard.csv");
     let mut pairs = pairs::read_pairs(corpus.as_ref()).expect("the corpus");
     pairs.extend(mixed(6000));
-    for profile in ["wide", "paper", "exact"] {
+    for profile in ["paper", "wide", "exact"] {
         let profile: Profile = profile.parse().expect("a profile");
         let config = Config { scpus: 1, profile, shell: Shell::Line, ..Config::default() };
         let unit = Unit::scpu(&config).expect("it can be generated");
         let wanted = config.profile.reference(config.contact).run_all(&pairs);
-        for form in [As::Gates, As::Ecp5] {
-            let files = verilog(&unit.module, form);
-            let found = verilated::scpu(&unit.module.name, &files, unit.latency.expect("a pipeline"), &pairs);
-            for ((pair, found), wanted) in pairs.iter().zip(&found).zip(&wanted) {
-                let flags = (wanted.is_contact(), !pair.is_valid());
-                assert_eq!(*found, (wanted.0, flags), "{}, {form:?}, of {pair:x?}", unit.title());
-            }
-            assert_eq!(found.len(), pairs.len());
-            println!("{}, {form:?}: {} pairs", unit.title(), pairs.len());
+        let files = verilog(&unit.module, As::Ecp5Apart);
+        let found = verilated::scpu(&unit.module.name, &files, unit.latency.expect("a pipeline"), &pairs);
+        for ((pair, found), wanted) in pairs.iter().zip(&found).zip(&wanted) {
+            let flags = (wanted.is_contact(), !pair.is_valid());
+            assert_eq!(*found, (wanted.0, flags), "{}, of {pair:x?}", unit.title());
         }
+        assert_eq!(found.len(), pairs.len());
+        println!("{}: {} pairs", unit.title(), pairs.len());
     }
 }

@@ -17,6 +17,8 @@ pub enum As {
     Gates,
     /// As cells of Lattice's ECP5.
     Ecp5,
+    /// As cells of Lattice's ECP5, each module by itself: a quarter of the netlist, since an SCPU has nine adders.
+    Ecp5Apart,
 }
 
 /// Files to compile, which lie in a folder that goes with it.
@@ -76,7 +78,8 @@ pub fn verilog(module: &Arc<Module>, form: As) -> Files {
     let synth = match form {
         // One kind of flip-flop: resets and enables become gates too.
         As::Gates => format!("synth -flatten -noabc -top {top}; dfflegalize -cell $_DFF_P_ x; abc; opt_clean"),
-        _ => format!("synth_ecp5 -top {top}"),
+        As::Ecp5Apart => format!("synth_ecp5 -noflatten -top {top}"),
+        As::Ecp5 | As::Printed => format!("synth_ecp5 -top {top}"),
     };
     let names: Vec<_> = files.iter().map(|path| path.file_name().expect("a file").to_string_lossy()).collect();
     let script = format!("read_verilog {}; {synth}; check -assert; write_verilog -noattr netlist.v", names.join(" "));
@@ -90,7 +93,7 @@ pub fn verilog(module: &Arc<Module>, form: As) -> Files {
     let text = fs::read_to_string(root().join("tb/mult18x18d.v")).expect("the model");
     fs::write(&mult, text.replacen("input wire A0,", &format!("input wire {third}A0,"), 1)).expect("written");
     let mut files = vec![folder.path().join("netlist.v"), mult];
-    if form == As::Ecp5 {
+    if form != As::Gates {
         let path = folder.path().join("ecp5.v");
         fs::write(&path, ecp5_cells()).expect("written");
         files.push(path);

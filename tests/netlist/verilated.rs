@@ -8,18 +8,43 @@ use contact_afu::kernel::PairRecord;
 use crate::synthesise::Files;
 
 /// What Verilator says of netlists and of Yosys's models of cells, none of which is a fault.
-const MEANT: [&str; 9] =
-    ["WIDTH", "UNOPTFLAT", "PINMISSING", "CASEINCOMPLETE", "COMBDLY", "INITIALDLY", "IMPLICIT", "SELRANGE", "MULTITOP"];
+const MEANT: [&str; 10] = [
+    "WIDTH",
+    "UNOPTFLAT",
+    "PINMISSING",
+    "CASEINCOMPLETE",
+    "COMBDLY",
+    "INITIALDLY",
+    "IMPLICIT",
+    "SELRANGE",
+    "MULTITOP",
+    "SPECIFYIGN",
+];
 
 /// A contact's words; whether it is one, and whether the pair is invalid.
 pub type Outcome = ([u32; 8], (bool, bool));
 
+/// `text` with modules that Verilator compiles once each, instead of at every instance.
+fn apart(text: &str) -> String {
+    let mut header = false;
+    let line = |line: &str| {
+        header |= line.starts_with("module ");
+        let ends = header && line.ends_with(';');
+        header &= !ends;
+        line.to_owned() + if ends { " /* verilator no_inline_module */\n" } else { "\n" }
+    };
+    text.lines().map(line).collect()
+}
+
 /// What comes of a pair in every cycle, each `latency` cycles after it went in.
 pub fn scpu(name: &str, verilog: &Files, latency: u32, pairs: &[PairRecord]) -> Vec<Outcome> {
     let meant: String = MEANT.iter().map(|warning| format!("// verilator lint_off {warning}\n")).collect();
-    let file = |path: &std::path::PathBuf| File {
-        name: path.file_name().expect("a file").to_string_lossy().into_owned(),
-        text: meant.clone() + &fs::read_to_string(path).expect("written"),
+    let file = |path: &std::path::PathBuf| {
+        let name = path.file_name().expect("a file").to_string_lossy().into_owned();
+        let text = fs::read_to_string(path).expect("written");
+        // Cells are small and many: those are best compiled at each instance.
+        let text = if name == "netlist.v" { apart(&text) } else { text };
+        File { name, text: meant.clone() + &text }
     };
     let source = Source::new(name, verilog.files.iter().map(file).collect());
     let folder = tempfile::tempdir().expect("a temporary folder");

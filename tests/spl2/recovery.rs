@@ -105,6 +105,40 @@ fn abort_at_any_time_and_the_next_job_is_right() {
     }
 }
 
+/// A short job stopped in each of its cycles, from the write that starts it to its status.
+#[test]
+fn reset_and_abort_at_every_cycle_of_a_short_job() {
+    let (spoilt, next) = (Case::random(15, 31), Case::random(9, 32));
+    let model = model(SCPUS);
+    for (link, aborts) in [("late", false), ("late", true), ("hostile", false), ("hostile", true)] {
+        let afu = model.instance(7).unwrap();
+        let mut machine = machine(&afu, quick(), link, 7);
+        for moment in 0.. {
+            let what = format!("{link}, {} after {moment} cycles", if aborts { "abort" } else { "reset" });
+            let mut session = Session::open(&mut machine, spoilt_place(&spoilt), Some(SCPUS)).unwrap();
+            session.start(&spoilt.job());
+            session.machine().advance(moment).unwrap_or_else(|e| panic!("{what}: {e}"));
+            let done = session.status().is_some();
+            if aborts && !done {
+                session.abort();
+                let status = session.wait(30_000).unwrap_or_else(|e| panic!("{what}: {e}"));
+                let outcome = session.outcome(&status);
+                assert!(outcome.error <= 1, "{what}: {outcome:?}");
+                spoilt.check_written(&outcome, &what);
+            } else {
+                machine.write_csr(0x1010, 1).unwrap();
+            }
+            let mut session =
+                Session::open(&mut machine, elsewhere(&next), Some(SCPUS)).unwrap_or_else(|e| panic!("{what}: {e}"));
+            next.check(&session.run(&next.job()).unwrap_or_else(|e| panic!("{what}: {e}")), &what);
+            if done {
+                assert!(moment > 90, "{link}: a job of {moment} cycles");
+                break;
+            }
+        }
+    }
+}
+
 /// Without a watchdog the status never comes, with one it says so; nothing wrong is written, and after a reset all is
 /// well. The first reads are the shell's own: its polls are asked again, but behind a lost read SPL2 holds them all back.
 #[test]
