@@ -19,6 +19,11 @@ fn each_is_one_error_with_line_and_key() {
         ("count = 3", "count = 3\nmass = nan", "s.toml:8: mass: NaN is not from"),
         ("count = 3", "count = 3\nradius = 0.0", "s.toml:8: radius: 0 is not from"),
         ("count = 3", "count = 1_000_000_000", "s.toml:5: bodies: 1000000000 spheres by now: 1000000 at most"),
+        (
+            "count = 3\n",
+            "count = 3\n[[queries]]\nshape = \"lattice\"\ncount = [9_000_000_000_000_000_000, 9, 9]\n",
+            "s.toml:8: queries: 18446744073709551615 spheres by now: 1000000 at most",
+        ),
         ("count = 3", "count = 0", "s.toml:6: bodies: there is no body in it"),
         ("count = 3", "count = 3\nlayers = 2", "s.toml:8: layers: a stack has none"),
         ("count = 3", "count = 3\nturning = [1.0, 0.0, 0.0]", "s.toml:8: turning: bodies do not turn without"),
