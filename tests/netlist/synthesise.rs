@@ -71,15 +71,13 @@ pub fn verilog(module: &Arc<Module>, form: As) -> Files {
         files.push(path);
     };
     module.hierarchy().iter().for_each(|module| write(module));
-    if form == As::Printed {
-        return Files { _folder: folder, files, language: "-g2005" };
-    }
     let top = &module.name;
     let synth = match form {
+        As::Printed => return Files { _folder: folder, files, language: "-g2005" },
         // One kind of flip-flop: resets and enables become gates too.
         As::Gates => format!("synth -flatten -noabc -top {top}; dfflegalize -cell $_DFF_P_ x; abc; opt_clean"),
         As::Ecp5Apart => format!("synth_ecp5 -noflatten -top {top}"),
-        As::Ecp5 | As::Printed => format!("synth_ecp5 -top {top}"),
+        As::Ecp5 => format!("synth_ecp5 -top {top}"),
     };
     let names: Vec<_> = files.iter().map(|path| path.file_name().expect("a file").to_string_lossy()).collect();
     let script = format!("read_verilog {}; {synth}; check -assert; write_verilog -noattr netlist.v", names.join(" "));

@@ -113,6 +113,7 @@ fn reset_and_abort_at_every_cycle_of_a_short_job() {
     for (link, aborts) in [("late", false), ("late", true), ("hostile", false), ("hostile", true)] {
         let afu = model.instance(7).unwrap();
         let mut machine = machine(&afu, quick(), link, 7);
+        let mut aborted = 0;
         for moment in 0.. {
             let what = format!("{link}, {} after {moment} cycles", if aborts { "abort" } else { "reset" });
             let mut session = Session::open(&mut machine, spoilt_place(&spoilt), Some(SCPUS)).unwrap();
@@ -123,8 +124,14 @@ fn reset_and_abort_at_every_cycle_of_a_short_job() {
                 session.abort();
                 let status = session.wait(30_000).unwrap_or_else(|e| panic!("{what}: {e}"));
                 let outcome = session.outcome(&status);
-                assert!(outcome.error <= 1, "{what}: {outcome:?}");
-                spoilt.check_written(&outcome, &what);
+                match outcome.error {
+                    1 => {
+                        spoilt.check_written(&outcome, &what);
+                        aborted += 1;
+                    }
+                    // It was done before it saw the abort.
+                    _ => spoilt.check(&outcome, &what),
+                }
             } else {
                 machine.write_csr(0x1010, 1).unwrap();
             }
@@ -133,6 +140,7 @@ fn reset_and_abort_at_every_cycle_of_a_short_job() {
             next.check(&session.run(&next.job()).unwrap_or_else(|e| panic!("{what}: {e}")), &what);
             if done {
                 assert!(moment > 90, "{link}: a job of {moment} cycles");
+                assert!(aborted > 90 || !aborts, "{link}: {aborted} aborted");
                 break;
             }
         }
