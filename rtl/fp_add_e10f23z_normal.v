@@ -26,79 +26,82 @@ module fp_add_e10f23z_normal (
   wire [22:0] b_fraction = b[22:0];
   wire [32:0] b_magnitude = {b_exponent, b_fraction};
   wire b_is_larger = a_magnitude < b_magnitude;
-  wire [9:0] small_exponent = b_is_larger ? a_exponent : b_exponent;
-  wire [9:0] large_exponent = b_is_larger ? b_exponent : a_exponent;
+  wire [9:0] b_exponent_minus_a = b_exponent - a_exponent;
+  wire [9:0] a_exponent_minus_b = a_exponent - b_exponent;
+  wire [9:0] exponent_difference = b_is_larger ? b_exponent_minus_a : a_exponent_minus_b;
   wire a_hidden = |a_exponent;
   wire [23:0] a_significand = {a_hidden, a_fraction};
   wire b_hidden = |b_exponent;
   wire [23:0] b_significand = {b_hidden, b_fraction};
   wire [23:0] small_significand = b_is_larger ? a_significand : b_significand;
   wire [23:0] large_significand = b_is_larger ? b_significand : a_significand;
+  wire [9:0] large_exponent = b_is_larger ? b_exponent : a_exponent;
   wire large_sign = b_is_larger ? b_sign : a_sign;
 
   // ---- stage 1 ----
   reg effective_subtraction_s1;
-  reg [9:0] large_exponent_s1;
-  reg [9:0] small_exponent_s1;
+  reg exponent_difference_4_4_s1;
   reg [23:0] small_significand_s1;
+  reg exponent_difference_3_3_s1;
+  reg exponent_difference_2_2_s1;
+  reg exponent_difference_1_1_s1;
+  reg exponent_difference_0_0_s1;
+  reg [4:0] exponent_difference_9_5_s1;
   reg [23:0] large_significand_s1;
   always @(posedge clk) begin
     effective_subtraction_s1 <= effective_subtraction;
-    large_exponent_s1 <= large_exponent;
-    small_exponent_s1 <= small_exponent;
+    exponent_difference_4_4_s1 <= exponent_difference[4];
     small_significand_s1 <= small_significand;
+    exponent_difference_3_3_s1 <= exponent_difference[3];
+    exponent_difference_2_2_s1 <= exponent_difference[2];
+    exponent_difference_1_1_s1 <= exponent_difference[1];
+    exponent_difference_0_0_s1 <= exponent_difference[0];
+    exponent_difference_9_5_s1 <= exponent_difference[9:5];
     large_significand_s1 <= large_significand;
   end
-  wire [9:0] exponent_difference = large_exponent_s1 - small_exponent_s1;
   wire [25:0] small_significand_s1_wide = {small_significand_s1, 2'd0};
-  wire [25:0] align_by_16 = exponent_difference[4] ? {16'd0, small_significand_s1[23:14]} : small_significand_s1_wide;
-  wire [25:0] align_by_8 = exponent_difference[3] ? {8'd0, align_by_16[25:8]} : align_by_16;
-  wire [25:0] align_by_4 = exponent_difference[2] ? {4'd0, align_by_8[25:4]} : align_by_8;
-  wire align_by_4_loses = exponent_difference[2] & |align_by_8[3:0];
-  wire align_by_16_loses = exponent_difference[4] & |small_significand_s1_wide[15:0];
-  wire align_by_8_loses = exponent_difference[3] & |align_by_16[7:0];
-  wire align_far = |exponent_difference[9:5];
+  wire align_by_16_loses = exponent_difference_4_4_s1 & |small_significand_s1_wide[15:0];
+  wire [25:0] align_by_16 = exponent_difference_4_4_s1 ? {16'd0, small_significand_s1[23:14]} : small_significand_s1_wide;
+  wire align_by_8_loses = exponent_difference_3_3_s1 & |align_by_16[7:0];
+  wire [25:0] align_by_8 = exponent_difference_3_3_s1 ? {8'd0, align_by_16[25:8]} : align_by_16;
+  wire align_by_4_loses = exponent_difference_2_2_s1 & |align_by_8[3:0];
+  wire [25:0] align_by_4 = exponent_difference_2_2_s1 ? {4'd0, align_by_8[25:4]} : align_by_8;
+  wire align_by_2_loses = exponent_difference_1_1_s1 & |align_by_4[1:0];
+  wire [25:0] align_by_2 = exponent_difference_1_1_s1 ? {2'd0, align_by_4[25:2]} : align_by_4;
+  wire align_by_1_loses = exponent_difference_0_0_s1 & align_by_2[0];
+  wire align_far = |exponent_difference_9_5_s1;
+  wire [25:0] align_by_1 = exponent_difference_0_0_s1 ? {1'b0, align_by_2[25:1]} : align_by_2;
 
   // ---- stage 2 ----
   reg effective_subtraction_s2;
   reg align_far_s2;
   reg small_significand_s1_wide_any_s2;
-  reg align_by_16_loses_or_s2;
-  reg align_by_4_loses_s2;
-  reg exponent_difference_1_1_s2;
-  reg [25:0] align_by_4_s2;
-  reg exponent_difference_0_0_s2;
+  reg align_by_16_loses_or_or_or_or_s2;
+  reg [25:0] align_by_1_s2;
   reg [23:0] large_significand_s2;
   always @(posedge clk) begin
     effective_subtraction_s2 <= effective_subtraction_s1;
     align_far_s2 <= align_far;
     small_significand_s1_wide_any_s2 <= |small_significand_s1_wide;
-    align_by_16_loses_or_s2 <= align_by_16_loses | align_by_8_loses;
-    align_by_4_loses_s2 <= align_by_4_loses;
-    exponent_difference_1_1_s2 <= exponent_difference[1];
-    align_by_4_s2 <= align_by_4;
-    exponent_difference_0_0_s2 <= exponent_difference[0];
+    align_by_16_loses_or_or_or_or_s2 <= align_by_16_loses | align_by_8_loses | align_by_4_loses | align_by_2_loses | align_by_1_loses;
+    align_by_1_s2 <= align_by_1;
     large_significand_s2 <= large_significand_s1;
   end
-  wire align_by_2_loses = exponent_difference_1_1_s2 & |align_by_4_s2[1:0];
-  wire [25:0] align_by_2 = exponent_difference_1_1_s2 ? {2'd0, align_by_4_s2[25:2]} : align_by_4_s2;
-  wire align_by_1_loses = exponent_difference_0_0_s2 & align_by_2[0];
-  wire aligned_sticky = align_far_s2 ? small_significand_s1_wide_any_s2 : (align_by_16_loses_or_s2 | align_by_4_loses_s2 | align_by_2_loses | align_by_1_loses);
-  wire [25:0] align_by_1 = exponent_difference_0_0_s2 ? {1'b0, align_by_2[25:1]} : align_by_2;
+  wire aligned_sticky = align_far_s2 ? small_significand_s1_wide_any_s2 : align_by_16_loses_or_or_or_or_s2;
 
   // ---- stage 3 ----
   reg [23:0] large_significand_s3;
-  reg [25:0] align_by_1_and_not_align_far_s2_wide_s3;
+  reg [25:0] align_by_1_s2_and_s3;
   reg aligned_sticky_s3;
   reg effective_subtraction_s3;
   always @(posedge clk) begin
     large_significand_s3 <= large_significand_s2;
-    align_by_1_and_not_align_far_s2_wide_s3 <= ~align_far_s2 ? align_by_1 : 26'd0;
+    align_by_1_s2_and_s3 <= ~align_far_s2 ? align_by_1_s2 : 26'd0;
     aligned_sticky_s3 <= aligned_sticky;
     effective_subtraction_s3 <= effective_subtraction_s2;
   end
   wire [27:0] augend = {1'b0, {large_significand_s3, 3'd0}};
-  wire [27:0] addend = {1'b0, {align_by_1_and_not_align_far_s2_wide_s3, aligned_sticky_s3}};
+  wire [27:0] addend = {1'b0, {align_by_1_s2_and_s3, aligned_sticky_s3}};
   wire [27:0] sum = augend + (addend ^ {28{effective_subtraction_s3}}) + {27'd0, effective_subtraction_s3};
 
   // ---- stage 4 ----
@@ -127,7 +130,7 @@ module fp_add_e10f23z_normal (
 
   // ---- stage 6 ----
   reg [27:0] normalise_by_4_s6;
-  reg [39:0] large_exponent_s6_line;
+  reg [49:0] large_exponent_s6_line;
   reg [9:0] large_exponent_s6;
   reg normalise_top_16_clear_s6;
   reg normalise_top_8_clear_s6;
@@ -137,8 +140,8 @@ module fp_add_e10f23z_normal (
   reg effective_subtraction_s6;
   always @(posedge clk) begin
     normalise_by_4_s6 <= normalise_by_4;
-    large_exponent_s6_line <= {large_exponent_s6_line[29:0], large_exponent_s1};
-    large_exponent_s6 <= large_exponent_s6_line[39:30];
+    large_exponent_s6_line <= {large_exponent_s6_line[39:0], large_exponent};
+    large_exponent_s6 <= large_exponent_s6_line[49:40];
     normalise_top_16_clear_s6 <= normalise_top_16_clear_s5;
     normalise_top_8_clear_s6 <= normalise_top_8_clear;
     normalise_top_4_clear_s6 <= normalise_top_4_clear;

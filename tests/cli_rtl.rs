@@ -101,7 +101,7 @@ fn what_is_not_built_yet_or_out_of_range_is_one_line_and_exit_2() {
         (["--input", "indexed"], "input indexed"),
         (["--input", "all"], "input all"),
         (["--shell", "axi"], "shell axi"),
-        (["--target", "ecp5"], "--target ecp5"),
+        (["--target", "tin"], "tin"),
         (["--scpus", "0"], "0 SCPUs"),
         (["--scpus", "65"], "65 SCPUs"),
         (["--clock", "0"], "clock 0"),

@@ -28,12 +28,24 @@ fn check(function: Function, fraction_bits: u32, odd: u32, fraction: u64) -> Res
     };
     // A reciprocal just above 1 may be 1 itself.
     let limits = limits || function == Function::Reciprocal && value == 1 << fraction_bits;
-    if faithful && exact && limits {
+
+    let table = Faithful::of(function, fraction_bits);
+    let nearest = table.nearest(odd, fraction);
+    let (below, above) = (2 * u128::from(nearest) - 1, 2 * u128::from(nearest) + 1);
+    let is_nearest = match function {
+        Function::Reciprocal => (below * m..above * m).contains(&(1 << (2 * fraction_bits + 2))),
+        Function::Root => (below * below..above * above).contains(&(m << (fraction_bits + odd + 2))),
+    };
+    let is_nearest = is_nearest && table.lower(odd, fraction) >> fraction_bits == 1;
+    if faithful && exact && limits && is_nearest {
         return Ok(());
     }
-    Err(format!("{function:?} of {fraction_bits} bits, odd {odd}, fraction {fraction:#x}: {value:#x}"))
+    Err(format!(
+        "{function:?} of {fraction_bits} bits, odd {odd}, fraction {fraction:#x}: {value:#x}, nearest {nearest:#x}"
+    ))
 }
 
+/// Faithful within a unit, and corrected the nearest there is.
 #[test]
 fn every_significand_is_within_a_unit() {
     std::thread::scope(|scope| {

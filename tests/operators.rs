@@ -5,7 +5,7 @@ mod support;
 
 use contact_afu::hdl::{DelayModel, Evaluator, Module, Op, Pin};
 use contact_afu::number::{Format, Soft};
-use contact_afu::operator::{Domain, INPUTS, Operator, Values, build, pipelined};
+use contact_afu::operator::{Architecture, Domain, INPUTS, Operator, Values, build, build_as, pipelined};
 use std::sync::Arc;
 use support::{Words, corner};
 
@@ -43,6 +43,11 @@ impl Bench {
     fn new(operator: Operator, domain: impl Into<Domain>) -> Self {
         let domain = domain.into();
         Self::of(operator, domain, &build(operator, domain).unwrap())
+    }
+
+    /// By table, where it has one.
+    fn by_table(operator: Operator, domain: Domain) -> Self {
+        Self::of(operator, domain, &build_as(operator, domain, Architecture::Table).unwrap())
     }
 
     fn of(operator: Operator, domain: Domain, module: &Arc<Module>) -> Self {
@@ -85,7 +90,11 @@ impl Bench {
 /// Every word, and for two operands every pair of words; and of these all that the hardware is made for.
 fn exhaust(operator: Operator, domain: impl Into<Domain>) {
     let domain = domain.into();
-    let mut bench = Bench::new(operator, domain);
+    exhaust_bench(Bench::new(operator, domain));
+}
+
+fn exhaust_bench(mut bench: Bench) {
+    let (operator, domain) = (bench.operator, bench.domain);
     let words = 1_u128 << domain.width();
     let (mut checked, mut all) = (0_u64, 0_u64);
     for a in 0..words {
@@ -127,6 +136,44 @@ fn every_word_of_faithful_formats() {
         for text in ["e5f2r", "e5f2zr", "e5f2tr", "e5f2ztr", "e5f6r", "e5f7r", "e5f8ztr", "e5f10tr", "e6f9zr"] {
             VALUES.into_iter().for_each(|values| exhaust(operator, Domain::new(format(text), values)));
         }
+    }
+}
+
+/// Correct roots by a table and a correcting step: every word of formats of every kind of table, and where there is none,
+/// digits.
+#[test]
+fn every_word_of_roots_by_table() {
+    for operator in [Operator::Sqrt, Operator::Recip] {
+        let mut tables = 0;
+        for text in ["e5f2z", "e5f2", "e5f6z", "e5f7z", "e6f9z", "e5f10z", "e5f10", "e5f12z", "e5f10zt"] {
+            for values in VALUES {
+                let domain = Domain::new(format(text), values);
+                tables += u32::from(Architecture::Table.is_possible(operator, domain));
+                exhaust_bench(Bench::by_table(operator, domain));
+            }
+        }
+        assert_eq!(tables, 6 * 3 + 2, "{operator:?}: formats without subnormals, and the others' normal numbers");
+    }
+}
+
+/// Sums in a wider format straight from narrower words, with and without the room that takes.
+#[test]
+fn every_pair_of_8_bit_words_added_in_another_format() {
+    for from in ["e5f2", "e5f2z", "e5f2t", "e5f2zt"].map(format) {
+        for to in ["e6f2", "e6f5z", "e7f9", "e7f9zt", "e5f3", "e5f5z"].map(format) {
+            for operator in [Operator::WideningAdd { to }, Operator::WideningSub { to }] {
+                VALUES.into_iter().for_each(|values| exhaust(operator, Domain::new(from, values)));
+            }
+        }
+    }
+}
+
+#[test]
+fn a_million_of_records_added_in_wide() {
+    for operator in [Operator::WideningAdd { to: Format::WIDE }, Operator::WideningSub { to: Format::WIDE }] {
+        randomly(operator, Domain::new(Format::BINARY32, Values::Finite), 500_000);
+        randomly(operator, Format::BINARY32, 200_000);
+        randomly(operator, format("half"), 100_000);
     }
 }
 
@@ -255,15 +302,21 @@ fn the_excess_of_squares() {
     assert!(settled > 100_000 && doubtful > 50_000, "{settled} settled, {doubtful} in doubt");
 }
 
-/// Digit recurrences have no table whose entries could be sampled: every significand of binary32 is tried, under an
-/// even and an odd exponent for the root, against the machine's own arithmetic.
+/// Digit recurrences have no table whose entries could be sampled, and a table has as many places to be wrong as it has
+/// words: every significand of binary32 is tried, under an even and an odd exponent for the root, against the machine's own
+/// arithmetic.
 #[test]
 fn every_significand_of_root_and_reciprocal() {
+    every_significand(Bench::new);
+    // As the default AFU has them.
+    every_significand(Bench::by_table);
+}
+
+fn every_significand(bench: impl Fn(Operator, Domain) -> Bench + Sync) {
     support::halves(1 << 24, |part| {
-        // As the default AFU has them.
         let domain = Domain::new(Format::WIDE, Values::Normal);
-        let mut root = Bench::new(Operator::Sqrt, domain);
-        let mut inverse = Bench::new(Operator::Recip, domain);
+        let mut root = bench(Operator::Sqrt, domain);
+        let mut inverse = bench(Operator::Recip, domain);
         // Binary32 and wide have the same fraction; the biases differ by 384.
         let wide = |word: u32| u64::from(word) + (384 << 23);
         let check = |bench: &mut Bench, value: f32, wanted: f32| {

@@ -10,10 +10,11 @@ mod support;
 use std::collections::VecDeque;
 
 use contact_afu::cosim::{File, Model, Source, Trace};
+use contact_afu::hdl::DelayModel;
 use contact_afu::hdl::verilog::{Style, emit};
-use contact_afu::hdl::{DelayModel, Primitive};
 use contact_afu::number::Format;
 use contact_afu::operator::{Domain, Operator, Values, pipelined};
+use contact_afu::synth::Target;
 use support::{Words, corner};
 
 const MHZ: f64 = 200.0;
@@ -120,30 +121,33 @@ fn a_million_of_wide_without_its_ends() {
 /// stand here.
 #[test]
 fn primitives_compute_as_their_twins_do() {
-    let models = concat!(include_str!("../tb/mult18x18d.v"), include_str!("../tb/ccu2c.v"));
-    let delays = DelayModel::default().with_registered_multipliers(Some(Primitive::Mult18x18d));
-    let delays = delays.with_adders(Primitive::Ccu2c);
+    let models =
+        concat!(include_str!("../tb/mult18x18d.v"), include_str!("../tb/ccu2c.v"), include_str!("../tb/dp16kd.v"));
+    let delays = Target::Ecp5.delays();
     for synthesis in [true, false] {
         let first = File { name: "primitives.v".to_owned(), text: format!("`define SYNTHESIS\n{models}") };
-        let operators =
-            [Operator::Mul, Operator::Square, Operator::Add, Operator::Div, Operator::Sqrt, Operator::Recip];
-        for operator in operators {
-            let domain = Domain::from(Format::BINARY32);
+        let both = [Operator::Mul, Operator::Square, Operator::Add, Operator::Div, Operator::Sqrt, Operator::Recip];
+        let paper = both.map(|operator| (operator, Domain::from(Format::BINARY32)));
+        // Roots by table.
+        let wide = [Operator::Sqrt, Operator::Recip].map(|operator| (operator, Domain::from(Format::WIDE)));
+        for (operator, domain) in paper.into_iter().chain(wide) {
             let first = if synthesis { vec![first.clone()] } else { vec![] };
             run(&build_for(&delays, operator, domain, first), operator, domain, 200_000);
         }
     }
 }
 
+/// In digits, as subnormals ask for, and by table.
 #[test]
 fn every_significand_of_root_and_reciprocal() {
-    let one = 127_u128 << 23;
     for (operator, exponents) in [(Operator::Sqrt, 2), (Operator::Recip, 1)] {
-        let domain = Domain::from(Format::BINARY32);
-        let (model, latency) = build(operator, domain);
-        support::halves(exponents << 23, |part| {
-            stream(&model, operator, domain, latency, part.map(|number| (one + u128::from(number), 0)));
-        });
+        for domain in [Domain::from(Format::BINARY32), Domain::new(Format::WIDE, Values::Normal)] {
+            let one = u128::from(domain.bias().unsigned_abs()) << 23;
+            let (model, latency) = build(operator, domain);
+            support::halves(exponents << 23, |part| {
+                stream(&model, operator, domain, latency, part.map(|number| (one + u128::from(number), 0)));
+            });
+        }
     }
 }
 

@@ -53,6 +53,7 @@ impl Afu {
             radius: spec.config.radius.map(|radius| spec.config.record.round(radius)),
             clock_mhz: spec.config.clock_mhz,
             interval: spec.config.interval,
+            valid_is_late: spec.config.interval <= 1,
             model: spec.delays.clone(),
         })?;
         Self::around(spec, kernel)

@@ -31,14 +31,17 @@ pub(super) fn scpu(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>, Err
     let words: Vec<Signal<'_>> =
         names.iter().zip(0..).map(|(name, index)| pair.slice(bits * index, bits).named(name)).collect();
 
-    // A NaN, an infinity or a negative radius (a negative zero is a radius) makes a pair invalid.
+    // A NaN, an infinity or a negative radius (a negative zero is a radius) makes a pair invalid. A register between what is
+    // seen in a word and what follows for the pair: the kernel asks for that a cycle later.
+    let is_late = take.is_none();
     let mut invalid = graph.constant(1, 0);
     for (word, name) in words.iter().zip(&names) {
-        invalid = invalid
-            | word.slice(record.fraction_bits(), record.exponent_bits()).all().named(&format!("{name}_not_finite"));
+        let not_finite = word.slice(record.fraction_bits(), record.exponent_bits()).all();
+        let mut seen = vec![not_finite.named(&format!("{name}_not_finite"))];
         if name.starts_with('r') {
-            invalid = invalid | (word.msb() & word.low(bits - 1).any()).named(&format!("{name}_negative"));
+            seen.push((word.msb() & word.low(bits - 1).any()).named(&format!("{name}_negative")));
         }
+        invalid = seen.into_iter().fold(invalid, |invalid, seen| invalid | seen.delay(u32::from(is_late)));
     }
     let invalid = invalid.named("invalid");
 
@@ -49,7 +52,7 @@ pub(super) fn scpu(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>, Err
     let hit = kernel.output("hit").named("hit");
     let invalid = match take {
         Some(_) => kernel.output("invalid_pair"),
-        None => invalid.delay(latency),
+        None => invalid.delay(latency - 1),
     };
     let invalid = invalid.named("invalid_out");
     let record = if spec.config.contact == Fields::HIT {

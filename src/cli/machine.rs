@@ -7,6 +7,7 @@ use contact_afu::afu::Spec;
 use contact_afu::config::{self, Config, Input, Profile, Record, Results, Shell};
 use contact_afu::kernel::Fields;
 use contact_afu::number::{FormatError, Roots, Rounding, Subnormals};
+use contact_afu::synth::Target;
 
 use super::failure::{Classify, Failure, Kind};
 use super::link;
@@ -49,8 +50,8 @@ pub struct Machine {
     /// Clock that pipelines are cut for and time is told in, MHz [default: 200]
     #[arg(long, value_name = "MHZ")]
     pub clock: Option<f64>,
-    /// FPGA family: ecp5, ice40, cyclonev, xilinx [default: ecp5]
-    #[arg(long, value_name = "NAME", hide = true)]
+    /// FPGA family whose blocks are used by name: ecp5, ice40, cyclonev, xilinx; of rtl and synth [default: none; of synth ecp5]
+    #[arg(long, value_name = "NAME")]
     pub target: Option<String>,
     /// Take the configuration from a manifest.json (or a folder with one); options given beside it win
     #[arg(long, value_name = "FILE")]
@@ -58,10 +59,18 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// The configuration file's or the default one, with the options given over it.
+    /// The family whose blocks are written by name; nothing where none is given.
+    pub fn target(&self) -> Result<Option<Target>, Failure> {
+        self.target.as_ref().map(|word| word.parse().map_err(|error| Failure::caused(Kind::Usage, error))).transpose()
+    }
+
+    /// The configuration file's or the default one, with the options given over it, where there is no target.
+    #[cfg(feature = "cosim")]
     pub fn config(&self) -> Result<Config, Failure> {
         if let Some(target) = &self.target {
-            let message = format!("--target {target}: for synth alone so far; one delay model serves all families");
+            let message = format!(
+                "--target {target}: goes with rtl and synth alone: what is simulated is the same for all families"
+            );
             return Err(Failure::new(Kind::Usage, message));
         }
         self.config_for_any_target()
@@ -115,13 +124,14 @@ pub struct One {
 
 impl One {
     /// The configuration, known to be one that can be generated, with `auto` for that link: its name or file.
+    #[cfg(feature = "cosim")]
     pub fn config_over(&self, link: &str) -> Result<Config, Failure> {
         self.with(self.machine.config()?, link)
     }
 
     /// The same, whatever the target is.
-    pub fn config_for_any_target(&self) -> Result<Config, Failure> {
-        self.with(self.machine.config_for_any_target()?, "ideal")
+    pub fn config_for_any_target(&self, link: &str) -> Result<Config, Failure> {
+        self.with(self.machine.config_for_any_target()?, link)
     }
 
     fn with(&self, mut config: Config, link: &str) -> Result<Config, Failure> {

@@ -6,6 +6,7 @@ use clap::{Args, ValueEnum};
 use contact_afu::afu::{Afu, BuildError, Spec};
 use contact_afu::hdl::Reset;
 use contact_afu::report::folder::{self, Folder};
+use contact_afu::synth::Target;
 
 use super::failure::{Failure, Kind};
 use super::machine::One;
@@ -47,9 +48,11 @@ impl From<Style> for Reset {
 }
 
 pub fn run(options: &Rtl) -> Result<(), Failure> {
-    let config = options.one.config_over(&options.link)?;
+    let target = options.one.machine.target()?;
+    let spec = Spec::from(options.one.config_for_any_target(&options.link)?);
     folder::check(&options.out, options.force)?;
-    let afu = Afu::generate(Spec { reset: options.reset.into(), ..Spec::from(config) })?;
+    let delays = target.map_or_else(|| spec.delays.clone(), Target::delays);
+    let afu = Afu::generate(Spec { reset: options.reset.into(), delays, ..spec })?;
     let folder = Folder::begin(&options.out, options.force)?;
     let files = afu.files();
     for (name, text) in &files {

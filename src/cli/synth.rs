@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use contact_afu::afu::BuildError;
 use contact_afu::config::Config;
+use contact_afu::hdl::DelayModel;
 use contact_afu::kernel::Fields;
 use contact_afu::number::Format;
 use contact_afu::operator::{Operator, Values};
@@ -45,6 +46,10 @@ pub struct Synth {
     /// Count cells only
     #[arg(long)]
     no_route: bool,
+    /// Operators that can be made in several ways, in each of them side by side: roots and reciprocals by table and by
+    /// recurrence. Of all operators these alone, unless --operator names some
+    #[arg(long, conflicts_with_all = ["kernel", "fit", "table", "intervals"])]
+    compare: bool,
     /// Exit with 1 where a clock is below the one asked for
     #[arg(long)]
     check: bool,
@@ -62,14 +67,11 @@ pub fn run(options: &Synth) -> Result<(), Failure> {
     if !options.intervals.is_empty() {
         return by_interval(&options.intervals, options.picture.as_deref());
     }
-    let target = match &options.one.machine.target {
-        Some(word) => word.parse().map_err(|error| Failure::caused(Kind::Usage, error))?,
-        None => Target::Ecp5,
-    };
+    let target = options.one.machine.target()?.unwrap_or(Target::Ecp5);
     if let Some(file) = &options.fit {
         return fit(file, target, &options.seeds.0);
     }
-    let config = options.one.config_for_any_target()?;
+    let config = options.one.config_for_any_target("ideal")?;
     let seeds = if options.no_route { Vec::new() } else { options.seeds.0.clone() };
     let how = synth::Options { target, seeds };
     let units = units(options, &config, target)?;
@@ -141,17 +143,19 @@ fn units(options: &Synth, config: &Config, target: Target) -> Result<Vec<Unit>, 
     if options.kernel {
         return Ok(vec![Unit::scpu_for(config, target)?]);
     }
-    if options.operator.is_empty() {
+    if options.operator.is_empty() && !options.compare {
         return Ok(vec![Unit::afu(config, target)?]);
     }
     let names: Vec<&str> = match options.operator.as_slice() {
+        [] => vec!["recip", "sqrt"],
         [all] if all == "all" => OPERATORS.to_vec(),
         names => names.iter().map(String::as_str).collect(),
     };
     let model = target.delays();
     let is_normal =
         is_normal(config.profile.arithmetic(), Fields::ALL).map_err(BuildError::from).map_err(SynthError::from)?;
-    let unit = |name: &str| {
+    let models = if options.compare { vec![model.clone(), model.with_spared_multipliers(true)] } else { vec![model] };
+    let unit = |name: &str, model: &DelayModel| {
         let (operator, profile) = operator(name, config)?;
         // As the kernel of the profile has it.
         let values = match name {
@@ -159,10 +163,20 @@ fn units(options: &Synth, config: &Config, target: Target) -> Result<Vec<Unit>, 
             _ if is_normal => Values::Normal,
             _ => Values::Any,
         };
-        let unit = Unit::operator(operator, &profile, values, &model, config.clock_mhz)?;
-        Ok(Unit { name: name.to_owned(), ..unit })
+        let unit = Unit::operator(operator, &profile, values, model, config.clock_mhz)?;
+        Ok::<_, Failure>(Unit { name: name.to_owned(), ..unit })
     };
-    names.into_iter().map(unit).collect()
+    let mut units: Vec<Unit> = Vec::new();
+    for name in names {
+        for made in models.iter().map(|model| unit(name, model)) {
+            let made = made?;
+            // Where there is one architecture alone both models give it.
+            if !units.iter().any(|unit| (&unit.name, unit.architecture) == (&made.name, made.architecture)) {
+                units.push(made);
+            }
+        }
+    }
+    Ok(units)
 }
 
 const OPERATORS: [&str; 14] = [

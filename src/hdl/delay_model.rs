@@ -1,8 +1,16 @@
 //! How long operations take on a target's fabric, for cutting pipelines. All times are in nanoseconds.
 
+use std::ops::RangeInclusive;
+
 use serde::{Deserialize, Serialize};
 
 use super::module::{Module, Node, NodeId, Op, Primitive};
+
+/// Tables with so many bits of index go into a block memory, where the target has such: shorter ones are a look-up table or
+/// two a bit, longer ones take several blocks.
+const TABLE_INDEX: RangeInclusive<u32> = 6..=9;
+/// The widest word of a block memory.
+const TABLE_BITS: u32 = 36;
 
 /// What a clocked design of a target can do between two registers.
 ///
@@ -49,9 +57,25 @@ pub struct DelayModel {
     /// without.
     #[serde(default)]
     pub multiplier_registers: u32,
+    /// From logic into a multiplier block's first register, beyond what a register between stages takes: blocks stand in a
+    /// few columns, and the way there is long. Like the next one not fitted: read off routed SCPUs.
+    #[serde(default)]
+    pub multiplier_input: f64,
     /// Out of a multiplier block's last register, beyond what a register between stages takes.
     #[serde(default)]
     pub multiplier_output: f64,
+    /// Register ranks of a block memory that holds a table: 2, of its index and its word, or 0 where tables are logic.
+    #[serde(default)]
+    pub table_registers: u32,
+    /// Out of such a memory's last register, beyond what a register between stages takes: it is slower, and farther off.
+    #[serde(default)]
+    pub table_output: f64,
+    /// The primitive such a memory is written as; without one synthesis has to find it.
+    #[serde(default)]
+    pub memory_primitive: Option<Primitive>,
+    /// Whether what can be made without multiplier blocks is: for a device that runs out of them first.
+    #[serde(default)]
+    pub spares_multipliers: bool,
     /// The primitive a multiplier block with registers is written as; without one synthesis has to find it.
     #[serde(default)]
     pub multiplier_primitive: Option<Primitive>,
@@ -63,9 +87,10 @@ pub struct DelayModel {
 
 impl Default for DelayModel {
     /// What `rtl/` is cut with, for any family: fitted to the one router there is, without a vendor's primitives. Synthesis
-    /// has to find the multiplier blocks' registers, as Quartus, Vivado and Yosys do.
+    /// has to find the registers of multiplier blocks and block memories, as Quartus and Vivado do; Yosys finds all but
+    /// those behind a memory.
     fn default() -> Self {
-        Self::ecp5().with_registered_multipliers(None)
+        Self::ecp5().with_registered_multipliers(None).with_registered_tables(None)
     }
 }
 
@@ -108,7 +133,12 @@ impl DelayModel {
             multiplier: 4.5,
             multiplier_bits: 18,
             multiplier_registers: 0,
+            multiplier_input: 0.0,
             multiplier_output: 0.0,
+            table_registers: 0,
+            table_output: 0.0,
+            memory_primitive: None,
+            spares_multipliers: false,
             multiplier_primitive: None,
             adder_primitive: None,
         }
@@ -156,7 +186,23 @@ impl DelayModel {
     /// A block with registers is timed by them, not by the path inside, which nextpnr-ecp5 does not know.
     #[must_use]
     pub fn with_registered_multipliers(self, primitive: Option<Primitive>) -> Self {
-        Self { multiplier_registers: 2, multiplier_primitive: primitive, ..self }
+        // Read off routed SCPUs: blocks stand in a few columns, and ways to and from them are long.
+        let far = Self { multiplier_input: 1.15, multiplier_output: 0.75, ..self };
+        Self { multiplier_registers: 2, multiplier_primitive: primitive, ..far }
+    }
+
+    /// The same target with longer tables in block memories whose registers are used, written as `primitive` where there is
+    /// one.
+    #[must_use]
+    pub fn with_registered_tables(self, primitive: Option<Primitive>) -> Self {
+        // Read off routed reciprocals.
+        Self { table_registers: 2, table_output: 1.0, memory_primitive: primitive, ..self }
+    }
+
+    /// The same target where multiplier blocks are to be spared, or not.
+    #[must_use]
+    pub fn with_spared_multipliers(self, spares: bool) -> Self {
+        Self { spares_multipliers: spares, ..self }
     }
 
     /// The same target with differences that may be sums written as `primitive`.
@@ -165,10 +211,17 @@ impl DelayModel {
         Self { adder_primitive: Some(primitive), ..self }
     }
 
-    /// Register ranks inside an operation: only a product that one multiplier block takes has any.
+    /// Register ranks inside an operation: only a product that one multiplier block takes has any, and a table that one
+    /// memory block does.
     pub(super) fn ranks(&self, module: &Module, node: &Node) -> u32 {
         let fits = |id: &NodeId| module.node(*id).width <= self.multiplier_bits;
-        if node.op == Op::Mul && node.operands.iter().all(fits) { self.multiplier_registers } else { 0 }
+        match node.op {
+            Op::Mul if node.operands.iter().all(fits) => self.multiplier_registers,
+            Op::Lookup(_) if TABLE_INDEX.contains(&module.node(node.operands[0]).width) && node.width <= TABLE_BITS => {
+                self.table_registers
+            }
+            _ => 0,
+        }
     }
 
     /// From the operands' arrival to the result of each node of a combinational module; wiring takes no time.
@@ -180,6 +233,9 @@ impl DelayModel {
     /// `loads` is how many places each value chooses in.
     fn delay(&self, module: &Module, node: &Node, loads: &[u32]) -> f64 {
         let load = |position: usize| self.line(loads[chooser(module, node.operands[position]).index()]);
+        // A value whose bits choose in many places comes late wherever it goes.
+        let busiest =
+            || [0, 1].map(|position| self.line(loads[node.operands[position].index()])).into_iter().fold(0.0, f64::max);
         let width = |position: usize| module.node(node.operands[position]).width;
         let constant = |position: usize| matches!(module.node(node.operands[position]).op, Op::Constant(_));
         match node.op {
@@ -193,10 +249,10 @@ impl DelayModel {
             }
             Op::Mux if constant(1) || constant(2) => self.gate + load(0),
             Op::Mux => self.mux + load(0),
-            Op::Add | Op::Sub => self.adder(node.width),
+            Op::Add | Op::Sub => busiest() + self.adder(node.width),
             // The complement shares the look-up tables of the chain, or is as fast as a gate before it.
-            Op::SubAdd => load(2) + self.carry_in + self.adder(node.width),
-            Op::Less => self.tree(2 * width(0)).min(self.adder(width(0)) + self.carry_out),
+            Op::SubAdd => busiest().max(load(2) + self.carry_in) + self.adder(node.width),
+            Op::Less => busiest() + self.tree(2 * width(0)).min(self.adder(width(0)) + self.carry_out),
             Op::Equal if constant(0) || constant(1) => self.tree(width(0)),
             Op::Equal => self.tree(2 * width(0)).min(self.adder(width(0)) + self.carry_out),
             Op::Any | Op::All => self.tree(width(0)),
@@ -204,6 +260,7 @@ impl DelayModel {
             Op::Mul => self.product(width(0), width(1)),
             // Each output is a function of all address bits.
             Op::OneHot => self.tree(width(0)),
+            Op::Lookup(_) if self.ranks(module, node) > 0 => self.table_output,
             Op::Lookup(_) => self.table(width(0)),
             Op::Input | Op::Parameter(_) | Op::Constant(_) => 0.0,
             Op::Delay { .. } | Op::Register { .. } | Op::MemoryRead { .. } | Op::InstanceOutput { .. } => 0.0,
@@ -278,6 +335,19 @@ fn loads(module: &Module) -> Vec<u32> {
         };
         for position in (0..node.operands.len()).filter(|&position| chooses(position)) {
             loads[chooser(module, node.operands[position]).index()] += node.width;
+        }
+    }
+    // And the busiest bit of what they are taken from or go into.
+    for id in module.ids() {
+        if let Op::Slice { .. } = module.node(id).op {
+            let whole = module.node(id).operands[0].index();
+            loads[whole] = loads[whole].max(loads[id.index()]);
+        }
+    }
+    for id in module.ids() {
+        if let Op::Concat = module.node(id).op {
+            let parts = module.node(id).operands.iter().map(|part| loads[part.index()]).max();
+            loads[id.index()] = loads[id.index()].max(parts.unwrap_or_default());
         }
     }
     loads

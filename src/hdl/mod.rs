@@ -5,6 +5,7 @@
 //! them together or a [`Module`], from which nothing can be taken that its outputs do not need.
 
 mod cut;
+mod delay_block;
 mod delay_model;
 mod error;
 mod evaluate;
@@ -21,6 +22,7 @@ pub mod verilog;
 mod wiring;
 
 pub use cut::{Timing, cut};
+pub use delay_block::delay_block;
 pub use delay_model::DelayModel;
 pub use error::{Error, Errors};
 pub use evaluate::{EvaluateError, Evaluator, Pin};

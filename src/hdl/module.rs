@@ -173,13 +173,16 @@ pub enum Primitive {
     /// Lattice ECP5: two bits of a carry chain, each with the look-up table before it.
     #[serde(rename = "CCU2C")]
     Ccu2c,
+    /// Lattice ECP5: a block memory of 1024 words of 18 bits with two ports, with registers of index and word.
+    #[serde(rename = "DP16KD")]
+    Dp16kd,
 }
 
 impl Primitive {
     /// What a module's name ends in that stands for it.
     pub(super) const fn suffix(self) -> &'static str {
         match self {
-            Self::Mult18x18d | Self::Ccu2c => "_ecp5",
+            Self::Mult18x18d | Self::Ccu2c | Self::Dp16kd => "_ecp5",
         }
     }
 }

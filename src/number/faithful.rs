@@ -9,7 +9,12 @@
 //! in integers, minus for the reciprocal and plus for the root. Half a unit of the last place is contained in c0, so
 //! the value's upper bits are rounded to nearest by being cut off. The value before that is less than half a unit from
 //! the exact one, which makes the result less than one unit wrong, and right where it is a number of the format.
-//! `tests/faithful.rs` holds both for every significand of every fraction length there is.
+//!
+//! Cut off without that half, the value is a number of which the exact one is less than half a unit below or less than
+//! one and a half above ([`Faithful::lower`]): what is nearest is that number or the next, and the sign of what their
+//! middle leaves tells which ([`Faithful::nearest`]). So one table serves both kinds of root.
+//!
+//! `tests/faithful.rs` holds all of it for every significand of every fraction length there is.
 
 use std::sync::OnceLock;
 
@@ -51,6 +56,8 @@ pub struct Faithful {
 
 /// Bits of a value below the result's last place.
 const GUARD_BITS: u32 = 3;
+/// Half a unit of that place, which is contained in c0.
+const HALF: u64 = 1 << (GUARD_BITS - 1);
 /// Fractions up to this length have every result in the table.
 const LONGEST_WHOLE: u32 = 6;
 /// Places at which a piece's error is looked at before its c0 is chosen.
@@ -72,6 +79,34 @@ impl Faithful {
         let t_bits = self.t_bits();
         let piece = self.pieces[(odd << self.index_bits) as usize + (fraction >> t_bits) as usize];
         self.unrounded(piece, fraction & ((1 << t_bits) - 1)) >> GUARD_BITS
+    }
+
+    /// The same cut off without the half: the exact value is nearest to this or to the next one. At least 2^F and less
+    /// than 2^(F+1).
+    #[inline]
+    pub fn lower(&self, odd: u32, fraction: u64) -> u64 {
+        let t_bits = self.t_bits();
+        let piece = self.pieces[(odd << self.index_bits) as usize + (fraction >> t_bits) as usize];
+        (self.unrounded(piece, fraction & ((1 << t_bits) - 1)) - HALF) >> GUARD_BITS
+    }
+
+    /// The value rounded to nearest, by the low bits of one product alone as hardware has them. With the lower number y,
+    /// 2y + 1 is twice the middle, which no exact value is; what it leaves is small, so its sign stands right above the
+    /// low F + 3 bits of m · (2y + 1) or F + 5 of (2y + 1)².
+    #[inline]
+    pub fn nearest(&self, odd: u32, fraction: u64) -> u64 {
+        let lower = self.lower(odd, fraction);
+        let (m, twice) = (fraction | 1 << self.fraction_bits, 2 * lower + 1);
+        let is_above = match self.function {
+            // 2^(2F+2), of which these bits know nothing, less the product.
+            Function::Reciprocal => m.wrapping_mul(twice) >> (self.fraction_bits + 2) & 1 == 1,
+            // 4m · 2^(F + odd) less the square. That is odd, so it borrows from the three bits they have in common.
+            Function::Root => {
+                let square = twice.wrapping_mul(twice) >> (self.fraction_bits + 2);
+                (m << odd).wrapping_add(!square) >> 2 & 1 == 0
+            }
+        };
+        lower + u64::from(is_above)
     }
 
     #[inline]
@@ -108,6 +143,11 @@ impl Faithful {
     /// Bits of a value below the result's last place.
     pub fn guard_bits(&self) -> u32 {
         GUARD_BITS
+    }
+
+    /// Half a unit of the last place, as it is contained in c0.
+    pub fn half(&self) -> u64 {
+        HALF
     }
 
     /// The pieces, by the fraction's upper bits; for the root, those of odd exponents behind the others.
@@ -178,12 +218,18 @@ impl Faithful {
         };
         let samples = (0..=SAMPLES).map(|i| error((last * i).div_euclid(SAMPLES)));
         let (low, high) = samples.fold((f64::MAX, f64::MIN), |(low, high), e| (low.min(e), high.max(e)));
-        let half = 1 << (GUARD_BITS - 1);
-        let mut piece = Piece { c0: ((low + high) / 2.0).round() as u64 + half, c1, c2 };
+        let mut piece = Piece { c0: ((low + high) / 2.0).round() as u64 + HALF, c1, c2 };
+        let [one, two] = [0, 1].map(|place| 1 << (self.fraction_bits + place + GUARD_BITS));
         // The root of the largest significand stays below 2.
         let is_last = odd == 1 && index + 1 == 1 << self.index_bits;
-        while is_last && self.unrounded(piece, last) >> (self.fraction_bits + 1 + GUARD_BITS) != 0 {
+        while is_last && self.unrounded(piece, last) >= two {
             piece.c0 -= 1;
+        }
+        // That of 1 is at least 1, and its reciprocal, 2, comes from below: the leading bit is known.
+        match self.function {
+            Function::Root if (odd, index) == (0, 0) => piece.c0 = piece.c0.max(one + HALF),
+            Function::Reciprocal if index == 0 => piece.c0 = piece.c0.min(two + HALF - 1),
+            _ => {}
         }
         piece
     }

@@ -10,6 +10,19 @@ use crate::hdl::Signal;
 /// a + b, or a − b where `subtract`; to odd, only for results that do not leave the normal range. An exact zero
 /// is +0 unless both terms are −0 (IEEE 754-2019, clause 6.3).
 pub fn add<'g>(a: Signal<'g>, b: Signal<'g>, domain: Domain, subtract: bool, rounding: Rounding) -> Signal<'g> {
+    add_to(a, b, domain, domain, subtract, rounding)
+}
+
+/// The same with the result in another domain, in which every finite sum is zero or normal and no operand loses a bit
+/// ([`super::widening::is_direct`]).
+pub fn add_to<'g>(
+    a: Signal<'g>,
+    b: Signal<'g>,
+    domain: Domain,
+    to: Domain,
+    subtract: bool,
+    rounding: Rounding,
+) -> Signal<'g> {
     let (a, mut b) = (Operand::unpack(a, domain, "a"), Operand::unpack(b, domain, "b"));
     if subtract {
         b.sign = (!b.sign).named("b_sign_inverted");
@@ -18,28 +31,33 @@ pub fn add<'g>(a: Signal<'g>, b: Signal<'g>, domain: Domain, subtract: bool, rou
 
     let b_is_larger = a.magnitude().less_than(b.magnitude()).named("b_is_larger");
     let choose = |if_b, if_a, name: &str| b_is_larger.select(if_b, if_a).named(name);
+    // Both differences beside the comparison: the distance is then there as soon as that is.
+    let [a_exponent, b_exponent] = [a.effective_exponent(), b.effective_exponent()];
+    let a_minus_b = (a_exponent - b_exponent).named("a_exponent_minus_b");
+    let b_minus_a = (b_exponent - a_exponent).named("b_exponent_minus_a");
+    let exponent_difference = choose(b_minus_a, a_minus_b, "exponent_difference");
     let large_sign = choose(b.sign, a.sign, "large_sign");
-    let large_exponent = choose(b.effective_exponent(), a.effective_exponent(), "large_exponent");
-    let small_exponent = choose(a.effective_exponent(), b.effective_exponent(), "small_exponent");
+    let large_exponent = choose(b_exponent, a_exponent, "large_exponent");
     let large_significand = choose(b.true_significand(), a.true_significand(), "large_significand");
     let small_significand = choose(a.true_significand(), b.true_significand(), "small_significand");
+    let more = to.fraction_bits() - domain.fraction_bits();
+    let [large_significand, small_significand] = [large_significand, small_significand].map(|it| it.append_zeros(more));
 
     // Below the significand stand a guard bit, a round bit and the sticky bit; above it the carry.
-    let exponent_difference = (large_exponent - small_exponent).named("exponent_difference");
     let (mut aligned, mut sticky) = shift_right_sticky(small_significand.append_zeros(2), exponent_difference, "align");
     if !domain.keeps_subnormals() && !domain.is_normal() {
         // A flushed number's fraction does not count: dropped here, where it is cheap.
         let small_is_zero = b_is_larger.select(a.is_zero(), b.is_zero()).named("small_is_zero");
         (aligned, sticky) = (aligned.gate(!small_is_zero), sticky & !small_is_zero);
     }
-    let width = domain.significand_bits() + 4;
+    let width = to.significand_bits() + 4;
     let addend = aligned.concat(sticky.named("aligned_sticky")).extend(width).named("addend");
     let augend = large_significand.append_zeros(3).extend(width).named("augend");
     let sum = augend.minus_or_plus(addend, !effective_subtraction).named("sum");
 
-    let (rounded, sum_is_zero) = match domain.keeps_subnormals() {
+    let (rounded, sum_is_zero) = match domain.keeps_subnormals() && to == domain {
         true => gradual(domain, rounding, sum, large_exponent),
-        false => flushed(domain, rounding, sum, large_exponent),
+        false => flushed(domain, to, rounding, sum, large_exponent),
     };
     let is_zero = if domain.keeps_subnormals() || domain.is_normal() {
         sum_is_zero
@@ -54,7 +72,7 @@ pub fn add<'g>(a: Signal<'g>, b: Signal<'g>, domain: Domain, subtract: bool, rou
         zero: is_exact_zero,
     };
     let sign = large_sign & !(is_exact_zero & effective_subtraction);
-    pack(domain, sign, rounded, special)
+    pack(to, sign, rounded, special)
 }
 
 /// Normalises and rounds `sum`, which is carry, significand and three bits. With subnormals the shift ends where the
@@ -65,16 +83,23 @@ fn gradual<'g>(
     sum: Signal<'g>,
     large_exponent: Signal<'g>,
 ) -> (Rounded<'g>, Signal<'g>) {
-    let (zeros, sum_is_zero) = leading_zeros(sum, "sum");
-    let zeros = zeros.named("leading_zeros");
+    let sum_is_zero = sum.is_zero().named("sum_is_zero");
+    // A one where the smallest normal number's would stand: what is counted ends there, so the count is the distance.
+    let count_bits = u32::BITS - (sum.width() - 1).leading_zeros();
+    let long_exponent = large_exponent.extend(large_exponent.width().max(count_bits + 1));
+    let is_near = long_exponent.drop_low(count_bits).is_zero().named("end_is_near");
+    let ends = long_exponent.low(count_bits).one_hot().low(sum.width());
+    let ends: Vec<_> = (0..sum.width()).map(|place| ends.bit(place) & is_near).collect();
+    let end = Signal::join(&ends).named("exponent_end");
+    let (distance, _) = leading_zeros((sum | end).named("sum_or_end"), "sum");
+    let distance = distance.named("normalise_distance");
+    let normalised = shift_left(sum, distance, "normalise").named("normalised");
     let exponent_bits = domain.exponent_bits();
-    let width = exponent_bits.max(zeros.width());
-    let is_subnormal = large_exponent.extend(width).less_than(zeros.extend(width)).named("is_subnormal");
-    let limit = large_exponent.extend(width).low(zeros.width());
-    let distance = is_subnormal.select(limit, zeros).named("normalise_distance");
-    let exponent = (large_exponent.plus(1).extend(width) - zeros.extend(width)).low(exponent_bits);
-    let exponent = exponent.gate(!is_subnormal).named("normalised_exponent");
-    let (significand, guard, sticky) = taken(domain, shift_left(sum, distance, "normalise").named("normalised"));
+    let width = exponent_bits.max(distance.width());
+    let exponent = (large_exponent.plus(1).extend(width) - distance.extend(width)).low(exponent_bits);
+    // Without its leading one a result is subnormal, or zero.
+    let exponent = exponent.gate(normalised.msb()).named("normalised_exponent");
+    let (significand, guard, sticky) = taken(domain, normalised);
     let fraction = significand.low(domain.fraction_bits());
     let rounded = Rounded {
         magnitude: rounding.apply(exponent, fraction, guard, sticky),
@@ -84,17 +109,19 @@ fn gradual<'g>(
     (rounded, sum_is_zero)
 }
 
-/// The same without subnormals: the exponent may go below its end; rounding then flushes.
+/// The same without subnormals: the exponent may go below its end; rounding then flushes. The exponent of `from` goes into
+/// that of `domain`.
 fn flushed<'g>(
+    from: Domain,
     domain: Domain,
     rounding: Rounding,
     sum: Signal<'g>,
     large_exponent: Signal<'g>,
 ) -> (Rounded<'g>, Signal<'g>) {
     let normalised = normalise(sum, "normalise");
-    let largest = i64::from(domain.special_exponent()) - 1;
+    let largest = i64::from(from.special_exponent()) - 1;
     let exponent = Signed::unsigned(large_exponent, 1, largest)
-        .offset(1)
+        .offset(1 + i64::from(domain.bias() - from.bias()))
         .minus(Signed::unsigned(normalised.zeros.named("leading_zeros"), 0, i64::from(sum.width()) - 1))
         .named("normalised_exponent");
     let (significand, guard, sticky) = taken(domain, normalised.value.named("normalised"));

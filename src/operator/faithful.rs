@@ -15,7 +15,7 @@ pub fn recip(a: Signal<'_>, domain: Domain) -> Signal<'_> {
     let a = Operand::unpack(a, domain, "a");
     let (a_exponent, significand) = a.normalised();
     let fraction = significand.low(domain.fraction_bits()).named("significand_fraction");
-    let value = value(Function::Reciprocal, domain, fraction, None);
+    let value = value(Function::Reciprocal, domain, fraction, None, Cut::Half);
     // Of a power of two the value is 2, which leaves no fraction under an exponent that is one more.
     let is_power = fraction.is_zero().named("is_power_of_two");
     let exponent = a_exponent.subtracted_from(2 * i64::from(domain.bias()) - 1).named("quotient_exponent");
@@ -30,7 +30,7 @@ pub fn sqrt(a: Signal<'_>, domain: Domain) -> Signal<'_> {
     // The bias is odd, so an even biased exponent stands for an odd one, of which one goes into the radicand.
     let is_odd = (!a_exponent.bits(1)).named("exponent_is_odd");
     let exponent = a_exponent.offset(i64::from(domain.bias())).half().named("root_exponent");
-    let value = value(Function::Root, domain, significand.low(domain.fraction_bits()), Some(is_odd));
+    let value = value(Function::Root, domain, significand.low(domain.fraction_bits()), Some(is_odd), Cut::Half);
     sqrt::finish(domain, a, unrounded(domain, exponent, value))
 }
 
@@ -41,8 +41,23 @@ fn unrounded<'g>(domain: Domain, exponent: Signed<'g>, value: Signal<'g>) -> Unr
     Unrounded { exponent, significand, guard: zero, sticky: zero, doubled: None }
 }
 
-/// [`Faithful::value`], without the bits above the fraction.
-fn value<'g>(function: Function, domain: Domain, fraction: Signal<'g>, odd: Option<Signal<'g>>) -> Signal<'g> {
+/// What is contained in a value before it is cut off.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Cut {
+    /// Half a unit of the last place: [`Faithful::value`].
+    Half,
+    /// Nothing: [`Faithful::lower`].
+    Nothing,
+}
+
+/// The table's value, without the bits above the fraction.
+pub fn value<'g>(
+    function: Function,
+    domain: Domain,
+    fraction: Signal<'g>,
+    odd: Option<Signal<'g>>,
+    cut: Cut,
+) -> Signal<'g> {
     let table = Faithful::of(function, domain.fraction_bits());
     let t_bits = table.t_bits();
     let index = fraction.drop_low(t_bits);
@@ -51,14 +66,20 @@ fn value<'g>(function: Function, domain: Domain, fraction: Signal<'g>, odd: Opti
     let bits = |words: &[u128]| 128 - words.iter().max().map_or(0, |largest| largest.leading_zeros());
     // The value's bits above the fraction are known, so sums wrap there.
     let value_bits = domain.fraction_bits() + table.guard_bits();
-    let begins: Vec<u128> = words(|piece| piece.c0).into_iter().map(|word| word & ((1 << value_bits) - 1)).collect();
+    let less = if cut == Cut::Half { 0 } else { u128::from(table.half()) };
+    let begins = words(|piece| piece.c0).into_iter().map(|word| (word - less) & ((1 << value_bits) - 1));
+    let begins: Vec<u128> = begins.collect();
     let begin = index.lookup(&begins, value_bits).named("piece_begin");
     if t_bits == 0 {
         return begin.drop_low(table.guard_bits());
     }
+    // Both are wanted at once: one table.
     let (slopes, curves) = (words(|piece| piece.c1), words(|piece| piece.c2));
-    let slope = index.lookup(&slopes, bits(&slopes)).named("piece_slope");
-    let curve = index.lookup(&curves, bits(&curves)).named("piece_curve");
+    let (slope_bits, curve_bits) = (bits(&slopes), bits(&curves));
+    let both: Vec<u128> = slopes.iter().zip(&curves).map(|(slope, curve)| slope << curve_bits | curve).collect();
+    let both = index.lookup(&both, slope_bits + curve_bits).named("piece_slope_and_curve");
+    let slope = both.high(slope_bits).named("piece_slope");
+    let curve = both.low(curve_bits).named("piece_curve");
 
     let t = fraction.low(t_bits).named("t");
     let bend = product_of(curve, t.high(table.high_bits()), "bend").drop_low(table.inner_shift());

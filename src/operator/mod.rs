@@ -4,8 +4,10 @@
 //! Operators are made combinational ([`build`]) and cut into stages for a clock afterwards ([`pipelined`]).
 
 mod add;
+mod architecture;
 mod compare;
 mod convert;
+mod corrected;
 mod div;
 mod domain;
 mod faithful;
@@ -18,9 +20,12 @@ mod root_exceeds;
 mod sqrt;
 mod square_excess;
 mod twin;
+mod widening;
 
+pub use architecture::Architecture;
 pub use domain::{Domain, Values};
 pub use iterative::iterative;
+pub(crate) use widening::is_direct;
 
 use std::sync::Arc;
 
@@ -39,6 +44,16 @@ pub enum Operator {
     AddToOdd,
     /// a − b, rounded to odd.
     SubToOdd,
+    /// a + b in another format, of which both are made numbers first.
+    WideningAdd {
+        /// The format of the result.
+        to: Format,
+    },
+    /// a − b in another format, of which both are made numbers first.
+    WideningSub {
+        /// The format of the result.
+        to: Format,
+    },
     /// a · b.
     Mul,
     /// a · a.
@@ -86,7 +101,9 @@ impl Operator {
     pub const fn result_format(self, format: Format) -> Option<Format> {
         match self {
             Self::Greater | Self::AtMost | Self::RootExceeds => None,
-            Self::Convert { to } | Self::SquareExcess { to } => Some(to),
+            Self::Convert { to } | Self::SquareExcess { to } | Self::WideningAdd { to } | Self::WideningSub { to } => {
+                Some(to)
+            }
             _ => Some(format),
         }
     }
@@ -98,6 +115,8 @@ impl Operator {
             Self::Sub => "sub",
             Self::AddToOdd => "add_to_odd",
             Self::SubToOdd => "sub_to_odd",
+            Self::WideningAdd { .. } => "widening_add",
+            Self::WideningSub { .. } => "widening_sub",
             Self::Mul => "mul",
             Self::Square => "square",
             Self::AddMagnitudes => "add_magnitudes",
@@ -117,7 +136,9 @@ impl Operator {
     pub fn module_name(self, domain: impl Into<Domain>) -> String {
         let domain = domain.into();
         match self {
-            Self::Convert { to } | Self::SquareExcess { to } => format!("fp_{}_{domain}_to_{to}", self.name()),
+            Self::Convert { to } | Self::SquareExcess { to } | Self::WideningAdd { to } | Self::WideningSub { to } => {
+                format!("fp_{}_{domain}_to_{to}", self.name())
+            }
             _ => format!("fp_{}_{domain}", self.name()),
         }
     }
@@ -128,6 +149,8 @@ impl Operator {
             Self::Sub => "result = a - b, rounded once".to_owned(),
             Self::AddToOdd => "result = a + b, rounded to odd: what does not fit sets the last bit".to_owned(),
             Self::SubToOdd => "result = a - b, rounded to odd: what does not fit sets the last bit".to_owned(),
+            Self::WideningAdd { to } => format!("result = a + b in {to}, rounded once"),
+            Self::WideningSub { to } => format!("result = a - b in {to}, rounded once"),
             Self::Mul => "result = a * b, rounded once".to_owned(),
             Self::Square => "result = a * a, rounded once".to_owned(),
             Self::AddMagnitudes => "result = a + b, neither of them negative, rounded once".to_owned(),
@@ -152,21 +175,39 @@ pub const INPUTS: [&str; 4] = ["a", "b", "c", "d"];
 /// The operator as a combinational module: its [`INPUTS`], and the output `result`. It is made for the values in
 /// `domain`: for every word of a format, or fewer.
 ///
+/// Of several architectures it has that of [`Architecture::Recurrence`].
+///
 /// # Errors
 /// What the graph recorded.
 pub fn build(operator: Operator, domain: impl Into<Domain>) -> Result<Arc<Module>, Errors> {
+    build_as(operator, domain, Architecture::Recurrence)
+}
+
+/// [`build`] in a certain architecture, where the operator has it for such values.
+///
+/// # Errors
+/// What the graph recorded.
+pub fn build_as(
+    operator: Operator,
+    domain: impl Into<Domain>,
+    architecture: Architecture,
+) -> Result<Arc<Module>, Errors> {
     let domain = domain.into();
+    let by_table = architecture == Architecture::Table && Architecture::Table.is_possible(operator, domain);
     let format = domain.format();
     let graph = Graph::new(operator.module_name(domain));
     let faithful = format.roots() == Roots::Faithful;
     graph.about(operator.about(faithful));
     graph.about(about_format(format));
+    about_architecture(operator, domain, architecture).into_iter().for_each(|line| graph.about(line));
     about_values(domain.values()).into_iter().for_each(|line| graph.about(line));
     let inputs: Vec<_> = INPUTS[..operator.operands()].iter().map(|name| graph.input(name, format.width())).collect();
     let [a, b, c, d] = [0, 1, 2, 3].map(|index| inputs[index.min(inputs.len() - 1)]);
     let result = match operator {
         Operator::Add => add::add(a, b, domain, false, domain.rounding()),
+        Operator::WideningAdd { to } => widening::sum(a, b, domain, to, false),
         Operator::Sub => add::add(a, b, domain, true, domain.rounding()),
+        Operator::WideningSub { to } => widening::sum(a, b, domain, to, true),
         Operator::AddToOdd => add::add(a, b, domain, false, Rounding::Odd),
         Operator::SubToOdd => add::add(a, b, domain, true, Rounding::Odd),
         Operator::Mul => mul::mul(a, b, domain),
@@ -175,8 +216,10 @@ pub fn build(operator: Operator, domain: impl Into<Domain>) -> Result<Arc<Module
         Operator::AddMagnitudes => add::add(a, b, domain, false, domain.rounding()),
         Operator::Div => div::div(a, b, domain),
         Operator::Recip if faithful => faithful::recip(a, domain),
+        Operator::Recip if by_table => corrected::recip(a, domain),
         Operator::Recip => recip::recip(a, domain),
         Operator::Sqrt if faithful => faithful::sqrt(a, domain),
+        Operator::Sqrt if by_table => corrected::sqrt(a, domain),
         Operator::Sqrt => sqrt::sqrt(a, domain),
         Operator::Halve => halve::halve(a, domain),
         Operator::Greater => compare::greater(a, b, domain),
@@ -189,7 +232,8 @@ pub fn build(operator: Operator, domain: impl Into<Domain>) -> Result<Arc<Module
     graph.finish()
 }
 
-/// The operator cut into stages for `clock_mhz`; its latency is in the module.
+/// The operator in the architecture for the model's target ([`Architecture::of`]), cut into stages for `clock_mhz`; its
+/// latency is in the module.
 ///
 /// # Errors
 /// What the graph recorded, or what the cut could not meet.
@@ -199,8 +243,19 @@ pub fn pipelined(
     model: &DelayModel,
     clock_mhz: f64,
 ) -> Result<Arc<Module>, Errors> {
-    let combinational = build(operator, domain)?;
+    let combinational = build_as(operator, domain, Architecture::of(model))?;
     cut(&combinational, model, clock_mhz)
+}
+
+/// How correct roots are made, where there are several ways.
+fn about_architecture(operator: Operator, domain: Domain, architecture: Architecture) -> Option<&'static str> {
+    if !Architecture::Table.is_possible(operator, domain) {
+        return None;
+    }
+    Some(match architecture {
+        Architecture::Table => "a table of parabolas, and the sign of what the middle of two neighbours leaves",
+        Architecture::Recurrence => "a digit after the other, each a carry chain",
+    })
 }
 
 fn about_values(values: Values) -> Option<&'static str> {

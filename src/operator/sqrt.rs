@@ -16,7 +16,12 @@ pub fn sqrt(a: Signal<'_>, domain: Domain) -> Signal<'_> {
 pub fn radicand<'g>(a: &Operand<'g>) -> Signal<'g> {
     let (exponent, significand) = a.normalised();
     let is_odd = (!exponent.bits(1)).named("exponent_is_odd");
-    is_odd.select(significand.append_zeros(1), significand.extend(significand.width() + 1)).named("radicand")
+    radicand_of(significand, is_odd).named("radicand")
+}
+
+/// The significand, or twice as much where the exponent is odd.
+pub fn radicand_of<'g>(significand: Signal<'g>, is_odd: Signal<'g>) -> Signal<'g> {
+    is_odd.select(significand.append_zeros(1), significand.extend(significand.width() + 1))
 }
 
 /// Digits of the root. Toward zero nobody asks for what is below the significand.

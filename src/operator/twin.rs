@@ -25,6 +25,8 @@ impl Operator {
             Self::Sub => (x - y).bits(),
             Self::AddToOdd => x.plus_to_odd(y).bits(),
             Self::SubToOdd => x.minus_to_odd(y).bits(),
+            Self::WideningAdd { to } => (x.to(to) + y.to(to)).bits(),
+            Self::WideningSub { to } => (x.to(to) - y.to(to)).bits(),
             Self::Mul => (x * y).bits(),
             Self::Square => (x * x).bits(),
             Self::Div => (x / y).bits(),

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::kernel::{Kernel, Source};
 use super::range::{Ranges, Unit};
 use crate::hdl::{Errors, Module};
+use crate::operator::Operator;
 
 /// How many levels of glue may stand one behind the other before a register comes between: a level is a two-way
 /// choice or a gate, and operators' outputs and inputs are registers.
@@ -49,7 +50,10 @@ impl Schedule {
             let at_once = arrivals.clone().map(|(ready, _)| ready).max();
             let (start, latency) = match value.source {
                 Source::Constant(_) => continue,
-                Source::Input(_) => (0, 0),
+                Source::Input(_) => {
+                    let late = kernel.late.iter().find(|(id, _)| id.index() == index);
+                    (0, late.map_or(0, |(_, cycles)| *cycles))
+                }
                 Source::Operator(operator, format) => {
                     let unit = this.units[index].unwrap_or((operator, format.into()));
                     let module = match this.modules.get(&unit) {
@@ -74,6 +78,7 @@ impl Schedule {
             this.start[index] = Some(start);
             this.ready[index] = Some(start + latency);
         }
+        this.convert_late(kernel);
         for (_, id) in &kernel.outputs {
             // Outputs are registers.
             let is_register = glue[id.index()] == 0 && matches!(kernel.value(*id).source, Source::Operator(..));
@@ -82,5 +87,28 @@ impl Schedule {
             }
         }
         Ok(this)
+    }
+
+    /// What becomes wider by being converted waits as it was: the conversion is made when it is first needed.
+    fn convert_late(&mut self, kernel: &Kernel) {
+        for (index, value) in kernel.values.iter().enumerate() {
+            let (Source::Operator(Operator::Convert { to }, from), Some(start), Some(ready)) =
+                (value.source, self.start[index], self.ready[index])
+            else {
+                continue;
+            };
+            let uses = kernel
+                .values
+                .iter()
+                .zip(&self.start)
+                .filter(|(user, _)| user.operands.iter().any(|id| id.index() == index));
+            let first = uses.filter_map(|(_, start)| *start).min();
+            let is_output = kernel.outputs.iter().any(|(_, id)| id.index() == index);
+            if let Some(first) = first.filter(|_| to.width() > from.width() && !is_output) {
+                let later = first.saturating_sub(ready);
+                self.start[index] = Some(start + later);
+                self.ready[index] = Some(ready + later);
+            }
+        }
     }
 }

@@ -1,11 +1,12 @@
 //! A kernel with times as a module: operators as instances, and delays where a value has to wait.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::balance::Schedule;
 use super::kernel::{Kernel, Source, ValueId};
 use super::names::Names;
-use crate::hdl::{DelayModel, Errors, Graph, Module, Node, NodeId, Op, Signal};
+use crate::hdl::{DelayModel, Errors, Graph, Module, Node, NodeId, Op, Signal, delay_block};
 use crate::operator::{INPUTS, pipelined};
 
 impl Kernel {
@@ -15,12 +16,26 @@ impl Kernel {
     /// # Errors
     /// What a graph recorded, or a clock no operator can be cut for.
     pub fn pipeline(&self, model: &DelayModel, clock_mhz: f64) -> Result<Arc<Module>, Errors> {
+        self.with_widening_sums().pipeline_as_is(model, clock_mhz)
+    }
+
+    fn pipeline_as_is(&self, model: &DelayModel, clock_mhz: f64) -> Result<Arc<Module>, Errors> {
         let schedule = Schedule::new(self, |(operator, domain)| pipelined(operator, domain, model, clock_mhz))?;
         let graph = Graph::new(self.name.as_str());
         self.about.iter().for_each(|line| graph.about(line.as_str()));
         graph.about(format!("{} cycles from inputs to outputs, new inputs in every cycle", schedule.latency));
         let signals = vec![None; self.values.len()];
-        Emitter { kernel: self, schedule: &schedule, graph: &graph, names: Names::new(self), signals }.emit();
+        let names = Names::new(self);
+        let mut emitter = Emitter {
+            kernel: self,
+            schedule: &schedule,
+            graph: &graph,
+            names,
+            signals,
+            model,
+            waiting: BTreeMap::new(),
+        };
+        emitter.emit()?;
         let mut module = graph.finish()?;
         let inner = Arc::make_mut(&mut module);
         inner.latency = schedule.latency;
@@ -36,10 +51,13 @@ struct Emitter<'a, 'g> {
     names: Names,
     /// Values when they come to be.
     signals: Vec<Option<Signal<'g>>>,
+    model: &'a DelayModel,
+    /// Values as of a cycle, out of block memories.
+    waiting: BTreeMap<(ValueId, u32), Signal<'g>>,
 }
 
 impl<'g> Emitter<'_, 'g> {
-    fn emit(&mut self) {
+    fn emit(&mut self) -> Result<(), Errors> {
         for (name, id) in &self.kernel.inputs {
             self.signals[id.index()] = Some(self.graph.input(name, self.kernel.value(*id).kind.width()));
         }
@@ -49,26 +67,41 @@ impl<'g> Emitter<'_, 'g> {
             } else if let Some(start) = self.schedule.start[index]
                 && self.signals[index].is_none()
             {
-                self.signals[index] = self.compute(ValueId(index as u32), start);
+                self.signals[index] = self.compute(ValueId(index as u32), start)?;
             }
         }
         for (name, id) in &self.kernel.outputs {
-            if let Some(signal) = self.at(*id, self.schedule.latency) {
+            if let Some(signal) = self.at(*id, self.schedule.latency)? {
                 self.graph.output(name, signal);
             }
         }
+        Ok(())
     }
 
-    /// The value as of `cycle`, at or after the one it comes to be in. The graph makes one chain of a value's delays.
-    fn at(&self, id: ValueId, cycle: u32) -> Option<Signal<'g>> {
-        let ready = self.schedule.ready[id.index()].unwrap_or(cycle);
-        Some(self.signals[id.index()]?.delay(cycle - ready))
+    /// The value as of `cycle`, at or after the one it comes to be in. The graph makes one chain of a value's delays, but
+    /// for those that fill a block memory.
+    fn at(&mut self, id: ValueId, cycle: u32) -> Result<Option<Signal<'g>>, Errors> {
+        let Some(signal) = self.signals[id.index()] else { return Ok(None) };
+        if let Some(known) = self.waiting.get(&(id, cycle)) {
+            return Ok(Some(*known));
+        }
+        let waits = cycle - self.schedule.ready[id.index()].unwrap_or(cycle);
+        let is_constant = signal.as_constant().is_some();
+        let Some(block) = delay_block(waits, signal.width(), self.model)?.filter(|_| !is_constant) else {
+            return Ok(Some(signal.delay(waits)));
+        };
+        let what = self.names.signal(id).map_or_else(|| format!("value_{}", id.index()), str::to_owned);
+        let instance = self.graph.instance(&format!("{what}_waits_{waits}"), &block, &[("value", signal)]);
+        let waiting = instance.output("delayed");
+        self.waiting.insert((id, cycle), waiting);
+        Ok(Some(waiting))
     }
 
     /// The value of operands that meet in cycle `start`.
-    fn compute(&mut self, id: ValueId, start: u32) -> Option<Signal<'g>> {
+    fn compute(&mut self, id: ValueId, start: u32) -> Result<Option<Signal<'g>>, Errors> {
         let value = self.kernel.value(id);
-        let operands = value.operands.iter().map(|id| self.at(*id, start)).collect::<Option<Vec<_>>>()?;
+        let operands = value.operands.iter().map(|id| self.at(*id, start)).collect::<Result<Option<Vec<_>>, _>>()?;
+        let Some(operands) = operands else { return Ok(None) };
         let name = self.names.signal(id).map(str::to_owned);
         let signal = match (value.source, operands.as_slice()) {
             (Source::Operator(operator, format), _) => {
@@ -86,12 +119,12 @@ impl<'g> Emitter<'_, 'g> {
             (Source::And, &[a, b]) => a & b,
             (Source::Or, &[a, b]) => a | b,
             (Source::Not, &[a]) => !a,
-            _ => return None,
+            _ => return Ok(None),
         };
-        Some(match name {
+        Ok(Some(match name {
             Some(name) => signal.named(&name),
             None => signal,
-        })
+        }))
     }
 }
 

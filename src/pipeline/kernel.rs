@@ -80,6 +80,8 @@ pub struct Kernel {
     pub(super) values: Vec<Value>,
     pub(super) inputs: Vec<(String, ValueId)>,
     pub(super) outputs: Vec<(String, ValueId)>,
+    /// Inputs that come some cycles after the others.
+    pub(super) late: Vec<(ValueId, u32)>,
     pub(super) promises: Vec<Promise>,
     pub(super) errors: Vec<Error>,
     known: HashMap<(Source, Vec<ValueId>, Kind), ValueId>,
@@ -93,6 +95,7 @@ impl Kernel {
             values: Vec::new(),
             inputs: Vec::new(),
             outputs: Vec::new(),
+            late: Vec::new(),
             promises: Vec::new(),
             errors: Vec::new(),
             known: HashMap::new(),

@@ -11,6 +11,7 @@ mod report;
 mod share;
 mod sphere;
 mod trace;
+mod widen;
 mod wire;
 
 pub use kernel::Kernel;

@@ -187,8 +187,10 @@ fn judge(
     let (a, b) = (operands[0], operands[operands.len() - 1]);
     let fraction = operator.result_format(format).map_or(0, |format| format.fraction_bits() as i32);
     let result = match operator {
-        Operator::Add | Operator::AddMagnitudes | Operator::AddToOdd => Some(a.sum(b, false)),
-        Operator::Sub | Operator::SubToOdd => Some(a.sum(b, true)),
+        Operator::Add | Operator::AddMagnitudes | Operator::AddToOdd | Operator::WideningAdd { .. } => {
+            Some(a.sum(b, false))
+        }
+        Operator::Sub | Operator::SubToOdd | Operator::WideningSub { .. } => Some(a.sum(b, true)),
         Operator::Mul if ids[0] == ids[ids.len() - 1] => Some(Range { not_negative: true, ..a.product(b, fraction) }),
         Operator::Mul => Some(a.product(b, fraction)),
         Operator::Square => Some(Range { not_negative: true, ..a.product(a, fraction) }),
@@ -208,7 +210,9 @@ fn judge(
     let range = result.filter(is_exact);
     if operands.iter().any(|operand| operand.has_subnormals(format)) {
         let unit = with(operator, Values::Finite);
-        let short = (!matches!(operator, Operator::Convert { .. })).then(|| "an operand may be subnormal".to_owned());
+        let takes_them =
+            matches!(operator, Operator::Convert { .. } | Operator::WideningAdd { .. } | Operator::WideningSub { .. });
+        let short = (!takes_them).then(|| "an operand may be subnormal".to_owned());
         return Judged { unit, range, short };
     }
     match (operator, result) {

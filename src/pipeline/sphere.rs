@@ -25,6 +25,8 @@ pub struct Settings {
     pub clock_mhz: f64,
     /// Cycles from one pair to the next: 1, or more with fewer operators.
     pub interval: u32,
+    /// Whether `valid` comes a cycle after the pair, from logic that has to look at all of it. Not at an interval above 1.
+    pub valid_is_late: bool,
     /// How long the target takes for each operation.
     pub model: DelayModel,
 }
@@ -32,7 +34,8 @@ pub struct Settings {
 /// The module `sphere_kernel`: a pair on inputs `x1 y1 z1 r1 x2 y2 z2 r2` with `valid`; `hit`, `grazing` and the
 /// fields asked for (`pos_x pos_y pos_z`, `normal_x normal_y normal_z`, `depth`), [`Module::latency`] cycles later.
 ///
-/// `valid` is a truth value of the kernel like any other, and not reset. It may be set only if the pair's words are
+/// `valid` is a truth value of the kernel like any other, and not reset; where [`Settings::valid_is_late`] it comes a cycle
+/// after the pair. It may be set only if the pair's words are
 /// finite and its radii not below zero. Without it, or without a hit, all outputs are zero. The kernel of exact squares
 /// has an output `unsettled` too, which may be set without a hit.
 ///
@@ -62,6 +65,7 @@ pub fn is_normal(arithmetic: Arithmetic, fields: Fields) -> Result<bool, Errors>
         radius: None,
         clock_mhz: 100.0,
         interval: 1,
+        valid_is_late: false,
         model: DelayModel::default(),
     };
     Ok(trace("sphere_kernel", |ports| read(ports, &settings))?.not_normal().is_none())
@@ -81,7 +85,10 @@ fn read(ports: &Ports, settings: &Settings) {
         (centre, radius.map_or_else(own, |radius| centre.x.constant(radius.into())))
     };
     let ((p1, r1), (p2, r2)) = (sphere(&PAIR_FIELDS[..4]), sphere(&PAIR_FIELDS[4..]));
-    let valid = ports.input_bit("valid");
+    let valid = match settings.valid_is_late {
+        true => ports.input_bit_after("valid", 1),
+        false => ports.input_bit("valid"),
+    };
     ports.promise_finite(valid, &[p1.x, p1.y, p1.z, p2.x, p2.y, p2.z], false);
     match radius {
         Some(radius) => ports.about(format!("every sphere's radius is {radius}")),

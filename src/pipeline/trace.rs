@@ -113,6 +113,16 @@ impl Ports {
         Bit(input(name, Kind::Truth, Location::caller()))
     }
 
+    /// One that comes some cycles after the others.
+    #[track_caller]
+    pub fn input_bit_after(&self, name: &str, cycles: u32) -> Bit {
+        Bit(make(name, &[], Location::caller(), |kernel, _| {
+            let id = kernel.input(name, Kind::Truth);
+            kernel.late.push((id, cycles));
+            Ok(id)
+        }))
+    }
+
     /// Promises that `inputs` are neither infinite nor NaN while `condition` holds, and not below zero either where
     /// `not_negative`. The promise is used only if no output depends on such an input while `condition` does not hold.
     #[track_caller]

@@ -2,6 +2,7 @@
 
 use serde::Deserialize;
 
+use super::synth::by;
 use super::table::figure;
 use crate::synth::Figures;
 
@@ -83,9 +84,10 @@ pub fn page(all: &[Figures]) -> Result<String, serde_json::Error> {
             let mut names: Vec<&str> = figures.critical.iter().map(|hop| hop.signal.as_str()).collect();
             names.dedup();
             out += &format!(
-                "\nSlowest path of {} {} cut for {} MHz: `{}`.\n",
+                "\nSlowest path of {} {}{} cut for {} MHz: `{}`.\n",
                 unit,
                 figures.profile,
+                by(figures),
                 figures.asked_mhz,
                 names.join("` → `")
             );
@@ -109,9 +111,10 @@ fn ours<'a>(figures: &Figures, best: impl Iterator<Item = &'a Core>) -> String {
         None => " (not routed)",
     };
     format!(
-        "| **{} {}** | {format}, {} | {:.0}{met} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n",
+        "| **{} {}{}** | {format}, {} | {:.0}{met} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n",
         figures.unit,
         figures.profile,
+        by(figures),
         if subnormals { "subnormals" } else { "no subnormals" },
         figures.asked_mhz,
         figures.latency_cycles.map_or_else(|| "-".to_owned(), |cycles| cycles.to_string()),

@@ -15,9 +15,14 @@ pub fn text(all: &[Figures]) -> String {
     out
 }
 
+/// Its architecture, where it has one of several: as in ` by table`.
+pub(super) fn by(figures: &Figures) -> String {
+    figures.architecture.map_or_else(String::new, |architecture| format!(" by {}", architecture.name()))
+}
+
 /// A unit and its arithmetic.
 pub fn title(figures: &Figures) -> String {
-    format!("{} {}, {}", figures.unit, figures.profile, figures.target)
+    format!("{} {}{}, {}", figures.unit, figures.profile, by(figures), figures.target)
 }
 
 fn row(figures: &Figures) -> [String; 11] {

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Area, Target, Trimmed};
 use crate::config::Profile;
+use crate::operator::Architecture;
 
 /// The schema of the JSON.
 pub const SCHEMA: &str = "contact-afu/synth/1";
@@ -19,6 +20,9 @@ pub struct Figures {
     pub unit: String,
     /// Its arithmetic.
     pub profile: Profile,
+    /// Of an operator that has several: its architecture.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub architecture: Option<Architecture>,
     /// Of an SCPU or an AFU: cycles from one pair to the next in one SCPU.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub interval: Option<u32>,

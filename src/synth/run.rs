@@ -76,6 +76,7 @@ pub fn synthesise(unit: &Unit, options: &Options, mut progress: impl FnMut(&str)
         version: env!("CARGO_PKG_VERSION").to_owned(),
         unit: unit.name.clone(),
         profile: unit.profile.clone(),
+        architecture: unit.architecture,
         interval: unit.interval,
         module: unit.module.name.clone(),
         target,

@@ -76,6 +76,7 @@ impl Target {
         match self {
             Self::Ecp5 => DelayModel::ecp5()
                 .with_registered_multipliers(Some(Primitive::Mult18x18d))
+                .with_registered_tables(Some(Primitive::Dp16kd))
                 .with_adders(Primitive::Ccu2c),
             Self::Ice40 => DelayModel::ecp5(),
             Self::Cyclonev | Self::Xilinx => DelayModel::default(),

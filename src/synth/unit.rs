@@ -6,7 +6,7 @@ use crate::afu::{Afu, Spec};
 use crate::config::{Config, Profile};
 use crate::hdl::verilog::{Style, emit};
 use crate::hdl::{DelayModel, Errors, Module};
-use crate::operator::{Domain, Operator, Values, pipelined};
+use crate::operator::{Architecture, Domain, Operator, Values, pipelined};
 
 use super::{SynthError, Target};
 
@@ -17,6 +17,8 @@ pub struct Unit {
     pub name: String,
     /// The arithmetic.
     pub profile: Profile,
+    /// Of an operator that has several: its architecture.
+    pub architecture: Option<Architecture>,
     /// Of an SCPU or an AFU: cycles from one pair to the next in one SCPU.
     pub interval: Option<u32>,
     /// The clock that its stages were cut for, MHz.
@@ -39,14 +41,24 @@ impl Unit {
         model: &DelayModel,
         clock_mhz: f64,
     ) -> Result<Self, SynthError> {
-        let module = pipelined(operator, Domain::new(profile.format(), values), model, clock_mhz)?;
-        Ok(Self::pipeline(operator.name(), profile, clock_mhz, module))
+        let domain = Domain::new(profile.format(), values);
+        let module = pipelined(operator, domain, model, clock_mhz)?;
+        let architecture = Architecture::Table.is_possible(operator, domain).then(|| Architecture::of(model));
+        Ok(Self { architecture, ..Self::pipeline(operator.name(), profile, clock_mhz, module) })
     }
 
     /// A pipeline that is already there.
     pub fn pipeline(name: &str, profile: &Profile, clock_mhz: f64, module: Arc<Module>) -> Self {
         let latency = Some(module.latency);
-        Self { name: name.to_owned(), profile: profile.clone(), interval: None, clock_mhz, module, latency }
+        Self {
+            name: name.to_owned(),
+            profile: profile.clone(),
+            architecture: None,
+            interval: None,
+            clock_mhz,
+            module,
+            latency,
+        }
     }
 
     /// The SCPU of a configuration: its kernel with detection of invalid pairs.
@@ -89,6 +101,7 @@ impl Unit {
         Self {
             name: format!("afu of {} SCPUs", config.scpus),
             profile: config.profile.clone(),
+            architecture: None,
             interval: Some(config.interval),
             clock_mhz: config.clock_mhz,
             module: afu.core().clone(),

@@ -15,7 +15,7 @@ use contact_afu::hdl::{DelayModel, Module};
 use contact_afu::kernel::PairRecord;
 use contact_afu::operator::{Operator, Values};
 use contact_afu::pairs::{self, Set};
-use contact_afu::synth::Unit;
+use contact_afu::synth::{Target, Unit};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use simulate::{Vector, simulate};
@@ -122,24 +122,39 @@ fn a_spoilt_netlist_is_found_out() {
     assert!(inputs.iter().zip(&good).all(|(two, found)| *found == twin(two[0].0, two[1].0).to_string()));
 }
 
+/// An SCPU of full width in Verilator, of whose bits every one is the reference's.
+fn verilated_scpu(profile: &str, form: As, pairs: &[PairRecord]) {
+    let profile: Profile = profile.parse().expect("a profile");
+    let config = Config { scpus: 1, profile, shell: Shell::Line, ..Config::default() };
+    let unit = Unit::scpu_for(&config, Target::Ecp5).expect("it can be generated");
+    let wanted = config.profile.reference(config.contact).run_all(pairs);
+    let files = verilog(&unit.module, form);
+    let found = verilated::scpu(&unit.module.name, &files, unit.latency.expect("a pipeline"), pairs);
+    for ((pair, found), wanted) in pairs.iter().zip(&found).zip(&wanted) {
+        let flags = (wanted.is_contact(), !pair.is_valid());
+        assert_eq!(*found, (wanted.0, flags), "{}, of {pair:x?}", unit.title());
+    }
+    assert_eq!(found.len(), pairs.len());
+    println!("{}: {} pairs", unit.title(), pairs.len());
+}
+
+fn corpus_and_mixed(count: u64) -> Vec<PairRecord> {
+    let corpus = concat!(env!("CARGO_MANIFEST_DIR"), "/tb/corpus/hard.csv");
+    let mut pairs = pairs::read_pairs(corpus.as_ref()).expect("the corpus");
+    pairs.extend(mixed(count));
+    pairs
+}
+
+/// With multipliers, tables, long delays and carry chains in the blocks that `--target ecp5` names.
+#[test]
+fn an_scpu_in_the_blocks_of_its_target() {
+    verilated_scpu("wide", As::Blocks, &corpus_and_mixed(6000));
+}
+
 #[test]
 #[ignore = "minutes: SCPUs of full width through Yosys and Verilator"]
 fn every_profile_after_synthesis() {
-    let corpus = concat!(env!("CARGO_MANIFEST_DIR"), "/tb/corpus/hard.csv");
-    let mut pairs = pairs::read_pairs(corpus.as_ref()).expect("the corpus");
-    pairs.extend(mixed(6000));
     for profile in ["paper", "wide", "exact"] {
-        let profile: Profile = profile.parse().expect("a profile");
-        let config = Config { scpus: 1, profile, shell: Shell::Line, ..Config::default() };
-        let unit = Unit::scpu(&config).expect("it can be generated");
-        let wanted = config.profile.reference(config.contact).run_all(&pairs);
-        let files = verilog(&unit.module, As::Ecp5Apart);
-        let found = verilated::scpu(&unit.module.name, &files, unit.latency.expect("a pipeline"), &pairs);
-        for ((pair, found), wanted) in pairs.iter().zip(&found).zip(&wanted) {
-            let flags = (wanted.is_contact(), !pair.is_valid());
-            assert_eq!(*found, (wanted.0, flags), "{}, of {pair:x?}", unit.title());
-        }
-        assert_eq!(found.len(), pairs.len());
-        println!("{}: {} pairs", unit.title(), pairs.len());
+        verilated_scpu(profile, As::Ecp5Apart, &corpus_and_mixed(6000));
     }
 }

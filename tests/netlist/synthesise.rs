@@ -13,6 +13,8 @@ use contact_afu::hdl::verilog::{Style, emit};
 pub enum As {
     /// As the generator prints it.
     Printed,
+    /// The same as synthesis sees it: blocks of Lattice's ECP5 by name, for which the models in `tb/` stand.
+    Blocks,
     /// As gates and flip-flops of no family.
     Gates,
     /// As cells of Lattice's ECP5.
@@ -58,6 +60,10 @@ fn ecp5_cells() -> String {
     let folder = packages.find_map(|folder| Some(share(folder)).filter(|path| path.exists())).expect("Yosys's models");
     let files = ["common_sim.vh", "ccu2c_sim.vh", "cells_sim_ecp5.v"];
     let text = files.map(|name| fs::read_to_string(folder.join(name)).expect("a model")).concat();
+    // Of a block memory there is a shell without anything in it: ours is in its place.
+    let (before, rest) = text.split_once("module DP16KD").expect("one");
+    let before = before.trim_end().trim_end_matches("(* blackbox *)");
+    let text = before.to_owned() + rest.split_once("endmodule").expect("its end").1;
     let lines = text.lines().filter(|line| !line.contains("$error(") && !line.starts_with("`include"));
     lines.collect::<Vec<_>>().join("\n") + "\n"
 }
@@ -74,6 +80,14 @@ pub fn verilog(module: &Arc<Module>, form: As) -> Files {
     let top = &module.name;
     let synth = match form {
         As::Printed => return Files { _folder: folder, files, language: "-g2005" },
+        As::Blocks => {
+            let models = ["mult18x18d", "ccu2c", "dp16kd"].map(|name| root().join(format!("tb/{name}.v")));
+            let models = models.map(|path| fs::read_to_string(path).expect("a model")).concat();
+            let path = folder.path().join("blocks.v");
+            fs::write(&path, format!("`define SYNTHESIS\n{models}")).expect("written");
+            files.insert(0, path);
+            return Files { _folder: folder, files, language: "-g2012" };
+        }
         // One kind of flip-flop: resets and enables become gates too.
         As::Gates => format!("synth -flatten -noabc -top {top}; dfflegalize -cell $_DFF_P_ x; abc; opt_clean"),
         As::Ecp5Apart => format!("synth_ecp5 -noflatten -top {top}"),
@@ -90,7 +104,9 @@ pub fn verilog(module: &Arc<Module>, form: As) -> Files {
     let third: String = (0..18).map(|bit| format!("C{bit}, ")).collect();
     let text = fs::read_to_string(root().join("tb/mult18x18d.v")).expect("the model");
     fs::write(&mult, text.replacen("input wire A0,", &format!("input wire {third}A0,"), 1)).expect("written");
-    let mut files = vec![folder.path().join("netlist.v"), mult];
+    let memory = folder.path().join("dp16kd.v");
+    fs::copy(root().join("tb/dp16kd.v"), &memory).expect("written");
+    let mut files = vec![folder.path().join("netlist.v"), mult, memory];
     if form != As::Gates {
         let path = folder.path().join("ecp5.v");
         fs::write(&path, ecp5_cells()).expect("written");

@@ -69,8 +69,8 @@ pub fn corner(operator: Operator, format: Format, words: &mut Words, count: u64)
     let mask = format.sign_mask() | (format.sign_mask() - 1);
     let near = |word: u128| (word + u128::from(count >> 2 & 7)).wrapping_sub(3) & mask;
     match (count & 3, operator) {
-        (0, Operator::Add) => (a, near(a ^ format.sign_mask())),
-        (0, Operator::Sub | Operator::Greater | Operator::AtMost) => (a, near(a)),
+        (0, Operator::Add | Operator::WideningAdd { .. }) => (a, near(a ^ format.sign_mask())),
+        (0, Operator::Sub | Operator::WideningSub { .. } | Operator::Greater | Operator::AtMost) => (a, near(a)),
         (0 | 1, Operator::RootExceeds) => (near(Operator::Mul.twin(format, b, b)), b & !format.sign_mask()),
         (0, Operator::Div) => (near(Operator::Mul.twin(format, a, b)), b),
         (0, Operator::Sqrt) => (near(Operator::Mul.twin(format, a, a)), b),

@@ -84,7 +84,7 @@ pub struct Hardware {
 /// The hash of what decides [`Hardware`].
 pub(super) fn hardware_key(rtl: &str, plan: &Plan, seeds: &[u32]) -> String {
     let mut hash = Sha256::new();
-    hash.update(format!("hardware 1 {rtl} {} {seeds:?}", plan.target));
+    hash.update(format!("hardware 2 {rtl} {} {seeds:?}", plan.target));
     hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
@@ -97,6 +97,7 @@ pub(super) fn hardware(
     progress: impl FnMut(&str),
 ) -> Result<Hardware, SynthError> {
     let options = Options { target: plan.target, seeds: seeds.to_vec() };
-    let Figures { area, clock_mhz, .. } = synthesise(&Unit::scpu(config)?, &options, progress)?;
+    // The same stages, with the target's own blocks.
+    let Figures { area, clock_mhz, .. } = synthesise(&Unit::scpu_for(config, plan.target)?, &options, progress)?;
     Ok(Hardware { key, area, routed_mhz: clock_mhz })
 }

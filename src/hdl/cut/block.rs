@@ -1,5 +1,5 @@
 //! What a target has blocks for: each is an instance of a module of its own. A multiplier block with registers inside is
-//! one that synthesis maps to, or the target's primitive by name; differences that may be sums are only ever the latter.
+//! one that synthesis maps to, or the target's primitive by name, and so is a block memory with a table; differences that may be sums are only ever the latter.
 
 use std::sync::Arc;
 
@@ -17,6 +17,28 @@ pub(super) fn instantiate_multiplier(inner: &mut Inner, id: NodeId, model: &Dela
     let (first, second) = if a >= b { (0, 1) } else { (1, 0) };
     let module = multiplier([a.max(b), a.min(b)], model)?;
     replace(inner, id, &module, &[("a", operands[first]), ("b", operands[second])], "product");
+    Ok(())
+}
+
+/// Puts an instance of a block memory in the place of the table `id`, whose operand is that of its first rank. Its module
+/// belongs to that table alone, in the module of this name.
+pub(super) fn instantiate_table(inner: &mut Inner, id: NodeId, owner: &str, model: &DelayModel) -> Result<(), Errors> {
+    let node = &inner.nodes[id.index()];
+    let Op::Lookup(table) = node.op.clone() else { return Ok(()) };
+    let (width, index) = (node.width, node.operands[0]);
+    let what = node.name.clone().unwrap_or_else(|| format!("table_{}", id.index()));
+    let suffix = model.memory_primitive.map_or("", |primitive| primitive.suffix());
+    let graph = Graph::new(format!("{owner}_{what}{suffix}"));
+    graph.about("a table of constants in a block memory, with registers of its index and its word");
+    let index_bits = inner.nodes[index.index()].width;
+    let registered = graph.input("index", index_bits).delay(1).named("index_register");
+    // A name other than the port's, as in a multiplier block.
+    graph.output("word", registered.lookup(&table, width).named("entry").delay(1).named("word_register"));
+    let mut module = graph.finish()?;
+    let block = Arc::make_mut(&mut module);
+    block.latency = model.table_registers;
+    block.primitive = model.memory_primitive;
+    replace(inner, id, &module, &[("index", index)], "table");
     Ok(())
 }
 

@@ -34,7 +34,7 @@ pub struct Timing {
 /// [`Module::latency`] cycles after their inputs. Operations are not divided: one that takes longer than the period
 /// gets a stage of its own, and [`Module::timing`] says what clock remains. Constants, and what is computed from
 /// constants and parameters alone, are never delayed. A product that fits a multiplier block with registers inside
-/// becomes an instance of one; a difference that may be a sum one of the target's carry chain, if the model names it.
+/// becomes an instance of one, and so does a table that fits a block memory; a difference that may be a sum one of the target's carry chain, if the model names it.
 ///
 /// # Errors
 /// A clock that is not a positive number; anything in `module` that is clocked, and instances.
@@ -113,7 +113,9 @@ fn registered(
             *operand = delayed(&mut inner.nodes, *operand, begin);
         }
         inner.nodes[id.index()].operands = operands;
-        if stage != begin {
+        if stage != begin && matches!(module.node(id).op, Op::Lookup(_)) {
+            block::instantiate_table(&mut inner, id, &module.name, model)?;
+        } else if stage != begin {
             block::instantiate_multiplier(&mut inner, id, model)?;
         } else if module.node(id).op == Op::SubAdd
             && let Some(primitive) = model.adder_primitive

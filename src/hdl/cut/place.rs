@@ -21,6 +21,8 @@ const ROUNDING: f64 = 1e-9;
 pub(super) struct Plan<'a> {
     module: &'a Module,
     budget: f64,
+    /// From logic into the first rank of an operation with ranks.
+    entry: f64,
     delay: Vec<f64>,
     /// Register ranks inside an operation: it takes its operands that many stages before the one it stands in.
     pub ranks: Vec<u32>,
@@ -61,6 +63,7 @@ impl<'a> Plan<'a> {
         let mut plan = Self {
             module,
             budget: budget + ROUNDING,
+            entry: model.multiplier_input,
             delay: model.delays(module),
             ranks: module.nodes.iter().map(|node| model.ranks(module, node)).collect(),
             users: vec![Vec::new(); count],
@@ -124,8 +127,10 @@ impl<'a> Plan<'a> {
 
     /// The first stage in which it can stand, of all operands.
     fn earliest(&self, id: NodeId) -> u32 {
-        let there = self.operands(id).map(|operand| self.stage[operand.index()]).max();
-        there.unwrap_or(0) + self.ranks[id.index()]
+        let ranks = self.ranks[id.index()];
+        let is_late = |arrival: f64| ranks > 0 && arrival > 0.0 && arrival + self.entry > self.budget;
+        let there = |operand: NodeId| self.stage[operand.index()] + u32::from(is_late(self.arrival[operand.index()]));
+        self.operands(id).map(there).max().unwrap_or(0) + ranks
     }
 
     /// The last stage that still serves every user.
@@ -146,9 +151,15 @@ impl<'a> Plan<'a> {
 
     /// What follows in the same stage, if the operation stands in `stage`.
     fn tail_at(&self, id: NodeId, stage: u32) -> f64 {
-        let ends_here = |user: &&NodeId| self.stage[user.index()] == stage && self.ranks[user.index()] == 0;
-        let here = self.users[id.index()].iter().filter(ends_here);
-        here.map(|user| self.delay[user.index()] + self.tail[user.index()]).fold(0.0, f64::max)
+        let behind = |user: &NodeId| match self.ranks[user.index()] {
+            0 if self.stage[user.index()] == stage => self.delay[user.index()] + self.tail[user.index()],
+            // Wiring from a register alone has the time it takes.
+            1.. if self.begin(*user) == stage && self.arrival_at(id, stage) + self.delay[id.index()] > 0.0 => {
+                self.entry
+            }
+            _ => 0.0,
+        };
+        self.users[id.index()].iter().map(behind).fold(0.0, f64::max)
     }
 
     /// The last stage whose beginning must still have the value, not counting one user.

@@ -1,14 +1,23 @@
 //! A table of constants as a case statement.
 
+use super::super::module::{Module, Op};
 use super::expression::{constant, range};
+
+/// Whether the module is a table between registers and nothing else, which is what a block memory does.
+pub(super) fn is_block_memory(module: &Module) -> bool {
+    let is_part = |op: &Op| matches!(op, Op::Input | Op::Delay { .. } | Op::Lookup(_));
+    module.nodes.iter().all(|node| is_part(&node.op)) && module.latency == 2
+}
 
 /// The declaration of `name` and the statement that gives it the word at `index`.
 ///
-/// Left alone Yosys makes a memory of it, whose block is too slow for a fast clock; the attribute keeps it in tables.
-pub(super) fn lookup(name: &str, width: u32, table: &[u128], index: &str) -> String {
+/// Left alone Yosys makes a memory of it, whose block is too slow for a fast clock where its registers are not used: the
+/// attribute keeps it in tables, unless it `is_block`.
+pub(super) fn lookup(name: &str, width: u32, table: &[u128], index: &str, is_block: bool) -> String {
+    let style = if is_block { "block" } else { "logic" };
     let index_bits = table.len().ilog2();
     let mut out = format!("  reg {}{name};\n  always @* begin\n", range(width));
-    out += &format!("    (* rom_style = \"logic\" *)\n    case ({index})\n");
+    out += &format!("    (* rom_style = \"{style}\" *)\n    case ({index})\n");
     for (number, word) in table.iter().enumerate() {
         let place = constant(index_bits, number as u128);
         // The last one also serves a simulator's unknown index.

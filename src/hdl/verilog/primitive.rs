@@ -1,6 +1,6 @@
 //! A vendor's primitive for synthesis, beside the plain logic that simulators read.
 
-use super::super::module::{Module, Primitive};
+use super::super::module::{Module, Op, Primitive};
 
 /// Bits of a factor of a MULT18X18D.
 const FACTOR: u32 = 18;
@@ -10,6 +10,7 @@ pub(super) fn either(primitive: Primitive, module: &Module, behaviour: &str) -> 
     let instance = match primitive {
         Primitive::Mult18x18d => mult18x18d(module),
         Primitive::Ccu2c => ccu2c(module),
+        Primitive::Dp16kd => dp16kd(module),
     };
     format!("\n`ifdef SYNTHESIS\n{instance}`else\n{behaviour}`endif\n")
 }
@@ -78,4 +79,103 @@ fn ccu2c(module: &Module) -> String {
     }
     out += &format!("\n  // Bits that nothing needs.\n  wire unused = &{{1'b0, {}}};\n", unused.join(", "));
     out
+}
+
+/// Bits of a word of a DP16KD; among its initial values each has 20, five hexadecimal digits.
+const WORD: u32 = 18;
+/// Words that one of its initial values holds, how many of these there are, and the words of half of it.
+const WORDS: usize = 16;
+const VALUES: usize = 64;
+const HALF: usize = WORDS * VALUES / 2;
+
+/// A table, or a memory that is written too.
+fn dp16kd(module: &Module) -> String {
+    let (bits, parameters, ports) = if module.memories.is_empty() { table(module) } else { memory(module) };
+    let lines: Vec<String> = ports.iter().flat_map(|group| group.chunks(6)).map(|line| line.join(", ")).collect();
+    let all = 2 * WORD;
+    let mut out = format!("  wire [{}:0] whole;\n", all - 1);
+    out += &format!("  DP16KD #(\n{}\n  ) block (\n    {}\n  );\n", parameters.join(",\n"), lines.join(",\n    "));
+    out += &format!("  assign word = whole[{}:0];\n", bits - 1);
+    if bits < all {
+        out += &format!("\n  // Bits that nothing needs.\n  wire unused = &{{1'b0, whole[{}:{bits}]}};\n", all - 1);
+    }
+    out
+}
+
+/// Bits of the word, parameters, and the connections of ports A and B.
+type Block = (u32, Vec<String>, [Vec<String>; 2]);
+
+fn width(module: &Module, port: &str) -> u32 {
+    module.port(port).map_or(0, |(_, port)| port.width)
+}
+
+/// A bit of a port, or zero beyond it.
+fn bit(module: &Module, port: &str, place: u32) -> String {
+    match width(module, port) {
+        width if place >= width => "1'b0".to_owned(),
+        1 => port.to_owned(),
+        _ => format!("{port}[{place}]"),
+    }
+}
+
+fn modes(bits: u32) -> [String; 2] {
+    ["A", "B"]
+        .map(|port| format!("    .DATA_WIDTH_{port}({bits}), .REGMODE_{port}(\"OUTREG\"), .CSDECODE_{port}(\"0b000\")"))
+}
+
+/// The connections of a port: its address from the lowest bit, what is written, and whether it writes. Of the words read
+/// port A has the low half, port B the high one.
+fn port(letter: &str, address: [String; 14], written: impl Fn(u32) -> String, writes: bool) -> Vec<String> {
+    let first = if letter == "A" { 0 } else { WORD };
+    let mut ports: Vec<String> = (0..14).map(|bit| format!(".AD{letter}{bit}({})", address[bit])).collect();
+    ports.extend((0..WORD).map(|bit| format!(".DI{letter}{bit}({})", written(first + bit))));
+    ports.extend((0..WORD).map(|bit| format!(".DO{letter}{bit}(whole[{}])", first + bit)));
+    ports.push(format!(".CLK{letter}(clk)"));
+    ports.push(format!(".WE{letter}(1'b{})", u32::from(writes)));
+    ports.extend(["CE", "OCE"].map(|name| format!(".{name}{letter}(1'b1)")));
+    ports.push(format!(".RST{letter}(1'b0)"));
+    ports.extend((0..3).map(|bit| format!(".CS{letter}{bit}(1'b0)")));
+    ports
+}
+
+/// Ports `index` and `word`: both ports of the memory read, one the low 18 bits of the word in the lower half, the other
+/// one the rest in the upper half.
+fn table(module: &Module) -> Block {
+    let table = module.nodes.iter().find_map(|node| if let Op::Lookup(table) = &node.op { Some(table) } else { None });
+    let part = |address: usize| {
+        let word = table.and_then(|table| table.get(address % HALF)).copied().unwrap_or_default();
+        let part = if address < HALF { word } else { word >> WORD };
+        part & ((1 << WORD) - 1)
+    };
+    let value = |number: usize| {
+        let words = (0..WORDS).rev().map(|place| format!("{:05x}", part(number * WORDS + place)));
+        format!("    .INITVAL_{number:02X}(320'h{})", words.collect::<String>())
+    };
+    let is_used = |number: &usize| (0..WORDS).any(|place| part(number * WORDS + place) != 0);
+    let parameters = (0..VALUES).filter(is_used).map(value).chain(modes(WORD)).collect();
+    let connected = |letter: &str, half: u32| {
+        let address = std::array::from_fn(|place| match place {
+            0..4 => "1'b0".to_owned(),
+            13 => format!("1'b{half}"),
+            _ => bit(module, "index", place as u32 - 4),
+        });
+        port(letter, address, |_| "1'b0".to_owned(), false)
+    };
+    (width(module, "word"), parameters, [connected("A", 0), connected("B", 1)])
+}
+
+/// Ports `write_index`, `write_word`, `read_index` and `word`, of up to 36 bits: port A writes whole words, port B reads.
+fn memory(module: &Module) -> Block {
+    let address = |index: &str, low: &str| {
+        std::array::from_fn(|place| match place {
+            0..4 => low.to_owned(),
+            4 => "1'b0".to_owned(),
+            _ => bit(module, index, place as u32 - 5),
+        })
+    };
+    let written = |place: u32| bit(module, "write_word", place);
+    // The lowest bits of the address that is written choose its bytes.
+    let a = port("A", address("write_index", "1'b1"), written, true);
+    let b = port("B", address("read_index", "1'b0"), written, false);
+    (width(module, "word"), modes(2 * WORD).to_vec(), [a, b])
 }

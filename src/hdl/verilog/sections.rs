@@ -7,7 +7,7 @@ use super::super::state::address_width;
 use super::Style;
 use super::delay::DelayKind;
 use super::expression::{Expressions, constant, range};
-use super::lookup::lookup;
+use super::lookup::{is_block_memory, lookup};
 use super::names::stage;
 use super::print::is_register;
 
@@ -146,7 +146,8 @@ impl<'a> Sections<'a> {
                 continue;
             }
             if let Op::Lookup(table) = &node.op {
-                out += &lookup(name, node.width, table, &self.text.value(node.operands[0]));
+                out +=
+                    &lookup(name, node.width, table, &self.text.value(node.operands[0]), is_block_memory(self.module));
                 continue;
             }
             let value = self.text.definition(id);

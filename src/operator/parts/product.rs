@@ -45,6 +45,46 @@ pub fn product_of<'g>(a: Signal<'g>, b: Signal<'g>, name: &str) -> Signal<'g> {
     total(digits(a).into_iter().enumerate().map(tile).collect(), a.width() + b.width()).named(name)
 }
 
+/// The low `width` bits of a product of factors of any width: what lies above them is not made. Tiles are named after
+/// `name`.
+#[track_caller]
+pub fn product_low<'g>(a: Signal<'g>, b: Signal<'g>, width: u32, name: &str) -> Signal<'g> {
+    let (a, b) = (whole_digits(a), whole_digits(b));
+    let places = (0..a.len()).flat_map(|i| (0..b.len()).map(move |j| (i, j)));
+    let rows = places.filter_map(|(i, j)| low_tile((i, a[i]), (j, b[j]), 0, width, name)).collect();
+    total(rows, width)
+}
+
+/// The same of a square: each pair of mirrored tiles is made once and doubled.
+#[track_caller]
+pub fn square_low<'g>(a: Signal<'g>, width: u32, name: &str) -> Signal<'g> {
+    let a = whole_digits(a);
+    let places = (0..a.len()).flat_map(|i| (0..=i).map(move |j| (i, j)));
+    let rows = places.filter_map(|(i, j)| low_tile((i, a[i]), (j, a[j]), u32::from(i != j), width, name)).collect();
+    total(rows, width)
+}
+
+/// Digits as wide as a tile: what is left over is in the last one, of whose tiles the low bits need little.
+fn whole_digits(value: Signal<'_>) -> Vec<Signal<'_>> {
+    let width = value.width();
+    (0..width).step_by(TILE as usize).map(|low| value.slice(low, TILE.min(width - low))).collect()
+}
+
+/// The product of two digits, each with its place, as far as it is below `width`; doubled by so many places.
+fn low_tile<'g>(
+    (i, a): (usize, Signal<'g>),
+    (j, b): (usize, Signal<'g>),
+    doubled: u32,
+    width: u32,
+    name: &str,
+) -> Option<Row<'g>> {
+    let offset = (i + j) as u32 * TILE + doubled;
+    let left = width.checked_sub(offset).filter(|left| *left > 0)?;
+    let factor = |digit: Signal<'g>| digit.low(digit.width().min(left));
+    let tile = (factor(a) * factor(b)).named(&format!("{name}_tile_{i}_{j}"));
+    Some(Row { offset, bits: tile.low(tile.width().min(left)) })
+}
+
 /// A term of the sum: bits · 2^offset.
 #[derive(Clone, Copy)]
 struct Row<'g> {

@@ -1,0 +1,63 @@
+//! A long delay as a block memory with registers of its own: no look-up table and no flip-flop waits.
+
+use std::ops::RangeInclusive;
+use std::sync::Arc;
+
+use super::delay_model::DelayModel;
+use super::error::Errors;
+use super::graph::Graph;
+use super::module::{Module, Primitive};
+
+/// The cycles that a delay in a block takes: shorter ones are a small memory of look-up tables of one depth, longer ones more
+/// than one block.
+const CYCLES: RangeInclusive<u32> = 18..=513;
+/// Words of a block at its widest.
+const WIDTH: RangeInclusive<u32> = 24..=36;
+
+/// The delay as a module with an input `value` and an output `delayed`, for a target whose block memories are written as
+/// primitives and where one fits; nothing elsewhere.
+///
+/// # Errors
+/// What the graph recorded.
+pub fn delay_block(cycles: u32, width: u32, model: &DelayModel) -> Result<Option<Arc<Module>>, Errors> {
+    match model.memory_primitive {
+        Some(primitive) if CYCLES.contains(&cycles) && WIDTH.contains(&width) => {
+            line(cycles, width, primitive).map(Some)
+        }
+        _ => Ok(None),
+    }
+}
+
+fn line(cycles: u32, width: u32, primitive: Primitive) -> Result<Arc<Module>, Errors> {
+    // A word is read into one register and waits in another.
+    let depth = cycles - 1;
+    let graph = Graph::new(format!("delay_{cycles}x{width}{}", primitive.suffix()));
+    graph.about(format!("value, {cycles} cycles ago: a block memory with registers of its own"));
+    let bits = 32 - (depth - 1).leading_zeros();
+    let newest = graph.register("newest", bits, 0);
+    let is_last = newest.equals(graph.constant(bits, u128::from(depth - 1))).named("is_last");
+    // The oldest word stands where the next one goes.
+    let oldest = newest.plus(1).gate(!is_last).named("oldest");
+    newest.next(oldest);
+    let value = graph.input("value", width);
+    let ports = [("write_index", newest.value()), ("read_index", oldest), ("write_word", value)];
+    let memory = memory(depth, width, bits, primitive)?;
+    graph.output("delayed", graph.instance("line", &memory, &ports).output("word"));
+    let mut module = graph.finish()?;
+    Arc::make_mut(&mut module).latency = cycles;
+    Ok(module)
+}
+
+fn memory(depth: u32, width: u32, bits: u32, primitive: Primitive) -> Result<Arc<Module>, Errors> {
+    let graph = Graph::new(format!("memory_{depth}x{width}{}", primitive.suffix()));
+    graph.about("a word is written, another is read two cycles later: one block memory with its registers");
+    let words = graph.memory("words", depth, width);
+    words.write(graph.constant(1, 1), graph.input("write_index", bits), graph.input("write_word", width));
+    let read = words.read(graph.input("read_index", bits)).named("word_read");
+    graph.output("word", read.delay(1).named("word_register"));
+    let mut module = graph.finish()?;
+    let memory = Arc::make_mut(&mut module);
+    memory.latency = 2;
+    memory.primitive = Some(primitive);
+    Ok(module)
+}
