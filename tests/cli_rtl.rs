@@ -148,3 +148,25 @@ fn interval_auto_is_what_the_link_needs() {
     let refused = afu(room.path(), &["rtl", "--out", "new", "--interval", "auto", "--link", "none"]).code(2);
     assert!(said(&refused).contains("none"), "{}", said(&refused));
 }
+
+/// With a target its blocks stand in the Verilog by name, and the manifest says so; a simulator reads the same AFU.
+#[test]
+fn a_target_s_blocks_are_named() {
+    let room = tempfile::tempdir().expect("a temporary folder");
+    afu(room.path(), &["rtl", "--out", "plain"]).success();
+    afu(room.path(), &["rtl", "--out", "ecp5", "--target", "ecp5"]).success();
+    let [plain, ecp5] = ["plain", "ecp5"].map(|folder| contents(&room.path().join(folder)));
+    let named = |files: &BTreeMap<String, Vec<u8>>, block: &str| {
+        let text = |bytes: &Vec<u8>| String::from_utf8(bytes.clone()).expect("text");
+        files.values().filter(|bytes| text(bytes).contains(&format!("  {block} #("))).count()
+    };
+    for block in ["MULT18X18D", "DP16KD", "CCU2C"] {
+        assert!(named(&ecp5, block) > 0 && named(&plain, block) == 0, "{block}");
+    }
+    let primitives = |files: &BTreeMap<String, Vec<u8>>| {
+        let manifest: serde_json::Value = serde_json::from_slice(&files["manifest.json"]).expect("JSON");
+        manifest["primitives"].clone()
+    };
+    assert_eq!(primitives(&ecp5), serde_json::json!(["CCU2C", "DP16KD", "MULT18X18D"]));
+    assert!(primitives(&plain).is_null());
+}

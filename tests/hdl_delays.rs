@@ -1,6 +1,6 @@
 //! Delays of one value become one chain, however they were written.
 
-use contact_afu::hdl::{Evaluator, Graph, Module, Op};
+use contact_afu::hdl::{DelayModel, Evaluator, Graph, Module, Op, Primitive, delay_block};
 
 /// The delays of a module, each with its cycles and the name of what it delays, if that is not a delay.
 fn delays(module: &Module) -> Vec<(u32, Option<String>)> {
@@ -99,4 +99,27 @@ fn wires_in_a_circle_are_an_error_wherever_it_is_entered() {
     g.output("y", a);
     let error = g.finish().unwrap_err().to_string();
     assert!(error.starts_with("wires: combinational loop through `"), "{error}");
+}
+
+/// A delay in a block memory is as long as it says, around every wrap of its pointer; what fills no block is none.
+#[test]
+fn delays_in_blocks_are_as_long_as_they_say() {
+    let plain = DelayModel::default();
+    let blocks = plain.clone().with_registered_tables(Some(Primitive::Dp16kd));
+    for cycles in [18, 19, 33, 34, 64, 513] {
+        assert!(delay_block(cycles, 32, &plain).unwrap().is_none());
+        let module = delay_block(cycles, 32, &blocks).unwrap().expect("a block");
+        assert_eq!(module.latency, cycles);
+        let mut run = Evaluator::new(&module, &[]).unwrap();
+        for t in 0..3 * cycles {
+            run.set("value", u128::from(t + 1));
+            if t >= cycles {
+                assert_eq!(run.get("delayed"), u128::from(t - cycles + 1), "{cycles} cycles, at {t}");
+            }
+            run.step();
+        }
+    }
+    for (cycles, width) in [(17, 32), (514, 32), (18, 23), (18, 37)] {
+        assert!(delay_block(cycles, width, &blocks).unwrap().is_none(), "{cycles} cycles of {width} bits");
+    }
 }

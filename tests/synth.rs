@@ -4,7 +4,7 @@
 use assert_cmd::Command;
 use contact_afu::config::Profile;
 use contact_afu::hdl::DelayModel;
-use contact_afu::operator::{Operator, Values};
+use contact_afu::operator::{Architecture, Operator, Values};
 use contact_afu::synth::{Figures, Options, Target, Trimmed, Unit, synthesise};
 
 fn afu(arguments: &[&str], environment: &[(&str, &str)]) -> std::process::Output {
@@ -56,6 +56,21 @@ fn an_operator_is_placed_and_routed() {
     assert!(figures.critical.iter().any(|hop| hop.stage.is_some()), "{:?}", figures.critical);
     assert!(said.contains("add half, ecp5: the slowest path"), "{said}");
     assert_eq!(run().0, figures, "kept and found again");
+}
+
+/// A root in both architectures, and once what has one alone.
+#[test]
+fn architectures_stand_side_by_side() {
+    let cache = tempfile::tempdir().expect("a temporary folder");
+    let arguments = ["--compare", "--operator", "recip,halve", "--profile", "e6f9z", "--no-route", "--json", "-"];
+    let output = afu(&arguments, &[("AFU_CACHE", cache.path().to_str().expect("UTF-8"))]);
+    let all: Vec<Figures> = serde_json::from_slice(&output.stdout).expect("a list of figures");
+    let found: Vec<_> = all.iter().map(|figures| (figures.unit.as_str(), figures.architecture)).collect();
+    let (table, recurrence) = (Some(Architecture::Table), Some(Architecture::Recurrence));
+    assert_eq!(found, [("recip", table), ("recip", recurrence), ("halve", None)]);
+    assert!(all[0].area.dsps > 0 && all[1].area.dsps == 0 && all[0].latency_cycles < all[1].latency_cycles, "{all:?}");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(said.contains("recip e6f9z by table, ecp5") && said.contains("recip e6f9z by recurrence, ecp5"), "{said}");
 }
 
 #[test]

@@ -1,11 +1,13 @@
 //! What stands beside the Verilog: what simulators, synthesisers and integrators read.
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
 use crate::config::{MANIFEST_SCHEMA, Results};
+use crate::hdl::Primitive;
 use crate::pipeline::KernelReport;
 
 use super::{Afu, spl2, timing};
@@ -116,7 +118,7 @@ impl Afu {
         let layout = self.layout();
         let hashes: serde_json::Map<String, Value> =
             files.iter().map(|(name, text)| (name.clone(), Value::String(sha256(text.as_bytes())))).collect();
-        let manifest = json!({
+        let mut manifest = json!({
             "schema": MANIFEST_SCHEMA,
             "version": env!("CARGO_PKG_VERSION"),
             "top": self.top().name,
@@ -136,6 +138,12 @@ impl Afu {
             "rtl_sha256": self.rtl_sha256(),
             "files": hashes,
         });
+        // What a target's blocks are named: another target's flow cannot read these.
+        let primitives: BTreeSet<&str> =
+            self.top().hierarchy().iter().filter_map(|module| module.primitive).map(Primitive::name).collect();
+        if !primitives.is_empty() {
+            manifest["primitives"] = json!(primitives);
+        }
         // Keys and numbers only: this cannot fail.
         serde_json::to_string_pretty(&manifest).unwrap_or_default() + "\n"
     }

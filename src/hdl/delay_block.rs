@@ -8,10 +8,9 @@ use super::error::Errors;
 use super::graph::Graph;
 use super::module::{Module, Primitive};
 
-/// The cycles that a delay in a block takes: shorter ones are a small memory of look-up tables of one depth, longer ones more
-/// than one block.
+/// The cycles of a delay in a block: a shorter one fits one primitive's depth in look-up tables, a longer one no block.
 const CYCLES: RangeInclusive<u32> = 18..=513;
-/// Words of a block at its widest.
+/// The widths of a delay in a block: a narrower one wastes it, a wider one does not fit.
 const WIDTH: RangeInclusive<u32> = 24..=36;
 
 /// The delay as a module with an input `value` and an output `delayed`, for a target whose block memories are written as

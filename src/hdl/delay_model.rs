@@ -87,8 +87,8 @@ pub struct DelayModel {
 
 impl Default for DelayModel {
     /// What `rtl/` is cut with, for any family: fitted to the one router there is, without a vendor's primitives. Synthesis
-    /// has to find the registers of multiplier blocks and block memories, as Quartus and Vivado do; Yosys finds all but
-    /// those behind a memory.
+    /// has to find the registers of multiplier blocks and block memories; Yosys leaves those of an ECP5's blocks in the
+    /// fabric, so for it there are [`Primitive`]s.
     fn default() -> Self {
         Self::ecp5().with_registered_multipliers(None).with_registered_tables(None)
     }

@@ -179,6 +179,15 @@ pub enum Primitive {
 }
 
 impl Primitive {
+    /// Its vendor's name for it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Mult18x18d => "MULT18X18D",
+            Self::Ccu2c => "CCU2C",
+            Self::Dp16kd => "DP16KD",
+        }
+    }
+
     /// What a module's name ends in that stands for it.
     pub(super) const fn suffix(self) -> &'static str {
         match self {

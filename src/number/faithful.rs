@@ -76,23 +76,26 @@ impl Faithful {
     /// root of 2m, else 0.
     #[inline]
     pub fn value(&self, odd: u32, fraction: u64) -> u64 {
+        self.before_cut(odd, fraction) >> GUARD_BITS
+    }
+
+    #[inline]
+    fn before_cut(&self, odd: u32, fraction: u64) -> u64 {
         let t_bits = self.t_bits();
         let piece = self.pieces[(odd << self.index_bits) as usize + (fraction >> t_bits) as usize];
-        self.unrounded(piece, fraction & ((1 << t_bits) - 1)) >> GUARD_BITS
+        self.unrounded(piece, fraction & ((1 << t_bits) - 1))
     }
 
     /// The same cut off without the half: the exact value is nearest to this or to the next one. At least 2^F and less
     /// than 2^(F+1).
     #[inline]
     pub fn lower(&self, odd: u32, fraction: u64) -> u64 {
-        let t_bits = self.t_bits();
-        let piece = self.pieces[(odd << self.index_bits) as usize + (fraction >> t_bits) as usize];
-        (self.unrounded(piece, fraction & ((1 << t_bits) - 1)) - HALF) >> GUARD_BITS
+        (self.before_cut(odd, fraction) - HALF) >> GUARD_BITS
     }
 
     /// The value rounded to nearest, by the low bits of one product alone as hardware has them. With the lower number y,
-    /// 2y + 1 is twice the middle, which no exact value is; what it leaves is small, so its sign stands right above the
-    /// low F + 3 bits of m · (2y + 1) or F + 5 of (2y + 1)².
+    /// 2y + 1 is twice the middle, which no exact value is; what it leaves is small, so its sign is the top one of
+    /// the low F + 3 bits of m · (2y + 1), or is found from the low F + 5 of (2y + 1)².
     #[inline]
     pub fn nearest(&self, odd: u32, fraction: u64) -> u64 {
         let lower = self.lower(odd, fraction);

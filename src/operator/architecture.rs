@@ -6,27 +6,23 @@ use super::{Domain, Operator, corrected};
 use crate::hdl::DelayModel;
 
 /// How correctly rounded roots and reciprocals are made. It changes no bit of what they give.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Architecture {
     /// A table of parabolas and a correcting step, in multiplier blocks: the fewest cycles. Where there is none, as for
     /// subnormals, [`Architecture::Recurrence`].
     Table,
     /// A carry chain a digit: no multiplier block.
-    #[default]
     Recurrence,
 }
 
 impl Architecture {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::Table, Self::Recurrence];
-
     /// The one for a target: the table where there are multiplier blocks with registers, unless they are to be spared.
     pub fn of(model: &DelayModel) -> Self {
         if model.multiplier_registers > 0 && !model.spares_multipliers { Self::Table } else { Self::Recurrence }
     }
 
-    /// Its name on the command line.
+    /// Its name in reports.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Table => "table",
@@ -34,7 +30,7 @@ impl Architecture {
         }
     }
 
-    /// Whether the operator has it for these values. An operator of one architecture alone has the default one.
+    /// Whether the operator has it for these values. Every operator has that of the recurrence, whatever it is made of.
     pub fn is_possible(self, operator: Operator, domain: impl Into<Domain>) -> bool {
         self == Self::Recurrence || corrected::is_possible(operator, domain.into())
     }

@@ -28,7 +28,7 @@ pub fn recip(a: Signal<'_>, domain: Domain) -> Signal<'_> {
     // 2^(2F+2) less this is what the middle leaves; of that power these bits know nothing.
     let bits = domain.fraction_bits() + 3;
     let product = product_low(significand, middle(lower), bits, "middle").named("middle_product");
-    let exponent = a_exponent.subtracted_from(2 * i64::from(domain.bias()) - 1).named("quotient_exponent");
+    let exponent = recip::exponent(domain, a_exponent);
     // Of a power of two the lower number is all ones and is rounded up: the exponent becomes one more by itself.
     recip::finish(domain, a, unrounded(exponent, lower, product.msb()))
 }
@@ -37,9 +37,7 @@ pub fn recip(a: Signal<'_>, domain: Domain) -> Signal<'_> {
 pub fn sqrt(a: Signal<'_>, domain: Domain) -> Signal<'_> {
     let a = Operand::unpack(a, domain, "a");
     let (a_exponent, significand) = a.normalised();
-    // The bias is odd, so an even biased exponent stands for an odd one, of which one goes into the radicand.
-    let is_odd = (!a_exponent.bits(1)).named("exponent_is_odd");
-    let exponent = a_exponent.offset(i64::from(domain.bias())).half().named("root_exponent");
+    let (is_odd, exponent) = (sqrt::is_odd(a_exponent), sqrt::exponent(domain, a_exponent));
     let lower = value(Function::Root, domain, a.fraction, Some(is_odd), Cut::Nothing).named("lower");
     let (middle, bits) = (middle(lower), domain.fraction_bits() + 5);
     let square = square_low(middle, bits, "middle").named("middle_square");

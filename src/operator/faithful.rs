@@ -18,7 +18,7 @@ pub fn recip(a: Signal<'_>, domain: Domain) -> Signal<'_> {
     let value = value(Function::Reciprocal, domain, fraction, None, Cut::Half);
     // Of a power of two the value is 2, which leaves no fraction under an exponent that is one more.
     let is_power = fraction.is_zero().named("is_power_of_two");
-    let exponent = a_exponent.subtracted_from(2 * i64::from(domain.bias()) - 1).named("quotient_exponent");
+    let exponent = recip::exponent(domain, a_exponent);
     recip::finish(domain, a, unrounded(domain, exponent.plus_bit(is_power).named("result_exponent"), value))
 }
 
@@ -27,9 +27,7 @@ pub fn sqrt(a: Signal<'_>, domain: Domain) -> Signal<'_> {
     let domain = domain.to_nearest();
     let a = Operand::unpack(a, domain, "a");
     let (a_exponent, significand) = a.normalised();
-    // The bias is odd, so an even biased exponent stands for an odd one, of which one goes into the radicand.
-    let is_odd = (!a_exponent.bits(1)).named("exponent_is_odd");
-    let exponent = a_exponent.offset(i64::from(domain.bias())).half().named("root_exponent");
+    let (is_odd, exponent) = (sqrt::is_odd(a_exponent), sqrt::exponent(domain, a_exponent));
     let value = value(Function::Root, domain, significand.low(domain.fraction_bits()), Some(is_odd), Cut::Half);
     sqrt::finish(domain, a, unrounded(domain, exponent, value))
 }

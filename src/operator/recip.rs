@@ -2,7 +2,7 @@
 
 use super::Domain;
 use super::div::Step;
-use super::parts::{Operand, Rounding, Special, Unrounded, pack, round};
+use super::parts::{Operand, Rounding, Signed, Special, Unrounded, pack, round};
 use crate::hdl::Signal;
 
 /// 1 / a.
@@ -31,7 +31,7 @@ pub fn digits(domain: Domain) -> u32 {
 /// rounding makes it 1 with the exponent one more: no case of its own.
 pub fn rounded<'g>(domain: Domain, a: Operand<'g>, digits: Signal<'g>) -> Signal<'g> {
     let (a_exponent, divisor) = a.normalised();
-    let exponent = a_exponent.subtracted_from(2 * i64::from(domain.bias()) - 1).named("quotient_exponent");
+    let exponent = exponent(domain, a_exponent);
     let graph = digits.graph();
     let (zero, one) = (graph.constant(1, 0), graph.constant(1, 1));
     let unrounded = if domain.rounding() == Rounding::TowardZero {
@@ -50,6 +50,11 @@ pub fn rounded<'g>(domain: Domain, a: Operand<'g>, digits: Signal<'g>) -> Signal
         }
     };
     finish(domain, a, unrounded)
+}
+
+/// The exponent of a reciprocal whose significand's leading digit stands right behind the point.
+pub fn exponent<'g>(domain: Domain, a_exponent: Signed<'g>) -> Signed<'g> {
+    a_exponent.subtracted_from(2 * i64::from(domain.bias()) - 1).named("quotient_exponent")
 }
 
 /// A rounded reciprocal's word: of zero it is infinity, of infinity zero.

@@ -1,7 +1,7 @@
 //! Square root, by digit recurrence without restoring: each step tries a 1 as the root's next digit.
 
 use super::Domain;
-use super::parts::{Operand, Rounding, Special, Unrounded, pack, round};
+use super::parts::{Operand, Rounding, Signed, Special, Unrounded, pack, round};
 use crate::hdl::Signal;
 
 /// √a. √−0 is −0; of any other negative number it is NaN.
@@ -11,12 +11,20 @@ pub fn sqrt(a: Signal<'_>, domain: Domain) -> Signal<'_> {
     rounded(domain, a, root, is_inexact)
 }
 
-/// The significand of the number whose root is taken, with two bits before the point. The bias is odd, so an even biased
-/// exponent stands for an odd one, of which one goes into the radicand.
+/// The significand of the number whose root is taken, with two bits before the point.
 pub fn radicand<'g>(a: &Operand<'g>) -> Signal<'g> {
     let (exponent, significand) = a.normalised();
-    let is_odd = (!exponent.bits(1)).named("exponent_is_odd");
-    radicand_of(significand, is_odd).named("radicand")
+    radicand_of(significand, is_odd(exponent)).named("radicand")
+}
+
+/// One bit: the exponent is odd, so one of it goes into the radicand. The bias is odd, so that the biased one is even.
+pub fn is_odd(exponent: Signed<'_>) -> Signal<'_> {
+    (!exponent.bits(1)).named("exponent_is_odd")
+}
+
+/// The exponent of a root.
+pub fn exponent<'g>(domain: Domain, a_exponent: Signed<'g>) -> Signed<'g> {
+    a_exponent.offset(i64::from(domain.bias())).half().named("root_exponent")
 }
 
 /// The significand, or twice as much where the exponent is odd.
@@ -32,7 +40,7 @@ pub fn digits(domain: Domain) -> u32 {
 /// The root's word, of its digits and whether anything is left.
 pub fn rounded<'g>(domain: Domain, a: Operand<'g>, root: Signal<'g>, is_inexact: Signal<'g>) -> Signal<'g> {
     let (a_exponent, _) = a.normalised();
-    let exponent = a_exponent.offset(i64::from(domain.bias())).half().named("root_exponent");
+    let exponent = exponent(domain, a_exponent);
     let [zero, one] = [0, 1].map(|bit| root.graph().constant(1, bit));
     let unrounded = if domain.rounding() == Rounding::TowardZero {
         Unrounded { exponent, significand: root.named("significand"), guard: zero, sticky: zero, doubled: None }

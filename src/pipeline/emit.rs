@@ -16,26 +16,14 @@ impl Kernel {
     /// # Errors
     /// What a graph recorded, or a clock no operator can be cut for.
     pub fn pipeline(&self, model: &DelayModel, clock_mhz: f64) -> Result<Arc<Module>, Errors> {
-        self.with_widening_sums().pipeline_as_is(model, clock_mhz)
-    }
-
-    fn pipeline_as_is(&self, model: &DelayModel, clock_mhz: f64) -> Result<Arc<Module>, Errors> {
-        let schedule = Schedule::new(self, |(operator, domain)| pipelined(operator, domain, model, clock_mhz))?;
-        let graph = Graph::new(self.name.as_str());
-        self.about.iter().for_each(|line| graph.about(line.as_str()));
+        let kernel = &self.with_widening_sums();
+        let schedule = Schedule::new(kernel, |(operator, domain)| pipelined(operator, domain, model, clock_mhz))?;
+        let graph = Graph::new(kernel.name.as_str());
+        kernel.about.iter().for_each(|line| graph.about(line.as_str()));
         graph.about(format!("{} cycles from inputs to outputs, new inputs in every cycle", schedule.latency));
-        let signals = vec![None; self.values.len()];
-        let names = Names::new(self);
-        let mut emitter = Emitter {
-            kernel: self,
-            schedule: &schedule,
-            graph: &graph,
-            names,
-            signals,
-            model,
-            waiting: BTreeMap::new(),
-        };
-        emitter.emit()?;
+        let (names, signals) = (Names::new(kernel), vec![None; kernel.values.len()]);
+        let waiting = BTreeMap::new();
+        Emitter { kernel, schedule: &schedule, graph: &graph, names, signals, model, waiting }.emit()?;
         let mut module = graph.finish()?;
         let inner = Arc::make_mut(&mut module);
         inner.latency = schedule.latency;

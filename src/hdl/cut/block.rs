@@ -1,5 +1,6 @@
 //! What a target has blocks for: each is an instance of a module of its own. A multiplier block with registers inside is
-//! one that synthesis maps to, or the target's primitive by name, and so is a block memory with a table; differences that may be sums are only ever the latter.
+//! one that synthesis maps to, or the target's primitive by name, and so is a block memory with a table; differences that
+//! may be sums are only ever the latter.
 
 use std::sync::Arc;
 

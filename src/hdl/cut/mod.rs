@@ -34,7 +34,8 @@ pub struct Timing {
 /// [`Module::latency`] cycles after their inputs. Operations are not divided: one that takes longer than the period
 /// gets a stage of its own, and [`Module::timing`] says what clock remains. Constants, and what is computed from
 /// constants and parameters alone, are never delayed. A product that fits a multiplier block with registers inside
-/// becomes an instance of one, and so does a table that fits a block memory; a difference that may be a sum one of the target's carry chain, if the model names it.
+/// becomes an instance of one, and so does a table that fits a block memory; a difference that may be a sum one of the
+/// target's carry chain, if the model names it.
 ///
 /// # Errors
 /// A clock that is not a positive number; anything in `module` that is clocked, and instances.
