@@ -52,30 +52,32 @@ fn one_radius_is_in_no_record_and_changes_no_bit() {
     }
 }
 
-/// Records of 16 bits, four pairs a line: all of them and contacts alone, a radius of the hardware's, contacts of one bit;
-/// bit for bit the reference that reads the same words.
+/// Records of 16 bits, four pairs a line: all of them and contacts alone, a radius of the hardware's, contacts of one bit,
+/// operators shared; bit for bit the reference that reads the same words.
 #[test]
 fn records_of_16_bits_come_back_as_the_reference_has_them() {
     let random = Set::Random(701).pairs(9);
     let diamond = Set::Diamond(5).pairs(1);
-    for (scpus, record, contact, results, shell, radius) in [
-        (1, Record::F16, "depth,normal,position", Results::All, Shell::Line, Some(0.5)),
-        (3, Record::F16, "hit", Results::All, Shell::Line, None),
-        (10, Record::Bf16, "depth,normal,position", Results::Hits, Shell::Spl2, None),
+    for (scpus, interval, record, contact, results, shell, radius) in [
+        (1, 1, Record::F16, "depth,normal,position", Results::All, Shell::Line, Some(0.5)),
+        (3, 1, Record::F16, "hit", Results::All, Shell::Line, None),
+        (5, 3, Record::F16, "depth,normal,position", Results::All, Shell::Line, None),
+        (10, 1, Record::Bf16, "depth,normal,position", Results::Hits, Shell::Spl2, None),
     ] {
         let profile = "e8f3z".parse().expect("a format");
         let contact = contact.parse().expect("fields");
-        let config = Config { scpus, record, contact, results, shell, radius, profile, ..Config::default() };
+        let config = Config { scpus, interval, record, contact, results, shell, radius, profile, ..Config::default() };
         let bench = Bench::new(&config).expect("a model");
+        let what = format!("{scpus} SCPUs at interval {interval}, {record}");
         let verdict = bench.run(&diamond, &LinkModel::shuffled(), 1).expect("it finishes");
-        good(&verdict, &format!("{scpus} SCPUs, {record}, the diamond"));
+        good(&verdict, &format!("{what}, the diamond"));
         // Below SPL2 the shell reads lines of its own.
         let lines = verdict.outcome.bytes_read / 64;
         let pairs = diamond.len().div_ceil(4) as u64;
         assert!(shell == Shell::Spl2 || lines == pairs, "four pairs a line: {lines} lines");
         if radius.is_none() {
             let verdict = bench.run(&random, &LinkModel::shuffled(), 2).expect("it finishes");
-            good(&verdict, &format!("{scpus} SCPUs, {record}, at random"));
+            good(&verdict, &format!("{what}, at random"));
             assert!(verdict.outcome.contacts > 20 && verdict.outcome.invalid > 20, "{:?}", verdict.outcome.contacts);
         }
     }
