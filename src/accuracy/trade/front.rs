@@ -1,7 +1,9 @@
 //! The best of points: those that no other beats in error and time at once.
 
+use super::table::BASE;
 use super::{Point, Results};
 use crate::report::table::grouped;
+use std::collections::BTreeSet;
 
 /// A time that points are compared by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,6 +53,37 @@ pub fn front(results: &Results, time: Time, among: impl Fn(&Point) -> bool) -> V
     best(&placed)
 }
 
+/// The points on a front of any time.
+pub(super) fn on_fronts(results: &Results) -> Vec<usize> {
+    let all: BTreeSet<usize> = Time::ALL.into_iter().flat_map(|time| front(results, time, |_| true)).collect();
+    all.into_iter().collect()
+}
+
+/// A time that is shorter by no more than this is the same: clocks of place and route scatter more.
+const SAME: f64 = 0.01;
+
+/// The points on a front of any time if none is routed slower than most are: a clock of the model's is taken less what
+/// place and route left of the others', in the middle. Without those that are no faster than a routed point as good; with
+/// the one that times are compared with.
+pub(super) fn worth_routing(results: &Results) -> Vec<usize> {
+    let mut left: Vec<f64> =
+        results.points.iter().filter_map(|point| Some(point.routed_mhz()? / point.modelled_mhz)).collect();
+    left.sort_by(f64::total_cmp);
+    let left = left.get(left.len() / 2).copied().unwrap_or(1.0);
+    let mut expected = results.clone();
+    expected.points.iter_mut().for_each(|point| point.modelled_mhz *= left);
+    let placed = |time: Time, point: &Point| Some((time.of(point, &expected)?, expected.worst(point)));
+    let is_better = |time: Time, index: usize| {
+        let Some((own, error)) = placed(time, &expected.points[index]) else { return false };
+        let mut routed = expected.points.iter().filter(|point| point.routed_mhz().is_some());
+        !routed.any(|point| placed(time, point).is_some_and(|(its, worst)| worst <= error && its * (1.0 - SAME) <= own))
+    };
+    let better = |time| front(&expected, time, |_| true).into_iter().filter(move |&index| is_better(time, index));
+    let base = expected.points.iter().position(|point| point.name == BASE && point.routed_mhz().is_none());
+    let all: BTreeSet<usize> = Time::ALL.into_iter().flat_map(better).chain(base).collect();
+    all.into_iter().collect()
+}
+
 fn best(points: &[(usize, f64, f64)]) -> Vec<usize> {
     let mut sorted = points.to_vec();
     sorted.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.2.total_cmp(&b.2)));
@@ -86,7 +119,9 @@ pub fn step(results: &Results, time: Time, from: &Point, to: &Point) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::best;
+    use super::{BASE, best, on_fronts, worth_routing};
+    use crate::accuracy::trade::committed;
+    use crate::accuracy::trade::cost::Hardware;
 
     #[test]
     fn a_front_has_what_nothing_beats() {
@@ -95,5 +130,28 @@ mod tests {
         assert_eq!(best(&points), [1, 3, 0, 6]);
         assert_eq!(best(&[]), [0; 0]);
         assert_eq!(best(&[(7, 1.0, 1.0), (8, 1.0, 1.0)]), [7], "equal points: the first");
+    }
+
+    /// Where all lose alike by place and route, the first choice is the last; where another may still be better, it is not.
+    #[test]
+    fn what_is_routed_is_what_a_front_may_need() {
+        let mut results = committed().expect("results");
+        results.points.iter_mut().for_each(|point| *point = point.unrouted());
+        let first = worth_routing(&results);
+        let fronts = on_fronts(&results);
+        assert!(fronts.len() > 5 && fronts.iter().all(|index| first.contains(index)), "{fronts:?}, {first:?}");
+        assert!(first.iter().any(|&index| results.points[index].name == BASE), "times are compared with it: {first:?}");
+        for &index in &first {
+            let point = &mut results.points[index];
+            let routed_mhz = Some(0.8 * point.modelled_mhz);
+            point.hardware = point.hardware.take().map(|hardware| Hardware { routed_mhz, ..hardware });
+        }
+        assert!(worth_routing(&results).is_empty(), "{:?}", worth_routing(&results));
+        assert_ne!(on_fronts(&results), fronts, "by the clocks as they are, hollow points look better");
+
+        let mut faster = results.points[fronts[0]].unrouted();
+        faster.cycles.lone -= faster.cycles.lone / 10;
+        results.points.push(faster);
+        assert_eq!(worth_routing(&results), [results.points.len() - 1]);
     }
 }

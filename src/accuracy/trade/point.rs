@@ -46,6 +46,13 @@ impl Point {
         self.hardware.as_ref().and_then(|hardware| hardware.routed_mhz)
     }
 
+    /// The same without place and route: its times are those at the delay model's clock.
+    #[must_use]
+    pub fn unrouted(&self) -> Self {
+        let hardware = self.hardware.clone().map(|hardware| Hardware { routed_mhz: None, ..hardware });
+        Self { hardware, ..self.clone() }
+    }
+
     fn ns(&self, cycles: f64) -> f64 {
         1000.0 * cycles / self.clock_mhz()
     }

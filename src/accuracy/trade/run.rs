@@ -2,7 +2,7 @@
 
 use super::axes::{Choice, is_same, name, neighbours};
 use super::cost::{Cycles, Hardware, cycles, cycles_key, hardware, hardware_key};
-use super::front::{Time, front};
+use super::front::{on_fronts, worth_routing};
 use super::results::Store;
 use super::software;
 use super::{Plan, Point, Results, ResultsError};
@@ -119,7 +119,7 @@ fn drift(results: &mut Results) -> Result<(), TradeError> {
 /// Configurations a step from those on a front that are not there yet: as many as the plan has, those of each in turn.
 fn beside_the_front(plan: &Plan, results: &Results) -> Vec<Choice> {
     let mut around: Vec<VecDeque<Choice>> =
-        best(results).into_iter().map(|index| neighbours(&results.points[index].config).into()).collect();
+        on_fronts(results).into_iter().map(|index| neighbours(&results.points[index].config).into()).collect();
     let there = |choices: &[Choice], config: &Config| choices.iter().any(|(_, other)| is_same(other, config));
     let mut more: Vec<Choice> = Vec::new();
     while more.len() < plan.neighbours && around.iter().any(|choices| !choices.is_empty()) {
@@ -133,18 +133,10 @@ fn beside_the_front(plan: &Plan, results: &Results) -> Vec<Choice> {
     more
 }
 
-/// The points on a front of any time, by the clocks known so far.
-fn best(results: &Results) -> Vec<usize> {
-    let mut all: Vec<usize> = Time::ALL.into_iter().flat_map(|time| front(results, time, |_| true)).collect();
-    all.sort_unstable();
-    all.dedup();
-    all
-}
-
-/// How often fronts are looked at anew: a clock that place and route lowers may bring another point there.
+/// How often it is looked anew which points are worth it: a clock that place and route lowers may bring another one there.
 const ROUNDS: usize = 4;
 
-/// Places and routes the points on the fronts.
+/// Places and routes the points that fronts may be drawn through.
 fn route(
     plan: &Plan,
     mut guessed: f64,
@@ -156,9 +148,9 @@ fn route(
     let mut tried: Vec<usize> = Vec::new();
     for _ in 0..if seeds.is_empty() { 0 } else { ROUNDS } {
         let is_open = |point: &Point| point.hardware.is_some() && point.routed_mhz().is_none();
-        let chosen =
-            best(results).into_iter().filter(|index| is_open(&results.points[*index]) && !tried.contains(index));
-        let chosen: Vec<usize> = chosen.collect();
+        let worth = worth_routing(results).into_iter();
+        let chosen: Vec<usize> =
+            worth.filter(|index| is_open(&results.points[*index]) && !tried.contains(index)).collect();
         if chosen.is_empty() {
             break;
         }

@@ -4,7 +4,7 @@ use super::{Point, Results};
 use crate::report::table::{grouped, table as drawn};
 
 /// What times are compared with.
-const BASE: &str = "paper";
+pub(super) const BASE: &str = "paper";
 /// Times that differ by less than this share are the same: links stall at random.
 const SAME: f64 = 0.03;
 
@@ -26,7 +26,10 @@ pub fn table(results: &Results) -> String {
         "at the link",
     ];
     let base = results.point(BASE);
-    let rows = results.points.iter().map(|point| row(results, point, base));
+    // A clock of the model's is compared with another of the model's.
+    let unrouted = base.map(Point::unrouted);
+    let alike = |point: &Point| if point.routed_mhz().is_some() { base } else { unrouted.as_ref() };
+    let rows = results.points.iter().map(|point| row(results, point, alike(point)));
     let scenes = results.scenes().join(" and ");
     let target = results.target;
     let mut text = format!(
