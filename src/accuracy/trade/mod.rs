@@ -28,7 +28,7 @@ pub use output::write;
 pub use page::{page, steps};
 pub use picture::picture;
 pub use plan::{Named, Plan, Size};
-pub use point::Point;
+pub use point::{Counted, Point};
 pub use results::{Results, ResultsError, SCHEMA, SetFigures, committed};
 pub use run::{TradeError, Work, run};
 pub use scene::{Drift, GAP, LAYERS, STEPS};

@@ -14,8 +14,8 @@ const SCRIPT: &str = include_str!("report.js");
 pub fn page(results: &Results) -> String {
     let body = html! {
         p { "Each point is a configuration of the AFU: its error, measured against the truth in arbitrary precision, over "
-            "its time, counted by simulating its Verilog. Down is more accurate, left is faster. Point at a point and its row "
-            "stands below." }
+            "its time, counted by simulating its Verilog. Down is more accurate, left is faster. A hollow one is at the delay "
+            "model’s clock, which place and route would lower. Point at a point and its row stands below." }
         (sentences(results))
         @for time in Time::ALL { figure { (picture(results, time).figure()) } }
         aside #row aria-live="polite" { span { small { "Point at a point, and its row stands here." } } }
@@ -97,8 +97,8 @@ fn method(results: &Results) -> Markup {
             li { "Time: cycles of one SCPU’s AFU, simulated, at the clock after place and route where there is one (filled points), "
                 "else at the delay model’s (hollow). A lone pair: from its line in to its contact’s line out. Over the link: "
                 code { (results.link) } "." }
-            li { "Area: an SCPU by Yosys for " (results.target.device()) "; a full device holds as many as fit by what runs out "
-                "first, controller and shell not counted." }
+            li { "Area: an SCPU on " (results.target.device()) ", cells as they were placed, or as Yosys counts them where nothing "
+                "was; a full device holds as many as fit by what runs out first, controller and shell not counted." }
             @if !results.kernels.is_empty() {
                 li { "Software: the same arithmetic on one thread of " (results.processor) "; its best kernels take "
                     @for (number, (name, ns)) in results.kernels.iter().enumerate() {

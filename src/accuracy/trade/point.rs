@@ -29,10 +29,23 @@ pub struct Point {
     pub cycles: Cycles,
     /// Area and clock, where the tools for it are there.
     pub hardware: Option<Hardware>,
+    /// What both were before place and route gave it another clock; none where it was not routed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub before_routing: Option<Counted>,
     /// Nanoseconds a pair of the same arithmetic in software, on one thread of this machine.
     pub software_ns: Option<f64>,
     /// Where it leads the diamond's spheres; none without ODE, or where it gives what is no contact.
     pub drift: Option<Drift>,
+}
+
+/// A configuration's cycles at the delay model's clock, and its cells as synthesis counts them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Counted {
+    /// Cycles by cosim.
+    pub cycles: Cycles,
+    /// Area, without a clock.
+    pub hardware: Hardware,
 }
 
 impl Point {
@@ -46,11 +59,16 @@ impl Point {
         self.hardware.as_ref().and_then(|hardware| hardware.routed_mhz)
     }
 
-    /// The same without place and route: its times are those at the delay model's clock.
+    /// The same before place and route: its times are those at the delay model's clock, its cells those that synthesis
+    /// counted.
     #[must_use]
     pub fn unrouted(&self) -> Self {
-        let hardware = self.hardware.clone().map(|hardware| Hardware { routed_mhz: None, ..hardware });
-        Self { hardware, ..self.clone() }
+        let (cycles, hardware) = match &self.before_routing {
+            Some(before) => (before.cycles.clone(), Some(before.hardware.clone())),
+            None => (self.cycles.clone(), self.hardware.clone()),
+        };
+        let hardware = hardware.map(|hardware| Hardware { routed_mhz: None, ..hardware });
+        Self { cycles, hardware, before_routing: None, ..self.clone() }
     }
 
     fn ns(&self, cycles: f64) -> f64 {

@@ -5,13 +5,14 @@ use super::cost::{Cycles, Hardware, cycles, cycles_key, hardware, hardware_key};
 use super::front::{on_fronts, worth_routing};
 use super::results::Store;
 use super::software;
-use super::{Plan, Point, Results, ResultsError};
+use super::{Counted, Plan, Point, Results, ResultsError};
 use crate::accuracy::{Contenders, Failed, Profiled, Row, measure};
 use crate::config::Config;
 use crate::link::LinkError;
 use crate::synth::{SynthError, Unit};
 use crate::verify::{Bench, VerifyError, rtl_sha256};
 use std::collections::VecDeque;
+use std::mem::{replace, take};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError, mpsc};
 use std::thread;
@@ -154,15 +155,16 @@ fn route(
         if chosen.is_empty() {
             break;
         }
-        progress(Work::Planned(ROUTE_SECONDS * (chosen.len() * seeds.len()) as f64 - std::mem::take(&mut guessed)));
+        progress(Work::Planned(ROUTE_SECONDS * (chosen.len() * seeds.len()) as f64 - take(&mut guessed)));
         let configs: Vec<Config> = chosen.iter().map(|&index| results.points[index].config.clone()).collect();
         let costs = costs(plan, &configs.iter().collect::<Vec<_>>(), seeds, store, progress)?;
         for (&index, cost) in chosen.iter().zip(costs) {
             results.left_out.extend(cost.missing.filter(|missing| !results.left_out.contains(missing)));
             // Where it could not be routed, what was known of it stays.
-            if cost.hardware.is_some() {
+            if let Some(routed) = cost.hardware {
                 let point = &mut results.points[index];
-                (point.cycles, point.hardware) = (cost.cycles, cost.hardware);
+                let cycles = replace(&mut point.cycles, cost.cycles);
+                point.before_routing = point.hardware.replace(routed).map(|hardware| Counted { cycles, hardware });
             }
         }
         tried.extend(chosen);
@@ -194,6 +196,7 @@ fn add(
             rows,
             cycles: cost.cycles,
             hardware: cost.hardware,
+            before_routing: None,
             software_ns: None,
             drift: None,
         });
