@@ -13,8 +13,8 @@ use super::output;
 
 /// Name the cheapest configuration that meets bounds, from the results of `afu accuracy --out`
 ///
-/// The cheapest has the fewest LUTs. Where nothing meets the bounds, it says what it would take, bound by bound, and ends
-/// with status 1.
+/// The cheapest has the fewest LUTs, of those that were placed and routed where any was. Where nothing meets the bounds, it
+/// says what it would take, bound by bound, and ends with status 1.
 #[derive(Args, Debug)]
 pub struct Choose {
     /// Largest relative error on the scenes, at most
@@ -69,7 +69,9 @@ pub fn run(options: &Choose) -> Result<(), Failure> {
         Which::Link => Time::Link,
     };
     let bounds = Bounds { error: options.max_error, ns: options.max_ns, luts: options.max_luts, bad: options.max_bad };
-    let of = format!("of {} configurations, {}: {}", results.points.len(), results.date, results.command);
+    let routed = if results.comparable().any(|point| point.routed_mhz().is_some()) { "placed and routed " } else { "" };
+    let count = results.comparable().count();
+    let of = format!("of {count} {routed}configurations, {}: {}", results.date, results.command);
     match choose(&results, &bounds, time) {
         Ok(point) => {
             let ns = time.of(point, &results).map_or("-".to_owned(), |ns| format!("{ns:.1}"));

@@ -72,8 +72,9 @@ pub struct Instead<'a> {
     pub point: &'a Point,
 }
 
-/// The point with the fewest LUTs of those that meet `bounds` (then the one with the least time); where none does, for
-/// each bound what it would take if it alone gave way. That is empty where even then nothing meets the others.
+/// The point with the fewest LUTs of the [comparable](Results::comparable) ones that meet `bounds` (then the one with the
+/// least time); where none does, for each bound what it would take if it alone gave way. That is empty where even then
+/// nothing meets the others.
 pub fn choose<'a>(results: &'a Results, bounds: &Bounds, time: Time) -> Result<&'a Point, Vec<Instead<'a>>> {
     let figure = |bound: Bound, point: &Point| bound.figure(results, point, time);
     let meets = |bound: Bound, point: &Point| {
@@ -84,14 +85,14 @@ pub fn choose<'a>(results: &'a Results, bounds: &Bounds, time: Time) -> Result<&
         let of = |bound| figure(bound, point).unwrap_or(f64::INFINITY);
         (of(Bound::Luts), of(Bound::Ns))
     };
-    let cheapest = results.points.iter().filter(|point| all(point, None)).min_by(|a, b| {
+    let cheapest = results.comparable().filter(|point| all(point, None)).min_by(|a, b| {
         let (a, b) = (cost(a), cost(b));
         a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
     });
     cheapest.ok_or_else(|| {
         let instead = |bound: Bound| {
             bound.of(bounds)?;
-            let others = results.points.iter().filter(|point| all(point, Some(bound)));
+            let others = results.comparable().filter(|point| all(point, Some(bound)));
             let valued = others.filter_map(|point| Some((figure(bound, point)?, point)));
             let (value, point) = valued.min_by(|a, b| a.0.total_cmp(&b.0))?;
             Some(Instead { bound, value, point })

@@ -33,9 +33,8 @@ pub fn page(results: &Results) -> String {
 
 /// The sentences for each step along the fronts.
 pub fn steps(results: &Results) -> Vec<(Time, Vec<String>)> {
-    let anyone = results.points.iter().any(|point| point.routed_mhz().is_some());
     let of = |time: Time| {
-        let front = front(results, time, |point| !anyone || point.routed_mhz().is_some());
+        let front = front(results, time, |point| results.is_comparable(point));
         let pairs = front.windows(2).map(|two| step(results, time, &results.points[two[0]], &results.points[two[1]]));
         (time, pairs.collect())
     };

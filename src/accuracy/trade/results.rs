@@ -158,6 +158,18 @@ impl Results {
         self.sets.iter().fold(0, |sum, set| sum.saturating_add(set.pairs))
     }
 
+    /// Whether a point may be compared with others: it was placed and routed, or none was. A clock of the delay model's is
+    /// one that no router gave.
+    pub fn is_comparable(&self, point: &Point) -> bool {
+        let is_routed = |point: &Point| point.routed_mhz().is_some();
+        is_routed(point) || !self.points.iter().any(is_routed)
+    }
+
+    /// The points that may be compared.
+    pub fn comparable(&self) -> impl Iterator<Item = &Point> {
+        self.points.iter().filter(|point| self.is_comparable(point))
+    }
+
     /// The point of this name.
     pub fn point(&self, name: &str) -> Option<&Point> {
         self.points.iter().find(|point| point.name == name)
