@@ -53,8 +53,9 @@ impl<'a> Source<'a> {
             let leaving = path[index + 1..].iter().take(2).find(|next| next.kind == "routing");
             let sources = leaving.map_or(&[][..], |net| &net.sources);
             let mut hop = self.name(&segment.to.cell, sources);
-            // Inside a carry chain the name is known at its ends.
-            if let Some(last) = hops.last().filter(|_| segment.to.cell.contains("CCU2_COMB") && sources.is_empty()) {
+            // Inside a carry chain the name is known at its ends; some cells have none of the source's at all.
+            let is_inside = segment.to.cell.contains("CCU2_COMB") && sources.is_empty();
+            if let Some(last) = hops.last().filter(|_| is_inside || hop.signal.is_empty()) {
                 hop.signal.clone_from(&last.signal);
                 hop.stage = last.stage;
             }
@@ -124,4 +125,33 @@ fn lines(text: &str) -> Vec<Line> {
         Line { signal, stage }
     };
     text.lines().map(line).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hdl::Graph;
+    use crate::synth::route::Pin;
+
+    #[test]
+    fn a_cell_without_a_name_belongs_to_the_hop_before_it() {
+        let graph = Graph::new("bench");
+        graph.output("out", graph.input("in", 1));
+        let top = graph.finish().expect("a module");
+        let segment = |delay, kind: &str, cell: &str| Segment {
+            delay,
+            kind: kind.to_owned(),
+            to: Pin { cell: cell.to_owned() },
+            sources: Vec::new(),
+        };
+        let path = [
+            segment(0.5, "clk-to-q", "unit.a_s1_TRELLIS_FF_Q"),
+            segment(0.25, "routing", "$nextpnr_CCU2C_1$CCU2_FCI_INT"),
+            segment(1.0, "logic", "$nextpnr_CCU2C_1$CCU2_FCI_INT"),
+            segment(0.5, "routing", "unit.b_s2_TRELLIS_FF_Q"),
+        ];
+        let hops = Source::new(&top, &[]).tell(&path);
+        let told: Vec<_> = hops.iter().map(|hop| (hop.signal.as_str(), hop.routing_ns, hop.logic_ns)).collect();
+        assert_eq!(told, [("a_s1", 0.25, 1.5), ("b_s2", 0.5, 0.0)]);
+    }
 }

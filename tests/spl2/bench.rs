@@ -21,6 +21,15 @@ pub fn files() -> Vec<File> {
     afu.verilog().into_iter().map(|(name, text)| File { name, text }).collect()
 }
 
+/// Cycles that the core takes from its start to the request that writes the last line, over no link at all.
+pub fn cycles_to_the_last_write(scpus: u32, pairs: usize) -> u32 {
+    let afu = Afu::generate(Spec::from(config(scpus))).unwrap();
+    let timing = afu.timing();
+    let through = [timing.start, timing.request, timing.collect, timing.feed, timing.scpu, timing.gather, timing.pack];
+    let lines = pairs.div_ceil(2) as u32;
+    through.iter().sum::<u32>() + lines - 1 + timing.dispatch
+}
+
 pub fn model(scpus: u32) -> Model {
     build(files(), scpus)
 }

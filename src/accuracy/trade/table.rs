@@ -95,7 +95,7 @@ pub(super) fn at_the_link(point: &Point, base: &Point) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{BASE, table};
+    use super::{BASE, Point, table};
     use crate::accuracy::trade::committed;
 
     #[test]
@@ -104,7 +104,7 @@ mod tests {
         let base = results.point(BASE).expect("what is compared with").clone();
         assert!(base.routed_mhz().is_some() && base.unrouted().clock_mhz() != base.clock_mhz());
         results.points = [("unrouted", base.unrouted()), ("routed", base.clone())]
-            .map(|(name, point)| crate::accuracy::trade::Point { name: name.to_owned(), ..point })
+            .map(|(name, point)| Point { name: name.to_owned(), ..point })
             .into();
         results.points.push(base);
         let text = table(&results);
