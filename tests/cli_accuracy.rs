@@ -35,6 +35,38 @@ fn a_row_a_profile_with_errors_and_times() {
     assert!(mean(&points[0], 1) < mean(&points[1], 1), "twelve bits less are less accurate");
 }
 
+/// The quick study has its page and pictures without areas, and says so; a second run measures nothing again.
+#[test]
+fn a_quick_study_needs_no_synthesis() {
+    let room = tempfile::tempdir().expect("a temporary folder");
+    let folder = room.path().join("study");
+    let name = folder.to_str().expect("a path");
+    let run = || {
+        let told = afu(&["accuracy", "--quick", "--profile", "paper,e8f11", "--out", name]).success();
+        String::from_utf8_lossy(&told.get_output().stdout).into_owned()
+    };
+    let text = run();
+    assert!(text.contains("left out: areas") && !text.contains("LUT"), "{text}");
+    for (file, there) in [("front.svg", true), ("link.svg", true), ("report.html", true), ("throughput.svg", false)] {
+        assert_eq!(folder.join(file).is_file(), there, "{file}");
+    }
+    let page = std::fs::read_to_string(folder.join("report.html")).expect("the page");
+    assert_eq!(page.matches("<svg class=\"plot\"").count(), 2);
+    assert!(page.contains("Left out: areas") && !page.contains("LUTs"), "no empty columns");
+
+    // What another run left does not stay as if it were of this one.
+    std::fs::write(folder.join("throughput.svg"), "of before").expect("written");
+    let store = std::fs::read(folder.join("manifest.json")).expect("the store");
+    assert_eq!(run(), text);
+    assert!(!folder.join("throughput.svg").exists());
+    assert_eq!(std::fs::read(folder.join("manifest.json")).expect("the store"), store, "everything was known");
+
+    let told = afu(&["choose", "--max-luts", "9000", "--from", name]).code(2);
+    assert!(String::from_utf8_lossy(&told.get_output().stderr).contains("have no areas"));
+    afu(&["choose", "--max-error", "1e-3", "--from", name]).success();
+    afu(&["accuracy", "--synth", "--out", name]).code(2);
+}
+
 #[test]
 fn what_cannot_be_is_bad_usage() {
     for (options, words) in [

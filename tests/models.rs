@@ -253,11 +253,16 @@ fn processes_and_threads_may_build_the_same_at_once() {
     }
     let cache = tempfile::tempdir().unwrap();
     let name = "processes_and_threads_may_build_the_same_at_once";
-    let mut others = [0, 1].map(|_| in_another_process(name, cache.path(), &[]));
+    // What no compiler reads makes no other model.
+    let mut others = ["one", "other"].map(|value| in_another_process(name, cache.path(), &[("AFU_TEST_OF", value)]));
     assert!(others.iter_mut().all(|other| other.wait().unwrap().success()));
-    let left = entries(cache.path());
-    let models = left.iter().filter(|folder| folder.join("model.so").is_file()).count();
-    assert_eq!((models, left.len()), (1, 2), "one model and the runtime, no lock and nothing half made: {left:?}");
+    let left = || {
+        let left = entries(cache.path());
+        (left.iter().filter(|folder| folder.join("model.so").is_file()).count(), left.len())
+    };
+    assert_eq!(left(), (1, 2), "one model and the runtime, no lock and nothing half made");
+    assert!(in_another_process(name, cache.path(), &[("CPATH", "/nowhere")]).wait().unwrap().success());
+    assert_eq!(left(), (2, 4), "what it reads does");
 }
 
 #[test]

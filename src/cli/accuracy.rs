@@ -21,9 +21,12 @@ pub struct Accuracy {
     /// which the same command goes on where it was stopped. Without it, a row a profile
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Some ten configurations and fewer pairs, nothing placed and routed unless --seeds asks for it
+    /// Some ten configurations and fewer pairs; no areas unless --synth asks for them, no routes unless --seeds does
     #[arg(long, requires = "out")]
     quick: bool,
+    /// Count cells in the quick study too: the first time Yosys takes longer than all the rest
+    #[arg(long, requires = "quick", conflicts_with = "no_synth")]
+    synth: bool,
     /// Write into the folder even if afu did not make it; other files in it are left alone
     #[arg(long, requires = "out")]
     force: bool,
@@ -68,7 +71,7 @@ pub fn run(options: &Accuracy) -> Result<(), Failure> {
     if !options.profile.is_empty() {
         plan.only(&options.profile);
     }
-    plan.synthesis = !options.no_synth;
+    plan.synthesis = (plan.synthesis || options.synth || !options.seeds.is_empty()) && !options.no_synth;
     if size == Size::Full {
         plan.neighbours = options.neighbours;
     }

@@ -13,7 +13,8 @@ use super::output;
 
 /// Name the cheapest configuration that meets bounds, from the results of `afu accuracy --out`
 ///
-/// The cheapest has the fewest LUTs, of those that were placed and routed where any was. Where nothing meets the bounds, it
+/// The cheapest has the fewest LUTs, of those that were placed and routed where any was; where no cells were counted, it
+/// has the least time. Where nothing meets the bounds, it
 /// says what it would take, bound by bound, and ends with status 1.
 #[derive(Args, Debug)]
 pub struct Choose {
@@ -68,6 +69,11 @@ pub fn run(options: &Choose) -> Result<(), Failure> {
         Which::Device => Time::Device,
         Which::Link => Time::Link,
     };
+    if !results.has_areas() && (options.max_luts.is_some() || time == Time::Device) {
+        let message = "these results have no areas, which --max-luts and --time device need; `afu accuracy --quick --synth` \
+                       or the full study counts cells";
+        return Err(Failure::new(Kind::Usage, message.to_owned()));
+    }
     let bounds = Bounds { error: options.max_error, ns: options.max_ns, luts: options.max_luts, bad: options.max_bad };
     let routed = if results.comparable().any(|point| point.routed_mhz().is_some()) { "placed and routed " } else { "" };
     let count = results.comparable().count();

@@ -4,9 +4,10 @@ use super::columns::COLUMNS;
 use super::{Results, ResultsError, Time, page, picture};
 use crate::report::folder::replace_file;
 use std::path::Path;
+use std::{fs, io};
 
-/// Writes report.html, front.svg (a lone pair), throughput.svg, link.svg, results.csv and results.json into a folder that
-/// [`run`](super::run) made; each is replaced whole.
+/// Writes report.html, front.svg (a lone pair), throughput.svg (where areas are known), link.svg, results.csv and
+/// results.json into a folder that [`run`](super::run) made; each is replaced whole, and none of an earlier run stays.
 ///
 /// # Errors
 /// When the file system refuses.
@@ -17,9 +18,19 @@ pub fn write(results: &Results, folder: &Path) -> Result<(), ResultsError> {
     file("results.json", &json)?;
     file("results.csv", &csv(results)?)?;
     for (name, time) in [("front.svg", Time::Lone), ("throughput.svg", Time::Device), ("link.svg", Time::Link)] {
-        file(name, picture(results, time).svg().as_bytes())?;
+        match results.times().contains(&time) {
+            true => file(name, picture(results, time).svg().as_bytes())?,
+            false => remove(&folder.join(name))?,
+        }
     }
     Ok(file("report.html", page(results).as_bytes())?)
+}
+
+fn remove(path: &Path) -> Result<(), ResultsError> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(ResultsError::Io { path: path.to_owned(), error }),
+        _ => Ok(()),
+    }
 }
 
 fn csv(results: &Results) -> Result<Vec<u8>, ResultsError> {

@@ -1,6 +1,6 @@
 //! `report.html`: the pictures, the steps along their fronts, and a table that sorts.
 
-use super::columns::COLUMNS;
+use super::columns::{COLUMNS, Column};
 use super::front::{Time, front, step};
 use super::{GAP, LAYERS, Point, Results, STEPS, picture};
 use crate::report::page;
@@ -17,7 +17,7 @@ pub fn page(results: &Results) -> String {
             "its time, counted by simulating its Verilog. Down is more accurate, left is faster. A hollow one is at the delay "
             "model’s clock, which place and route would lower. Point at a point and its row stands below." }
         (sentences(results))
-        @for time in Time::ALL { figure { (picture(results, time).figure()) } }
+        @for time in results.times() { figure { (picture(results, time).figure()) } }
         aside #row aria-live="polite" { span { small { "Point at a point, and its row stands here." } } }
         h2 { "Points" }
         p.soft { "A click on a heading sorts. Errors are of " (results.scenes().join(" and ")) ": of a contact the largest of the "
@@ -38,7 +38,7 @@ pub fn steps(results: &Results) -> Vec<(Time, Vec<String>)> {
         let pairs = front.windows(2).map(|two| step(results, time, &results.points[two[0]], &results.points[two[1]]));
         (time, pairs.collect())
     };
-    Time::ALL.into_iter().map(of).collect()
+    results.times().into_iter().map(of).collect()
 }
 
 fn sentences(results: &Results) -> Markup {
@@ -62,7 +62,7 @@ fn table(results: &Results) -> Markup {
                 thead { tr {
                     th { "configuration" }
                     th { "axis" }
-                    @for column in &COLUMNS { th.n { (column.heading) } }
+                    @for column in known(results) { th.n { (column.heading) } }
                 } }
                 tbody { @for point in &results.points { (row(results, point)) } }
             }
@@ -70,12 +70,18 @@ fn table(results: &Results) -> Markup {
     }
 }
 
+/// The columns in which anything is known.
+fn known(results: &Results) -> impl Iterator<Item = &'static Column> {
+    let is_known = |column: &&Column| results.points.iter().any(|point| (column.value)(results, point).is_some());
+    COLUMNS.iter().filter(is_known)
+}
+
 fn row(results: &Results, point: &Point) -> Markup {
     html! {
         tr data-name=(point.name) {
             td { (point.name) }
             td { (point.axis) }
-            @for column in &COLUMNS {
+            @for column in known(results) {
                 td.n data-v=((column.value)(results, point).map_or(String::new(), |value| value.to_string())) {
                     (column.text(results, point))
                 }
@@ -96,8 +102,10 @@ fn method(results: &Results) -> Markup {
             li { "Time: cycles of one SCPU’s AFU, simulated, at the clock after place and route where there is one (filled points), "
                 "else at the delay model’s (hollow). A lone pair: from its line in to its contact’s line out. Over the link: "
                 code { (results.link) } "." }
-            li { "Area: an SCPU on " (results.target.device()) ", cells as they were placed, or as Yosys counts them where nothing "
-                "was; a full device holds as many as fit by what runs out first, controller and shell not counted." }
+            @if results.has_areas() {
+                li { "Area: an SCPU on " (results.target.device()) ", cells as they were placed, or as Yosys counts them where "
+                    "nothing was; a full device holds as many as fit by what runs out first, controller and shell not counted." }
+            }
             @if !results.kernels.is_empty() {
                 li { "Software: the same arithmetic on one thread of " (results.processor) "; its best kernels take "
                     @for (number, (name, ns)) in results.kernels.iter().enumerate() {

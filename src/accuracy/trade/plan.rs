@@ -59,7 +59,7 @@ pub struct Plan {
 }
 
 impl Size {
-    /// The plan of a study of this size, without routes and neighbours but for the full one.
+    /// The plan of a study of this size: the full one alone with routes and neighbours, the quick one without areas.
     pub fn plan(self, link: Description, link_name: &str, seed: u64, jobs: usize) -> Plan {
         let (choices, dense, hard) = match self {
             Self::Profiles => (axes::of_profiles(), 20_000, 17_000),
@@ -69,6 +69,8 @@ impl Size {
         let (choices, left_out) = axes::possible(choices);
         let named = |set: Set, is_scene| Named { name: set.to_string(), is_scene, pairs: set.pairs(seed) };
         let full = self == Self::Full;
+        // Three quarters of a quick study's time would go there.
+        let synthesis = self != Self::Quick;
         Plan {
             choices,
             left_out,
@@ -77,7 +79,7 @@ impl Size {
             link_name: link_name.to_owned(),
             seed,
             target: Target::Ecp5,
-            synthesis: true,
+            synthesis,
             neighbours: if full { 6 } else { 0 },
             placer_seeds: if full { vec![1] } else { Vec::new() },
             must_route: false,

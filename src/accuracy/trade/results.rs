@@ -1,7 +1,7 @@
 //! The store of a study's measurements, and its results.
 
 use super::cost::{Cycles, Hardware};
-use super::{Plan, Point};
+use super::{Plan, Point, Time};
 use crate::accuracy::Row;
 use crate::report::folder::{self, replace_file};
 use crate::synth::Target;
@@ -146,6 +146,17 @@ impl Results {
             kernels: Vec::new(),
             points: Vec::new(),
         }
+    }
+
+    /// The times that any point has: that of a full device is known where areas are.
+    pub fn times(&self) -> Vec<Time> {
+        let is_known = |time: &Time| self.points.iter().any(|point| time.of(point, self).is_some());
+        Time::ALL.into_iter().filter(is_known).collect()
+    }
+
+    /// Whether the area of any point is known.
+    pub fn has_areas(&self) -> bool {
+        self.points.iter().any(|point| point.area().is_some())
     }
 
     /// The names of the sets that are scenes.

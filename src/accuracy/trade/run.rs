@@ -49,9 +49,10 @@ pub enum Work {
     Done(f64),
 }
 
-/// Guesses: a pair's answer and its judgement; a model and a netlist; place and route.
+/// Guesses: a pair's answer and its judgement; a model; a netlist; place and route.
 const PAIR_SECONDS: f64 = 5e-6;
-const COST_SECONDS: f64 = 60.0;
+const MODEL_SECONDS: f64 = 25.0;
+const NETLIST_SECONDS: f64 = 45.0;
 const ROUTE_SECONDS: f64 = 600.0;
 /// Points on fronts, before any is known.
 const ON_FRONTS: f64 = 8.0;
@@ -61,7 +62,12 @@ const AT_ONCE: usize = 16;
 /// A guess at the seconds of so many configurations.
 fn seconds(plan: &Plan, configs: usize) -> f64 {
     let pairs: usize = plan.sets.iter().map(|set| set.pairs.len()).sum();
-    configs as f64 * (COST_SECONDS + PAIR_SECONDS * pairs as f64)
+    configs as f64 * (cost_seconds(plan) + PAIR_SECONDS * pairs as f64)
+}
+
+/// A guess at the seconds of a configuration without routes and errors.
+fn cost_seconds(plan: &Plan) -> f64 {
+    MODEL_SECONDS + if plan.synthesis { NETLIST_SECONDS } else { 0.0 }
 }
 
 /// Measures `plan`. What `folder` (taken even if it is not ours with `true`) holds from an earlier run is not measured
@@ -73,6 +79,9 @@ fn seconds(plan: &Plan, configs: usize) -> f64 {
 pub fn run(plan: &Plan, folder: Option<(&Path, bool)>, mut progress: impl FnMut(Work)) -> Result<Results, TradeError> {
     let mut store = Store::open(folder)?;
     let mut results = Results::new(plan);
+    if !plan.synthesis {
+        results.left_out.push("areas, and the throughput of a full device: nothing was synthesised".to_owned());
+    }
     let routes = ON_FRONTS * ROUTE_SECONDS * plan.placer_seeds.len() as f64;
     progress(Work::Planned(seconds(plan, plan.choices.len() + plan.neighbours) + routes));
     add(plan, &plan.choices, &mut results, &mut store, &mut progress)?;
@@ -301,7 +310,7 @@ fn costs(
                 News::Ended(index, cost) => {
                     costs[index] = Some((*cost).inspect_err(|_| stop())?);
                     progress(Work::Done(if seeds.is_empty() {
-                        COST_SECONDS
+                        cost_seconds(plan)
                     } else {
                         ROUTE_SECONDS * seeds.len() as f64
                     }));

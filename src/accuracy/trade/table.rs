@@ -12,36 +12,29 @@ const LIMITED: f64 = 0.09;
 
 /// The table, and below it what its words mean.
 pub fn table(results: &Results) -> String {
-    let heading = [
-        "",
-        "wrong",
-        "BAD",
-        "worst error",
-        "typical",
-        "lone pair, ns",
-        "×",
-        "link, ns",
-        "×",
-        "device, ns",
-        "×",
-        "LUT",
-        "at the link",
-    ];
+    let has_areas = results.has_areas();
+    let mut heading = vec!["", "wrong", "BAD", "worst error", "typical", "lone pair, ns", "×", "link, ns", "×"];
+    if has_areas {
+        heading.extend(["device, ns", "×", "LUT"]);
+    }
+    heading.push("at the link");
     let base = results.point(BASE);
     // What was not routed is compared with what the other was before it was.
     let unrouted = base.map(Point::unrouted);
     let alike = |point: &Point| if point.routed_mhz().is_some() { base } else { unrouted.as_ref() };
-    let rows = results.points.iter().map(|point| row(results, point, alike(point)));
+    let rows = results.points.iter().map(|point| row(results, point, alike(point), has_areas));
     let scenes = results.scenes().join(" and ");
-    let target = results.target;
+    let (device, luts) = match has_areas {
+        true => (format!("; a pair through a {} full of SCPUs", results.target.device()), " LUT: of an SCPU."),
+        false => (String::new(), ""),
+    };
     let mut text = format!(
         "{}\n\
          wrong: decisions, of {} pairs; BAD: gross failures. Errors are relative, of {scenes}. Times: a lone pair, line in to\n\
-         line out; a pair over link {}; a pair through a {} full of SCPUs. ×: to {BASE}. LUT: of an SCPU.\n",
+         line out; a pair over link {}{device}. ×: to {BASE}.{luts}\n",
         drawn(&heading, rows),
         grouped(results.pairs()),
         results.link,
-        target.device(),
     );
     text += if results.points.iter().any(|point| point.routed_mhz().is_some()) {
         "Clocks are those of place and route, or else of the delay model.\n"
@@ -52,7 +45,7 @@ pub fn table(results: &Results) -> String {
     text.trim_end().to_owned()
 }
 
-fn row(results: &Results, point: &Point, base: Option<&Point>) -> Vec<String> {
+fn row(results: &Results, point: &Point, base: Option<&Point>, has_areas: bool) -> Vec<String> {
     let times = |time: &dyn Fn(&Point) -> Option<f64>| {
         let mine = time(point);
         let ratio = mine.zip(base.and_then(time)).map(|(mine, base)| mine / base);
@@ -68,8 +61,10 @@ fn row(results: &Results, point: &Point, base: Option<&Point>) -> Vec<String> {
     ];
     cells.extend(times(&|point| Some(point.lone_ns())));
     cells.extend(times(&|point| Some(point.link_ns())));
-    cells.extend(times(&|point| point.device_ns(results.target)));
-    cells.push(point.area().map_or("-".to_owned(), |area| grouped(area.luts)));
+    if has_areas {
+        cells.extend(times(&|point| point.device_ns(results.target)));
+        cells.push(point.area().map_or("-".to_owned(), |area| grouped(area.luts)));
+    }
     cells.push(base.map_or_else(String::new, |base| at_the_link(point, base)));
     cells
 }

@@ -14,6 +14,17 @@ use super::{Error, Tool, Trace};
 /// Never 0, whatever the Cargo profile: a model at -O0 ran 17 times slower, and above 1 only its compilation slows.
 const OPTIMISATION: u32 = 1;
 
+/// Variables that GCC and Clang read: folders of headers, programs and libraries, and the SDK of a Mac.
+const READ_BY_COMPILERS: [&str; 7] = [
+    "CPATH",
+    "CPLUS_INCLUDE_PATH",
+    "COMPILER_PATH",
+    "GCC_EXEC_PREFIX",
+    "LIBRARY_PATH",
+    "MACOSX_DEPLOYMENT_TARGET",
+    "SDKROOT",
+];
+
 /// The C++ compiler.
 #[derive(Clone, Debug)]
 pub struct Compiler {
@@ -46,7 +57,11 @@ impl Compiler {
             return Err(missing(format!("`{name} --version` failed")));
         }
         let version = String::from_utf8_lossy(&output.stdout).into_owned();
-        let identity = format!("{target}\n{version}\n{:?}\n{:?}", tool.to_command(), model_options());
+        let command = tool.to_command();
+        let called: Vec<_> = [command.get_program()].into_iter().chain(command.get_args()).collect();
+        // Of the environment what compilers read; the flags that `cc` takes from it are among the arguments.
+        let read = READ_BY_COMPILERS.map(env::var_os);
+        let identity = format!("{target}\n{version}\n{called:?}\n{read:?}\n{:?}", model_options());
         Ok(Self { tool, identity })
     }
 
