@@ -187,7 +187,7 @@ fn several_sets_are_several_jobs_over_any_link() {
     assert_eq!(report["pairs"], 132 + 500);
     assert_eq!((&report["jobs"][0]["pairs"], &report["jobs"][1]["pairs"]), (&132.into(), &500.into()));
     let replay = report["replay"].as_str().expect("a command");
-    assert_eq!(replay, "afu cosim --scpus 2 --pairs diamond:3 --pairs random:500 --link hostile --seed 5");
+    assert_eq!(replay, "afu cosim --scpus 2 --interval 2 --pairs diamond:3 --pairs random:500 --link hostile --seed 5");
     let words: Vec<&str> = replay.split(' ').skip(1).collect();
     afu(room.path(), &[&words[..], &["--json", "again.json"]].concat()).success();
     assert_eq!(json(room.path(), "again.json")["cycles"], report["cycles"], "the same seed, the same cycles");

@@ -58,7 +58,7 @@ fn a_manifest_is_a_configuration_and_flags_win_over_it() {
 #[test]
 fn records_of_16_bits_are_told_of_everywhere() {
     let room = tempfile::tempdir().expect("a temporary folder");
-    afu(room.path(), &["rtl", "--shell", "line", "--record", "bf16", "--out", "a"]).success();
+    afu(room.path(), &["rtl", "--shell", "line", "--interval", "1", "--record", "bf16", "--out", "a"]).success();
     let files = contents(&room.path().join("a"));
     let manifest: serde_json::Value = serde_json::from_slice(&files["manifest.json"]).expect("JSON");
     assert_eq!(manifest["config"]["record"], "bf16");
@@ -68,7 +68,7 @@ fn records_of_16_bits_are_told_of_everywhere() {
     let top = String::from_utf8_lossy(&files["scpu.v"]).into_owned();
     assert!(top.contains("--record bf16"), "{top}");
     afu(room.path(), &["rtl", "--config", "a", "--record", "f32", "--out", "b"]).success();
-    afu(room.path(), &["rtl", "--shell", "line", "--out", "c"]).success();
+    afu(room.path(), &["rtl", "--shell", "line", "--interval", "1", "--out", "c"]).success();
     assert_eq!(
         contents(&room.path().join("b")),
         contents(&room.path().join("c")),
@@ -134,14 +134,22 @@ fn what_is_not_built_yet_or_out_of_range_is_one_line_and_exit_2() {
 fn interval_auto_is_what_the_link_needs() {
     let room = tempfile::tempdir().expect("a temporary folder");
     let interval = |arguments: &[&str]| {
-        let all =
-            [&["rtl", "--out", "out", "--force", "--interval", "auto", "--profile", "half"][..], arguments].concat();
+        let all = [&["rtl", "--out", "out", "--force", "--profile", "half"][..], arguments].concat();
         afu(room.path(), &all).success();
         let manifest = fs::read_to_string(room.path().join("out/manifest.json")).expect("written");
         let manifest: serde_json::Value = serde_json::from_str(&manifest).expect("JSON");
         manifest["config"]["interval"].as_u64().expect("a number")
     };
-    assert_eq!(interval(&[]), 5);
+    assert_eq!(interval(&[]), 5, "nothing said is auto");
+    assert_eq!(interval(&["--interval", "auto"]), 5);
+    assert_eq!(interval(&["--interval", "3"]), 3);
+    fs::write(
+        room.path().join("c.json"),
+        r#"{"schema": "contact-afu/rtl/1", "config": {"interval": 2, "profile": "half"}}"#,
+    )
+    .expect("written");
+    assert_eq!(interval(&["--config", "c.json"]), 2, "a file has said it");
+    assert_eq!(interval(&["--config", "c.json", "--interval", "auto"]), 5);
     assert_eq!(interval(&["--scpus", "1"]), 1);
     assert_eq!(interval(&["--scpus", "16"]), 8);
     assert!(interval(&["--link", "harp1"]) > 5);
@@ -153,8 +161,8 @@ fn interval_auto_is_what_the_link_needs() {
 #[test]
 fn a_target_s_blocks_are_named() {
     let room = tempfile::tempdir().expect("a temporary folder");
-    afu(room.path(), &["rtl", "--out", "plain"]).success();
-    afu(room.path(), &["rtl", "--out", "ecp5", "--target", "ecp5"]).success();
+    afu(room.path(), &["rtl", "--interval", "1", "--out", "plain"]).success();
+    afu(room.path(), &["rtl", "--interval", "1", "--out", "ecp5", "--target", "ecp5"]).success();
     let [plain, ecp5] = ["plain", "ecp5"].map(|folder| contents(&room.path().join(folder)));
     let named = |files: &BTreeMap<String, Vec<u8>>, block: &str| {
         let text = |bytes: &Vec<u8>| String::from_utf8(bytes.clone()).expect("text");

@@ -41,7 +41,7 @@ fn narrow(v: f64) -> f64 {
 
 #[test]
 fn in_the_first_step_the_afu_gives_the_contacts_of_ode() {
-    let bench = Bench::new(&Config::default()).unwrap();
+    let bench = Bench::new(&Config::shipped()).unwrap();
     for (layers, contacts) in [(3, 36), (10, 2_934)] {
         let diamond = Diamond::new(layers, 0.0);
         let ode = Ode::start(Collider::Own).unwrap();
@@ -61,7 +61,7 @@ fn in_the_first_step_the_afu_gives_the_contacts_of_ode() {
 /// rounding does to d − s and to a depth, 2e/d a normal, 4e a position (tests/ode_engine.rs has it in full).
 #[test]
 fn in_a_later_step_the_afu_gives_the_contacts_of_ode_as_rounding_allows() {
-    let bench = Bench::new(&Config::default()).unwrap();
+    let bench = Bench::new(&Config::shipped()).unwrap();
     for (layers, gap, steps) in [(3, 0.0, 40), (3, 0.05, 60), (10, 0.05, 45)] {
         let (mut pairs, mut records, mut expected) = (Vec::new(), Vec::new(), Vec::new());
         {
@@ -175,7 +175,7 @@ fn is_finite(paths: &Paths) -> bool {
 /// makes of it. In the diamond of the paper spheres touch exactly and hardly move; with a gap they fall and collide.
 #[test]
 fn three_hundred_steps_with_the_afu_in_the_loop_stay_within_four_times_rounding() {
-    let bench = Bench::new(&Config::default()).unwrap();
+    let bench = Bench::new(&Config::shipped()).unwrap();
     for gap in [0.0, 0.05] {
         let diamond = Diamond::new(3, gap);
         let mut afu = BenchEngine::new(&bench, LinkModel::ideal(), 3);

@@ -37,7 +37,7 @@ fn configurations() -> Vec<Config> {
         ..Config::default()
     };
     vec![
-        Config::default(),
+        Config::shipped(),
         Config { shell: Shell::Line, ..Config::default() },
         with("paper", "hit,depth,normal,position", 200.0),
         with("wide", "hit", 250.0),
@@ -65,7 +65,7 @@ fn root() -> &'static Path {
 #[test]
 fn the_committed_rtl_is_what_the_generator_writes() {
     let committed = root().join("rtl");
-    let files = generate(Config::default()).files();
+    let files = generate(Config::shipped()).files();
     for (name, text) in &files {
         let there = fs::read_to_string(committed.join(name)).unwrap_or_default();
         assert!(there == *text, "rtl/{name} is stale: run `cargo run --release -- rtl --out rtl`");
@@ -122,7 +122,7 @@ fn clean_under_wall_of_both_verilators() {
 
 #[test]
 fn elaborates_for_any_number_of_scpus_and_no_other() {
-    let (_folder, verilog) = write(&generate(Config::default()));
+    let (_folder, verilog) = write(&generate(Config::shipped()));
     for (scpus, good) in [(1, true), (3, true), (16, true), (0, false), (65, false)] {
         for mut verilator in verilators() {
             let output = verilator
@@ -143,7 +143,7 @@ fn yosys() -> PathBuf {
 
 #[test]
 fn yosys_finds_no_latch_and_no_multiple_driver() {
-    let (folder, verilog) = write(&generate(Config { scpus: 2, ..Config::default() }));
+    let (folder, verilog) = write(&generate(Config { scpus: 2, ..Config::shipped() }));
     let names: Vec<_> = verilog.iter().map(|path| path.file_name().unwrap().to_str().unwrap()).collect();
     let script = format!(
         "read_verilog {}; hierarchy -check -top afu_top; proc; check -assert; select -assert-none t:$dlatch t:$adlatch t:$dlatchsr",
@@ -220,7 +220,7 @@ fn icarus_gives_the_reference_bits_below_spl2() {
     let mut pairs = pairs::load("random:300", 7).unwrap();
     pairs.extend(pairs::load("hard:101", 7).unwrap());
     let (said, lines) = icarus("afu_top_tb", &verilog, 3, &pairs, 5);
-    let (expected, [contacts, invalid, first]) = reference(&Config::default(), &pairs);
+    let (expected, [contacts, invalid, first]) = reference(&Config::shipped(), &pairs);
     assert!(contacts > 0 && invalid > 0, "all kinds");
     assert_eq!(lines, expected);
     let job = |sequence: u32| {

@@ -87,6 +87,17 @@ impl Spec {
         INTERVALS.rev().find(|interval| takes(*interval) >= wanted).unwrap_or(1)
     }
 
+    /// The options of `afu rtl` that give this configuration, without the interval that it takes by itself.
+    pub(super) fn flags(&self) -> Vec<String> {
+        let mut flags = self.config.flags();
+        if self.config.interval == self.longest_interval(f64::INFINITY)
+            && let Some(at) = flags.iter().position(|flag| flag == "--interval")
+        {
+            flags.drain(at..at + 2);
+        }
+        flags
+    }
+
     /// Bits that hold a number of pairs from none to all lanes.
     pub(super) fn group_bits(&self) -> u32 {
         self.lanes().ilog2() + 1
@@ -138,7 +149,7 @@ mod tests {
             |scpus, pairs_a_cycle| Spec::from(Config { scpus, ..Config::default() }).longest_interval(pairs_a_cycle);
         // Two pairs a line, and no more than a line a cycle.
         assert_eq!([1, 2, 3, 4, 10, 11, 64].map(|scpus| of(scpus, 2.0)), [1, 1, 1, 2, 5, 5, 32]);
-        assert_eq!(of(10, 100.0), 5);
+        assert_eq!(of(10, f64::INFINITY), Config::shipped().interval);
         assert_eq!([0.5, 0.3, 1.0, 1.1, 0.01].map(|rate| of(10, rate)), [20, 33, 10, 9, 64]);
     }
 }

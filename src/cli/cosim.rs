@@ -193,8 +193,8 @@ impl Cosim {
 
     fn command(&self, config: &Config) -> String {
         let mut command = match &self.rtl {
-            None => replay::Command::new("cosim", config),
-            Some(folder) => replay::Command::new("cosim", &Config::default())
+            None => replay::Command::new("cosim").config(config),
+            Some(folder) => replay::Command::new("cosim")
                 .option("--rtl", &folder.display().to_string())
                 .option("--scpus", &config.scpus.to_string()),
         };

@@ -24,7 +24,7 @@ const SIMULATED: &str = "simulated.json";
 
 pub fn run(options: &Paper) -> Result<(), Failure> {
     let size = if options.quick { Size::Quick } else { Size::Full };
-    let config = options.machine.config_over(&options.link)?;
+    let config = options.machine.at_full_rate(options.machine.machine.config()?, &options.link)?;
     let link = link::read(&options.link, config.clock_mhz)?;
     let set_up_ns = (link.session.set_up + link.session.tear_down) as f64 * 1000.0 / config.clock_mhz;
     folder::check(&options.out, options.force)?;

@@ -90,7 +90,8 @@ impl Machine {
         }
     }
 
-    fn config_for_any_target(&self) -> Result<Config, Failure> {
+    /// The same for any target.
+    pub fn config_for_any_target(&self) -> Result<Config, Failure> {
         let mut config = match &self.config {
             Some(file) => config::read(file).ends(Kind::Usage)?,
             None => Config::default(),
@@ -115,7 +116,7 @@ pub struct One {
     #[arg(long, value_name = "N", help_heading = "The AFU")]
     pub scpus: Option<u32>,
     /// Cycles from one pair to the next in one SCPU, 1 to 64: above 1 it has fewer operators. auto: the most at which the
-    /// link is still what limits [default: 1]
+    /// link is still what limits [default: auto; of synth and paper 1]
     #[arg(long, value_name = "II", help_heading = "The AFU")]
     pub interval: Option<String>,
     #[command(flatten)]
@@ -123,22 +124,30 @@ pub struct One {
 }
 
 impl One {
-    /// The configuration, known to be one that can be generated, with `auto` for that link: its name or file.
+    /// The configuration, known to be one that can be generated. The interval, where neither option nor file says it, is
+    /// `auto`: for that link, a name or file.
     #[cfg(feature = "cosim")]
     pub fn config_over(&self, link: &str) -> Result<Config, Failure> {
-        self.with(self.machine.config()?, link)
+        self.with(self.machine.config()?, link, AUTO)
     }
 
     /// The same, whatever the target is.
     pub fn config_for_any_target(&self, link: &str) -> Result<Config, Failure> {
-        self.with(self.machine.config_for_any_target()?, link)
+        self.with(self.machine.config_for_any_target()?, link, AUTO)
     }
 
-    fn with(&self, mut config: Config, link: &str) -> Result<Config, Failure> {
+    /// The same from the machine's configuration, with interval 1 where none is said: for what measures an SCPU by itself,
+    /// or by the number of SCPUs.
+    pub fn at_full_rate(&self, config: Config, link: &str) -> Result<Config, Failure> {
+        self.with(config, link, "1")
+    }
+
+    fn with(&self, mut config: Config, link: &str, unsaid: &str) -> Result<Config, Failure> {
         set(&mut config.scpus, &self.scpus);
-        match self.interval.as_deref() {
+        let unsaid = if self.machine.config.is_none() { Some(unsaid) } else { None };
+        match self.interval.as_deref().or(unsaid) {
             None => {}
-            Some("auto") => {
+            Some(AUTO) => {
                 config.interval = 1;
                 config.check()?;
                 config.interval = longest_interval(&config, link)?;
@@ -180,6 +189,9 @@ impl One {
         }
     }
 }
+
+/// The word for an interval that follows from the link.
+const AUTO: &str = "auto";
 
 /// `--interval`: a number of cycles.
 fn interval_of(text: &str) -> Result<u32, Failure> {

@@ -6,11 +6,16 @@ use contact_afu::config::Config;
 pub struct Command(String);
 
 impl Command {
-    /// `afu SUBCOMMAND` with the options of a configuration.
-    pub fn new(subcommand: &str, config: &Config) -> Self {
-        let mut command = Self(format!("afu {subcommand}"));
-        config.flags().iter().for_each(|word| command.word(word));
-        command
+    /// `afu SUBCOMMAND`.
+    pub fn new(subcommand: &str) -> Self {
+        Self(format!("afu {subcommand}"))
+    }
+
+    /// Adds the options of a configuration.
+    #[must_use]
+    pub fn config(mut self, config: &Config) -> Self {
+        config.flags().iter().for_each(|word| self.word(word));
+        self
     }
 
     /// Adds an option with its value.
@@ -44,7 +49,8 @@ mod tests {
     #[test]
     fn what_a_shell_would_change_is_quoted() {
         let config = Config { scpus: 3, ..Config::default() };
-        let line = Command::new("cosim", &config).option("--pairs", "my pairs.csv").option("--link", "it's").line();
-        assert_eq!(line, r"afu cosim --scpus 3 --pairs 'my pairs.csv' --link 'it'\''s'");
+        let line =
+            Command::new("cosim").config(&config).option("--pairs", "my pairs.csv").option("--link", "it's").line();
+        assert_eq!(line, r"afu cosim --scpus 3 --interval 1 --pairs 'my pairs.csv' --link 'it'\''s'");
     }
 }

@@ -71,7 +71,7 @@ pub fn run(options: &Synth) -> Result<(), Failure> {
     if let Some(file) = &options.fit {
         return fit(file, target, &options.seeds.0);
     }
-    let config = options.one.config_for_any_target("ideal")?;
+    let config = options.one.at_full_rate(options.one.machine.config_for_any_target()?, "ideal")?;
     let seeds = if options.no_route { Vec::new() } else { options.seeds.0.clone() };
     let how = synth::Options { target, seeds };
     let units = units(options, &config, target)?;

@@ -18,7 +18,7 @@ pub const SCPUS: std::ops::RangeInclusive<u32> = 1..=64;
 /// The intervals an SCPU can have, in cycles.
 pub const INTERVALS: std::ops::RangeInclusive<u32> = 1..=64;
 
-/// The configuration of an AFU. [`Config::default`] is the AFU whose Verilog lies in `rtl/`.
+/// The configuration of an AFU. [`Config::shipped`] is the one whose Verilog lies in `rtl/`.
 ///
 /// In JSON it is the object `config` of a manifest; a key left out has its default, an unknown key is refused.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -170,13 +170,20 @@ impl Config {
         1000.0 / self.clock_mhz
     }
 
-    /// The options that give this configuration, those of the default left out.
+    /// The AFU whose Verilog lies in `rtl/`, and whose model is built in: the default, but for an interval at which its ten
+    /// SCPUs still take a full line of pairs a cycle and none waits for work. It is what `afu rtl` writes without options.
+    pub fn shipped() -> Self {
+        Self { interval: 5, ..Self::default() }
+    }
+
+    /// The options that give this configuration, those of the default left out. The interval is always among them: on the
+    /// command line its default depends on SCPUs and link.
     pub fn flags(&self) -> Vec<String> {
         let default = Self::default();
         let radius = |config: &Self| config.radius.map_or(String::new(), |radius| radius.to_string());
         let pairs = [
             ("--scpus", self.scpus.to_string(), default.scpus.to_string()),
-            ("--interval", self.interval.to_string(), default.interval.to_string()),
+            ("--interval", self.interval.to_string(), String::new()),
             ("--profile", self.profile.to_string(), default.profile.to_string()),
             ("--contact", self.contact.to_string(), default.contact.to_string()),
             ("--input", self.input.to_string(), default.input.to_string()),
@@ -223,9 +230,9 @@ mod tests {
 
     #[test]
     fn flags_name_only_what_differs() {
-        assert!(Config::default().flags().is_empty());
+        assert_eq!(Config::default().flags(), ["--interval", "1"]);
         let config = Config { scpus: 3, profile: "paper".parse().expect("a profile"), ..Config::default() };
-        assert_eq!(config.flags(), ["--scpus", "3", "--profile", "paper"]);
+        assert_eq!(config.flags(), ["--scpus", "3", "--interval", "1", "--profile", "paper"]);
     }
 
     #[test]

@@ -4,6 +4,7 @@ use super::cost::Cost;
 use super::demand::{Demand, MOVING, Part, RULES};
 use super::file::{Given, Pull, Scene, Shape};
 use super::{SceneError, bodies};
+use crate::afu::Spec;
 use crate::config::{Config, Profile, Results};
 use crate::kernel::Fields;
 
@@ -73,6 +74,9 @@ impl Plan {
             radius,
             ..Config::default()
         };
+        // As few operators as still take a full line of pairs a cycle.
+        let interval = Spec::from(config.clone()).longest_interval(f64::INFINITY);
+        let config = Config { interval, ..config };
         let mut rows: Vec<Row> = RULES
             .iter()
             .map(|&(part, demands)| {

@@ -17,6 +17,11 @@ pub fn committed(scpus: u32) -> Model {
     Model::build(&source, Trace::Off).unwrap()
 }
 
+/// The same with SCPUs that each take a pair a cycle.
+pub fn full_rate(scpus: u32) -> Model {
+    generated(&of(scpus))
+}
+
 /// The default configuration but for the number of SCPUs, with the AFU's own port as its top: what the driver of these
 /// tests knows.
 pub fn of(scpus: u32) -> Config {

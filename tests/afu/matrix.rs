@@ -7,7 +7,7 @@ use contact_afu::kernel::Fields;
 use contact_afu::link::LinkModel;
 use contact_afu::pairs::Set;
 
-use crate::bench::{Case, committed, config, driver, generated, of};
+use crate::bench::{Case, committed, config, driver, full_rate, generated, of};
 
 /// Runs the cases over every preset, one after another on an AFU that is never reset between them.
 fn over_every_link(model: &Model, cases: &[Case], what: &str) {
@@ -33,7 +33,7 @@ fn every_word_for_every_number_of_scpus_over_every_link() {
             let cases = &cases;
             scope.spawn(move || {
                 for scpus in numbers {
-                    over_every_link(&committed(scpus), cases, &format!("{scpus} SCPUs"));
+                    over_every_link(&full_rate(scpus), cases, &format!("{scpus} SCPUs"));
                 }
             });
         }

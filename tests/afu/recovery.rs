@@ -7,7 +7,7 @@ use contact_afu::cosim::{Driver, File, Instance, Job, Model, Outcome, Source, Tr
 use contact_afu::hdl::Reset;
 use contact_afu::link::{Fault, LinkModel};
 
-use crate::bench::{Case, committed, config, driver, of};
+use crate::bench::{Case, config, driver, full_rate, of};
 
 const SCPUS: u32 = 3;
 
@@ -17,7 +17,7 @@ fn moments() -> impl Iterator<Item = u64> {
 }
 
 fn afu(seed: u64) -> Instance {
-    committed(SCPUS).instance(seed).unwrap()
+    full_rate(SCPUS).instance(seed).unwrap()
 }
 
 /// A job that is to be spoilt, and one that must be right after it.

@@ -3,14 +3,14 @@
 use contact_afu::link::{Direction, Link, LinkModel, Order};
 use contact_afu::pairs::Set;
 
-use crate::bench::{Case, committed, driver, of};
+use crate::bench::{Case, driver, full_rate, of};
 
 #[test]
 fn one_line_a_cycle_or_one_pair_a_cycle_and_scpu() {
     let case = Case::new(&of(1), Set::Diamond(10).pairs(0));
     let pairs = case.pairs.len() as f64;
     for (scpus, cycles_per_pair) in [(1, 1.0), (2, 0.5), (3, 0.5), (10, 0.5), (16, 0.5)] {
-        let afu = committed(scpus).instance(1).unwrap();
+        let afu = full_rate(scpus).instance(1).unwrap();
         let outcome = driver(&afu, "ideal", 1).run(&case.job()).unwrap();
         case.check(&outcome, "diamond:10");
         let reached = pairs * cycles_per_pair / outcome.cycles as f64;
@@ -25,7 +25,7 @@ fn one_line_a_cycle_or_one_pair_a_cycle_and_scpu() {
 #[test]
 fn the_counters_name_the_slower_side() {
     let case = Case::random(&of(3), 4_000, 9);
-    let afu = committed(3).instance(1).unwrap();
+    let afu = full_rate(3).instance(1).unwrap();
     let slow = Direction { lines_per_cycle: 0.25, ..Direction::steady(5, 0) };
     let fast = Direction::steady(5, 0);
     for (read, write) in [(fast, slow), (slow, fast)] {

@@ -1,8 +1,9 @@
 //! The RTL contains the operators that a plan calls for and no other; records carry what it calls for and nothing else.
 
 use contact_afu::afu::{Afu, Spec};
+use contact_afu::config::Config;
 #[cfg(feature = "cosim")]
-use contact_afu::config::{Config, Shell};
+use contact_afu::config::Shell;
 use contact_afu::kernel::Fields;
 #[cfg(feature = "cosim")]
 use contact_afu::kernel::PairRecord;
@@ -23,9 +24,13 @@ fn operator(name: &str) -> &str {
     format.map_or(name, |(at, _)| &name[..at])
 }
 
-/// The operators that the kernel's Verilog instantiates, as `name × count`, without their formats.
+/// The operators that the kernel's Verilog instantiates, as `name × count`, without their formats; each operation has its
+/// own.
 fn instances(example: &str) -> Vec<String> {
-    let config = Plan::of(&scene(example)).unwrap().config;
+    instances_of(Config { interval: 1, ..Plan::of(&scene(example)).unwrap().config })
+}
+
+fn instances_of(config: Config) -> Vec<String> {
     let files = Afu::generate(Spec::from(config)).unwrap().verilog();
     let (_, kernel) = files.iter().find(|(name, _)| name == "sphere_kernel.v").expect("the kernel's file");
     let names = kernel.lines().filter_map(|line| line.trim().strip_prefix("fp_")?.split_once(" "));
@@ -89,6 +94,26 @@ fn each_example_s_hardware_is_what_its_plan_calls_for() {
     // Touching alone: neither root nor division, and words go straight into sums.
     let touching = ["add_magnitudes", "at_most", "root_exceeds", "square", "widening_add", "widening_sub"];
     assert_eq!(names("touching"), touching);
+}
+
+/// As planned, operations take turns in operators while a full line of pairs a cycle still goes through: fewer of them, and
+/// none that is not called for.
+#[test]
+fn operators_are_shared_as_far_as_the_link_lets_them() {
+    for (example, absent) in
+        [("diamond", &["halve"][..]), ("touching", &["sqrt", "recip", "mul", "halve"]), ("column", &[])]
+    {
+        let plan = Plan::of(&scene(example)).unwrap();
+        assert_eq!((plan.config.scpus, plan.config.interval), (10, 5), "{example}");
+        let shared = instances_of(plan.config);
+        let count = |list: &[String]| -> u32 {
+            list.iter().map(|line| line.split("× ").nth(1).and_then(|count| count.parse().ok()).unwrap_or(0)).sum()
+        };
+        assert!(3 * count(&shared) <= 2 * count(&instances(example)), "{example}: {shared:?}");
+        for name in absent {
+            assert!(!shared.iter().any(|line| line.starts_with(&format!("{name} "))), "{example}: {name}, {shared:?}");
+        }
+    }
 }
 
 #[test]

@@ -12,8 +12,9 @@ fn one(config: Config) -> Config {
 pub fn name(config: &Config) -> String {
     let default = Config::default();
     let rest = Config { scpus: default.scpus, shell: default.shell, profile: default.profile, ..config.clone() };
-    let others = rest.flags().join(" ");
-    format!("{} {}", config.profile, others.replace("--", "")).trim_end().to_owned()
+    let others = rest.flags().join(" ").replace("--", "");
+    let others = others.strip_prefix("interval 1").unwrap_or(&others).trim_start();
+    format!("{} {others}", config.profile).trim_end().to_owned()
 }
 
 /// A value of an axis: the axis, and the configuration.
