@@ -26,166 +26,145 @@ module fp_add_e10f23z_normal (
   wire [22:0] b_fraction = b[22:0];
   wire [32:0] b_magnitude = {b_exponent, b_fraction};
   wire b_is_larger = a_magnitude < b_magnitude;
-  wire [9:0] b_exponent_minus_a = b_exponent - a_exponent;
-  wire [9:0] a_exponent_minus_b = a_exponent - b_exponent;
-  wire [9:0] exponent_difference = b_is_larger ? b_exponent_minus_a : a_exponent_minus_b;
   wire a_hidden = |a_exponent;
   wire [23:0] a_significand = {a_hidden, a_fraction};
   wire b_hidden = |b_exponent;
   wire [23:0] b_significand = {b_hidden, b_fraction};
   wire [23:0] small_significand = b_is_larger ? a_significand : b_significand;
+  wire [9:0] b_exponent_minus_a = b_exponent - a_exponent;
+  wire b_is_far_above = |b_exponent_minus_a[9:5];
+  wire [9:0] a_exponent_minus_b = a_exponent - b_exponent;
+  wire a_is_far_above = |a_exponent_minus_b[9:5];
+  wire align_far = b_is_larger ? b_is_far_above : a_is_far_above;
+  wire [4:0] align_near = b_is_larger ? b_exponent_minus_a[4:0] : a_exponent_minus_b[4:0];
   wire [23:0] large_significand = b_is_larger ? b_significand : a_significand;
   wire [9:0] large_exponent = b_is_larger ? b_exponent : a_exponent;
   wire large_sign = b_is_larger ? b_sign : a_sign;
 
   // ---- stage 1 ----
   reg effective_subtraction_s1;
-  reg exponent_difference_4_4_s1;
+  reg [4:0] align_near_s1;
+  reg align_far_s1;
   reg [23:0] small_significand_s1;
-  reg exponent_difference_3_3_s1;
-  reg exponent_difference_2_2_s1;
-  reg exponent_difference_1_1_s1;
-  reg exponent_difference_0_0_s1;
-  reg [4:0] exponent_difference_9_5_s1;
   reg [23:0] large_significand_s1;
   always @(posedge clk) begin
     effective_subtraction_s1 <= effective_subtraction;
-    exponent_difference_4_4_s1 <= exponent_difference[4];
+    align_near_s1 <= align_near;
+    align_far_s1 <= align_far;
     small_significand_s1 <= small_significand;
-    exponent_difference_3_3_s1 <= exponent_difference[3];
-    exponent_difference_2_2_s1 <= exponent_difference[2];
-    exponent_difference_1_1_s1 <= exponent_difference[1];
-    exponent_difference_0_0_s1 <= exponent_difference[0];
-    exponent_difference_9_5_s1 <= exponent_difference[9:5];
     large_significand_s1 <= large_significand;
   end
+  wire [4:0] align_distance = align_near_s1 | {5{align_far_s1}};
   wire [25:0] small_significand_s1_wide = {small_significand_s1, 2'd0};
-  wire align_by_16_loses = exponent_difference_4_4_s1 & |small_significand_s1_wide[15:0];
-  wire [25:0] align_by_16 = exponent_difference_4_4_s1 ? {16'd0, small_significand_s1[23:14]} : small_significand_s1_wide;
-  wire align_by_8_loses = exponent_difference_3_3_s1 & |align_by_16[7:0];
-  wire [25:0] align_by_8 = exponent_difference_3_3_s1 ? {8'd0, align_by_16[25:8]} : align_by_16;
-  wire align_by_4_loses = exponent_difference_2_2_s1 & |align_by_8[3:0];
-  wire [25:0] align_by_4 = exponent_difference_2_2_s1 ? {4'd0, align_by_8[25:4]} : align_by_8;
-  wire align_by_2_loses = exponent_difference_1_1_s1 & |align_by_4[1:0];
-  wire [25:0] align_by_2 = exponent_difference_1_1_s1 ? {2'd0, align_by_4[25:2]} : align_by_4;
-  wire align_by_1_loses = exponent_difference_0_0_s1 & align_by_2[0];
-  wire align_far = |exponent_difference_9_5_s1;
-  wire [25:0] align_by_1 = exponent_difference_0_0_s1 ? {1'b0, align_by_2[25:1]} : align_by_2;
+  wire align_by_16_loses = align_distance[4] & |small_significand_s1_wide[15:0];
+  wire [25:0] align_by_16 = align_distance[4] ? {16'd0, small_significand_s1[23:14]} : small_significand_s1_wide;
+  wire align_by_8_loses = align_distance[3] & |align_by_16[7:0];
+  wire [25:0] align_by_8 = align_distance[3] ? {8'd0, align_by_16[25:8]} : align_by_16;
+  wire align_by_4_loses = align_distance[2] & |align_by_8[3:0];
+  wire [25:0] align_by_4 = align_distance[2] ? {4'd0, align_by_8[25:4]} : align_by_8;
+  wire align_by_2_loses = align_distance[1] & |align_by_4[1:0];
+  wire [25:0] align_by_2 = align_distance[1] ? {2'd0, align_by_4[25:2]} : align_by_4;
 
   // ---- stage 2 ----
-  reg effective_subtraction_s2;
-  reg align_far_s2;
-  reg small_significand_s1_wide_any_s2;
-  reg align_by_16_loses_or_or_or_or_s2;
-  reg [25:0] align_by_1_s2;
   reg [23:0] large_significand_s2;
+  reg align_distance_0_0_s2;
+  reg [25:0] align_by_2_s2;
+  reg align_by_16_loses_or_or_or_s2;
+  reg effective_subtraction_s2;
   always @(posedge clk) begin
-    effective_subtraction_s2 <= effective_subtraction_s1;
-    align_far_s2 <= align_far;
-    small_significand_s1_wide_any_s2 <= |small_significand_s1_wide;
-    align_by_16_loses_or_or_or_or_s2 <= align_by_16_loses | align_by_8_loses | align_by_4_loses | align_by_2_loses | align_by_1_loses;
-    align_by_1_s2 <= align_by_1;
     large_significand_s2 <= large_significand_s1;
+    align_distance_0_0_s2 <= align_distance[0];
+    align_by_2_s2 <= align_by_2;
+    align_by_16_loses_or_or_or_s2 <= align_by_16_loses | align_by_8_loses | align_by_4_loses | align_by_2_loses;
+    effective_subtraction_s2 <= effective_subtraction_s1;
   end
-  wire aligned_sticky = align_far_s2 ? small_significand_s1_wide_any_s2 : align_by_16_loses_or_or_or_or_s2;
+  wire [27:0] augend = {1'b0, {large_significand_s2, 3'd0}};
+  wire [25:0] align_by_1 = align_distance_0_0_s2 ? {1'b0, align_by_2_s2[25:1]} : align_by_2_s2;
+  wire align_by_1_loses = align_distance_0_0_s2 & align_by_2_s2[0];
+  wire aligned_sticky = align_by_16_loses_or_or_or_s2 | align_by_1_loses;
+  wire [27:0] addend = {1'b0, {align_by_1, aligned_sticky}};
+  wire [27:0] sum = augend + (addend ^ {28{effective_subtraction_s2}}) + {27'd0, effective_subtraction_s2};
 
   // ---- stage 3 ----
-  reg [23:0] large_significand_s3;
-  reg [25:0] align_by_1_s2_and_s3;
-  reg aligned_sticky_s3;
+  reg [27:0] sum_s3;
   reg effective_subtraction_s3;
   always @(posedge clk) begin
-    large_significand_s3 <= large_significand_s2;
-    align_by_1_s2_and_s3 <= ~align_far_s2 ? align_by_1_s2 : 26'd0;
-    aligned_sticky_s3 <= aligned_sticky;
+    sum_s3 <= sum;
     effective_subtraction_s3 <= effective_subtraction_s2;
   end
-  wire [27:0] augend = {1'b0, {large_significand_s3, 3'd0}};
-  wire [27:0] addend = {1'b0, {align_by_1_s2_and_s3, aligned_sticky_s3}};
-  wire [27:0] sum = augend + (addend ^ {28{effective_subtraction_s3}}) + {27'd0, effective_subtraction_s3};
+  wire normalise_top_16_clear = ~|sum_s3[27:12];
+  wire [27:0] normalise_by_16 = normalise_top_16_clear ? {sum_s3[11:0], 16'd0} : sum_s3;
 
   // ---- stage 4 ----
-  reg [27:0] sum_s4;
+  reg [27:0] normalise_by_16_s4;
+  reg normalise_top_16_clear_s4;
   reg effective_subtraction_s4;
   always @(posedge clk) begin
-    sum_s4 <= sum;
+    normalise_by_16_s4 <= normalise_by_16;
+    normalise_top_16_clear_s4 <= normalise_top_16_clear;
     effective_subtraction_s4 <= effective_subtraction_s3;
   end
-  wire normalise_top_16_clear = ~|sum_s4[27:12];
-  wire [27:0] normalise_by_16 = normalise_top_16_clear ? {sum_s4[11:0], 16'd0} : sum_s4;
-
-  // ---- stage 5 ----
-  reg [27:0] normalise_by_16_s5;
-  reg normalise_top_16_clear_s5;
-  reg effective_subtraction_s5;
-  always @(posedge clk) begin
-    normalise_by_16_s5 <= normalise_by_16;
-    normalise_top_16_clear_s5 <= normalise_top_16_clear;
-    effective_subtraction_s5 <= effective_subtraction_s4;
-  end
-  wire normalise_top_8_clear = ~|normalise_by_16_s5[27:20];
-  wire [27:0] normalise_by_8 = normalise_top_8_clear ? {normalise_by_16_s5[19:0], 8'd0} : normalise_by_16_s5;
+  wire normalise_top_8_clear = ~|normalise_by_16_s4[27:20];
+  wire [27:0] normalise_by_8 = normalise_top_8_clear ? {normalise_by_16_s4[19:0], 8'd0} : normalise_by_16_s4;
   wire normalise_top_4_clear = ~|normalise_by_8[27:24];
   wire [27:0] normalise_by_4 = normalise_top_4_clear ? {normalise_by_8[23:0], 4'd0} : normalise_by_8;
 
-  // ---- stage 6 ----
-  reg [27:0] normalise_by_4_s6;
-  reg [49:0] large_exponent_s6_line;
-  reg [9:0] large_exponent_s6;
-  reg normalise_top_16_clear_s6;
-  reg normalise_top_8_clear_s6;
-  reg normalise_top_4_clear_s6;
-  reg [4:0] large_sign_s6_line;
-  reg large_sign_s6;
-  reg effective_subtraction_s6;
+  // ---- stage 5 ----
+  reg [27:0] normalise_by_4_s5;
+  reg [39:0] large_exponent_s5_line;
+  reg [9:0] large_exponent_s5;
+  reg normalise_top_16_clear_s5;
+  reg normalise_top_8_clear_s5;
+  reg normalise_top_4_clear_s5;
+  reg [3:0] large_sign_s5_line;
+  reg large_sign_s5;
+  reg effective_subtraction_s5;
   always @(posedge clk) begin
-    normalise_by_4_s6 <= normalise_by_4;
-    large_exponent_s6_line <= {large_exponent_s6_line[39:0], large_exponent};
-    large_exponent_s6 <= large_exponent_s6_line[49:40];
-    normalise_top_16_clear_s6 <= normalise_top_16_clear_s5;
-    normalise_top_8_clear_s6 <= normalise_top_8_clear;
-    normalise_top_4_clear_s6 <= normalise_top_4_clear;
-    large_sign_s6_line <= {large_sign_s6_line[3:0], large_sign};
-    large_sign_s6 <= large_sign_s6_line[4];
-    effective_subtraction_s6 <= effective_subtraction_s5;
+    normalise_by_4_s5 <= normalise_by_4;
+    large_exponent_s5_line <= {large_exponent_s5_line[29:0], large_exponent};
+    large_exponent_s5 <= large_exponent_s5_line[39:30];
+    normalise_top_16_clear_s5 <= normalise_top_16_clear_s4;
+    normalise_top_8_clear_s5 <= normalise_top_8_clear;
+    normalise_top_4_clear_s5 <= normalise_top_4_clear;
+    large_sign_s5_line <= {large_sign_s5_line[2:0], large_sign};
+    large_sign_s5 <= large_sign_s5_line[3];
+    effective_subtraction_s5 <= effective_subtraction_s4;
   end
-  wire normalise_top_2_clear = ~|normalise_by_4_s6[27:26];
-  wire [27:0] normalise_by_2 = normalise_top_2_clear ? {normalise_by_4_s6[25:0], 2'd0} : normalise_by_4_s6;
+  wire normalise_top_2_clear = ~|normalise_by_4_s5[27:26];
+  wire [27:0] normalise_by_2 = normalise_top_2_clear ? {normalise_by_4_s5[25:0], 2'd0} : normalise_by_4_s5;
   wire normalise_top_1_clear = ~normalise_by_2[27];
   wire [27:0] normalise_by_1 = normalise_top_1_clear ? {normalise_by_2[26:0], 1'b0} : normalise_by_2;
   wire guard = normalise_by_1[3];
   wire sticky = |normalise_by_1[2:0];
   wire [23:0] significand = normalise_by_1[27:4];
   wire round_up = guard & (sticky | significand[0]);
-  wire [4:0] leading_zeros = {normalise_top_16_clear_s6, normalise_top_8_clear_s6, normalise_top_4_clear_s6, normalise_top_2_clear, normalise_top_1_clear};
-  wire [10:0] normalised_exponent = ({1'b0, large_exponent_s6} + 11'd1) - {5'd0, {1'b0, leading_zeros}};
+  wire [4:0] leading_zeros = {normalise_top_16_clear_s5, normalise_top_8_clear_s5, normalise_top_4_clear_s5, normalise_top_2_clear, normalise_top_1_clear};
+  wire [10:0] normalised_exponent = ({1'b0, large_exponent_s5} + 11'd1) - {5'd0, {1'b0, leading_zeros}};
+  wire [10:0] result_exponent = normalise_by_1[27] ? normalised_exponent : 11'd0;
   wire is_exact_zero = ~normalise_by_1[27];
-  wire sign = large_sign_s6 & ~(is_exact_zero & effective_subtraction_s6);
+  wire sign = large_sign_s5 & ~(is_exact_zero & effective_subtraction_s5);
 
-  // ---- stage 7 ----
-  reg sign_s7;
-  reg [9:0] normalised_exponent_9_0_s7;
-  reg [22:0] significand_22_0_s7;
-  reg round_up_s7;
-  reg normalise_by_1_27_27_s7;
+  // ---- stage 6 ----
+  reg sign_s6;
+  reg [9:0] result_exponent_9_0_s6;
+  reg [22:0] significand_22_0_s6;
+  reg round_up_s6;
   always @(posedge clk) begin
-    sign_s7 <= sign;
-    normalised_exponent_9_0_s7 <= normalised_exponent[9:0];
-    significand_22_0_s7 <= significand[22:0];
-    round_up_s7 <= round_up;
-    normalise_by_1_27_27_s7 <= normalise_by_1[27];
+    sign_s6 <= sign;
+    result_exponent_9_0_s6 <= result_exponent[9:0];
+    significand_22_0_s6 <= significand[22:0];
+    round_up_s6 <= round_up;
   end
-  wire [32:0] truncated = {normalised_exponent_9_0_s7, significand_22_0_s7};
-  wire [32:0] rounded = truncated + {32'd0, round_up_s7};
-  wire [32:0] magnitude = normalise_by_1_27_27_s7 ? rounded : 33'd0;
+  wire [32:0] truncated = {result_exponent_9_0_s6, significand_22_0_s6};
+  wire [32:0] rounded = truncated + {32'd0, round_up_s6};
 
   // ---- registered outputs ----
   always @(posedge clk) begin
-    result <= {sign_s7, magnitude};
+    result <= {sign_s6, rounded};
   end
 
   // Bits that nothing needs.
-  wire unused = &{1'b0, significand[23], normalised_exponent[10]};
+  wire unused = &{1'b0, significand[23], result_exponent[10]};
 
 endmodule
 

@@ -18,9 +18,15 @@ module fp_add_magnitudes_e10f23z_normal (
   // ---- stage 0 ----
   wire [9:0] a_exponent = a[32:23];
   wire [9:0] b_exponent = b[32:23];
-  wire b_is_larger = a_exponent < b_exponent;
-  wire [9:0] small_exponent = b_is_larger ? a_exponent : b_exponent;
-  wire [9:0] large_exponent = b_is_larger ? b_exponent : a_exponent;
+  wire [10:0] a_exponent_wide_minus = {1'b0, a_exponent} - {1'b0, b_exponent};
+  wire b_is_larger = a_exponent_wide_minus[10];
+  wire [9:0] b_exponent_minus_a = b_exponent - a_exponent;
+  wire [9:0] a_exponent_minus_b = a_exponent_wide_minus[9:0];
+  wire [4:0] align_near = b_is_larger ? b_exponent_minus_a[4:0] : a_exponent_minus_b[4:0];
+  wire b_is_far_above = |b_exponent_minus_a[9:5];
+  wire a_is_far_above = |a_exponent_minus_b[9:5];
+  wire align_far = b_is_larger ? b_is_far_above : a_is_far_above;
+  wire [4:0] align_distance = align_near | {5{align_far}};
   wire a_hidden = |a_exponent;
   wire [22:0] a_fraction = a[22:0];
   wire [23:0] a_significand = {a_hidden, a_fraction};
@@ -29,101 +35,87 @@ module fp_add_magnitudes_e10f23z_normal (
   wire [23:0] b_significand = {b_hidden, b_fraction};
   wire [23:0] small_significand = b_is_larger ? a_significand : b_significand;
   wire [23:0] large_significand = b_is_larger ? b_significand : a_significand;
+  wire [9:0] large_exponent = b_is_larger ? b_exponent : a_exponent;
   wire a_sign = a[33];
   wire b_sign = b[33];
   wire sign = a_sign & b_sign;
 
   // ---- stage 1 ----
-  reg [9:0] large_exponent_s1;
-  reg [9:0] small_exponent_s1;
+  reg align_distance_4_4_s1;
   reg [23:0] small_significand_s1;
+  reg align_distance_3_3_s1;
+  reg align_distance_2_2_s1;
+  reg align_distance_1_1_s1;
+  reg align_distance_0_0_s1;
   reg [23:0] large_significand_s1;
+  reg [9:0] large_exponent_s1;
+  reg sign_s1;
   always @(posedge clk) begin
-    large_exponent_s1 <= large_exponent;
-    small_exponent_s1 <= small_exponent;
+    align_distance_4_4_s1 <= align_distance[4];
     small_significand_s1 <= small_significand;
+    align_distance_3_3_s1 <= align_distance[3];
+    align_distance_2_2_s1 <= align_distance[2];
+    align_distance_1_1_s1 <= align_distance[1];
+    align_distance_0_0_s1 <= align_distance[0];
     large_significand_s1 <= large_significand;
+    large_exponent_s1 <= large_exponent;
+    sign_s1 <= sign;
   end
-  wire [9:0] exponent_difference = large_exponent_s1 - small_exponent_s1;
   wire [24:0] small_significand_s1_wide = {small_significand_s1, 1'b0};
-  wire [24:0] align_by_16 = exponent_difference[4] ? {16'd0, small_significand_s1[23:15]} : small_significand_s1_wide;
-  wire [24:0] align_by_8 = exponent_difference[3] ? {8'd0, align_by_16[24:8]} : align_by_16;
-  wire [24:0] align_by_4 = exponent_difference[2] ? {4'd0, align_by_8[24:4]} : align_by_8;
-  wire align_by_4_loses = exponent_difference[2] & |align_by_8[3:0];
-  wire align_by_16_loses = exponent_difference[4] & |small_significand_s1_wide[15:0];
-  wire align_by_8_loses = exponent_difference[3] & |align_by_16[7:0];
-  wire align_far = |exponent_difference[9:5];
+  wire align_by_16_loses = align_distance_4_4_s1 & |small_significand_s1_wide[15:0];
+  wire [24:0] align_by_16 = align_distance_4_4_s1 ? {16'd0, small_significand_s1[23:15]} : small_significand_s1_wide;
+  wire align_by_8_loses = align_distance_3_3_s1 & |align_by_16[7:0];
+  wire [24:0] align_by_8 = align_distance_3_3_s1 ? {8'd0, align_by_16[24:8]} : align_by_16;
+  wire align_by_4_loses = align_distance_2_2_s1 & |align_by_8[3:0];
+  wire [24:0] align_by_4 = align_distance_2_2_s1 ? {4'd0, align_by_8[24:4]} : align_by_8;
+  wire align_by_2_loses = align_distance_1_1_s1 & |align_by_4[1:0];
+  wire [24:0] align_by_2 = align_distance_1_1_s1 ? {2'd0, align_by_4[24:2]} : align_by_4;
+  wire align_by_1_loses = align_distance_0_0_s1 & align_by_2[0];
 
   // ---- stage 2 ----
-  reg align_far_s2;
-  reg small_significand_s1_wide_any_s2;
-  reg align_by_16_loses_or_s2;
-  reg align_by_4_loses_s2;
-  reg exponent_difference_1_1_s2;
-  reg [24:0] align_by_4_s2;
-  reg exponent_difference_0_0_s2;
   reg [23:0] large_significand_s2;
+  reg align_distance_0_0_s2;
+  reg [24:0] align_by_2_s2;
+  reg align_by_16_loses_or_or_or_or_s2;
   reg [9:0] large_exponent_s2;
+  reg sign_s2;
   always @(posedge clk) begin
-    align_far_s2 <= align_far;
-    small_significand_s1_wide_any_s2 <= |small_significand_s1_wide;
-    align_by_16_loses_or_s2 <= align_by_16_loses | align_by_8_loses;
-    align_by_4_loses_s2 <= align_by_4_loses;
-    exponent_difference_1_1_s2 <= exponent_difference[1];
-    align_by_4_s2 <= align_by_4;
-    exponent_difference_0_0_s2 <= exponent_difference[0];
     large_significand_s2 <= large_significand_s1;
+    align_distance_0_0_s2 <= align_distance_0_0_s1;
+    align_by_2_s2 <= align_by_2;
+    align_by_16_loses_or_or_or_or_s2 <= align_by_16_loses | align_by_8_loses | align_by_4_loses | align_by_2_loses | align_by_1_loses;
     large_exponent_s2 <= large_exponent_s1;
+    sign_s2 <= sign_s1;
   end
-  wire align_by_2_loses = exponent_difference_1_1_s2 & |align_by_4_s2[1:0];
-  wire [24:0] align_by_2 = exponent_difference_1_1_s2 ? {2'd0, align_by_4_s2[24:2]} : align_by_4_s2;
-  wire align_by_1_loses = exponent_difference_0_0_s2 & align_by_2[0];
-  wire [24:0] align_by_1 = exponent_difference_0_0_s2 ? {1'b0, align_by_2[24:1]} : align_by_2;
-  wire [24:0] align_by_1_and_not_align_far_s2_wide = ~align_far_s2 ? align_by_1 : 25'd0;
-  wire aligned_guard = align_by_1_and_not_align_far_s2_wide[0];
-
-  // ---- stage 3 ----
-  reg [23:0] large_significand_s3;
-  reg [23:0] align_by_1_and_not_align_far_s2_wide_24_1_s3;
-  reg aligned_guard_s3;
-  reg small_significand_s1_wide_any_s2_if_s3;
-  reg [9:0] large_exponent_s3;
-  always @(posedge clk) begin
-    large_significand_s3 <= large_significand_s2;
-    align_by_1_and_not_align_far_s2_wide_24_1_s3 <= align_by_1_and_not_align_far_s2_wide[24:1];
-    aligned_guard_s3 <= aligned_guard;
-    small_significand_s1_wide_any_s2_if_s3 <= align_far_s2 ? small_significand_s1_wide_any_s2 : (align_by_16_loses_or_s2 | align_by_4_loses_s2 | align_by_2_loses | align_by_1_loses);
-    large_exponent_s3 <= large_exponent_s2;
-  end
-  wire [24:0] sum = {1'b0, large_significand_s3} + {1'b0, align_by_1_and_not_align_far_s2_wide_24_1_s3};
+  wire [24:0] align_by_1 = align_distance_0_0_s2 ? {1'b0, align_by_2_s2[24:1]} : align_by_2_s2;
+  wire [24:0] sum = {1'b0, large_significand_s2} + {1'b0, align_by_1[24:1]};
   wire carry = sum[24];
-  wire guard = carry ? sum[0] : aligned_guard_s3;
-  wire sticky = small_significand_s1_wide_any_s2_if_s3 | (carry & aligned_guard_s3);
+  wire aligned_guard = align_by_1[0];
+  wire guard = carry ? sum[0] : aligned_guard;
+  wire sticky = align_by_16_loses_or_or_or_or_s2 | (carry & aligned_guard);
   wire [23:0] significand = carry ? sum[24:1] : sum[23:0];
   wire round_up = guard & (sticky | significand[0]);
 
-  // ---- stage 4 ----
-  reg [2:0] sign_s4_line;
-  reg sign_s4;
-  reg [9:0] large_exponent_s4;
-  reg [22:0] significand_22_0_s4;
-  reg carry_s4;
-  reg round_up_s4;
+  // ---- stage 3 ----
+  reg sign_s3;
+  reg [9:0] large_exponent_s3;
+  reg [22:0] significand_22_0_s3;
+  reg carry_s3;
+  reg round_up_s3;
   always @(posedge clk) begin
-    sign_s4_line <= {sign_s4_line[1:0], sign};
-    sign_s4 <= sign_s4_line[2];
-    large_exponent_s4 <= large_exponent_s3;
-    significand_22_0_s4 <= significand[22:0];
-    carry_s4 <= carry;
-    round_up_s4 <= round_up;
+    sign_s3 <= sign_s2;
+    large_exponent_s3 <= large_exponent_s2;
+    significand_22_0_s3 <= significand[22:0];
+    carry_s3 <= carry;
+    round_up_s3 <= round_up;
   end
-  wire [32:0] truncated = {large_exponent_s4, significand_22_0_s4};
-  wire [32:0] increments = {{9'd0, carry_s4}, {22'd0, round_up_s4}};
+  wire [32:0] truncated = {large_exponent_s3, significand_22_0_s3};
+  wire [32:0] increments = {{9'd0, carry_s3}, {22'd0, round_up_s3}};
   wire [32:0] rounded = truncated + increments;
 
   // ---- registered outputs ----
   always @(posedge clk) begin
-    result <= {sign_s4, rounded};
+    result <= {sign_s3, rounded};
   end
 
   // Bits that nothing needs.

@@ -15,110 +15,83 @@ module fp_convert_e10f23z_normal_to_e8f23 (
 );
 
   // ---- stage 0 ----
-  wire [9:0] a_exponent = a[32:23];
-  wire [10:0] rebiased_exponent = {1'b0, a_exponent} - 11'd384;
-  wire [10:0] missing_exponent = 11'd1 - rebiased_exponent;
-  wire not_rebiased_exponent_10_10_and = ~rebiased_exponent[10] & |rebiased_exponent;
-  wire is_subnormal = ~not_rebiased_exponent_10_10_and;
-  wire [8:0] denormalise_distance = is_subnormal ? missing_exponent[8:0] : 9'd0;
   wire [22:0] a_fraction = a[22:0];
   wire [23:0] a_significand = {1'b1, a_fraction};
   wire [24:0] a_significand_wide = {a_significand, 1'b0};
+  wire [9:0] a_exponent = a[32:23];
+  wire [10:0] a_exponent_wide = {1'b0, a_exponent};
+  wire [10:0] a_rebiased_exponent = a_exponent_wide - 11'd384;
+  wire overflow = ~a_rebiased_exponent[10] & (|a_rebiased_exponent[10:8] | &a_rebiased_exponent[7:0]);
   wire a_hidden = |a_exponent;
-  wire overflow = ~rebiased_exponent[10] & (|rebiased_exponent[10:8] | &rebiased_exponent[7:0]);
+  wire is_infinity = overflow & a_hidden;
+  wire a_is_zero = ~a_hidden;
+  wire is_special = is_infinity | a_is_zero;
+  wire [10:0] missing_exponent = 11'd385 - a_exponent_wide;
+  wire [8:0] missing_places = missing_exponent[8:0];
+  wire missing_places_capped_is_far = |missing_places[8:5];
+  wire [4:0] missing_places_capped = missing_places[4:0] | {5{missing_places_capped_is_far}};
   wire a_sign = a[33];
 
   // ---- stage 1 ----
-  reg denormalise_distance_4_4_s1;
-  reg a_significand_wide_15_0_any_s1;
-  reg denormalise_distance_3_3_s1;
+  reg [4:0] missing_places_capped_and_s1;
+  reg is_special_s1;
   reg [8:0] a_significand_23_15_s1;
   reg [24:0] a_significand_wide_s1;
-  reg denormalise_distance_2_2_s1;
-  reg denormalise_distance_1_1_s1;
-  reg denormalise_distance_0_0_s1;
-  reg [3:0] denormalise_distance_8_5_s1;
-  reg [7:0] rebiased_exponent_7_0_and_s1;
-  reg a_hidden_s1;
-  reg overflow_s1;
+  reg a_significand_wide_15_0_any_s1;
+  reg is_infinity_s1;
+  reg [7:0] a_rebiased_exponent_7_0_and_s1;
   reg a_sign_s1;
   always @(posedge clk) begin
-    denormalise_distance_4_4_s1 <= denormalise_distance[4];
-    a_significand_wide_15_0_any_s1 <= |a_significand_wide[15:0];
-    denormalise_distance_3_3_s1 <= denormalise_distance[3];
+    missing_places_capped_and_s1 <= ~missing_exponent[10] ? missing_places_capped : 5'd0;
+    is_special_s1 <= is_special;
     a_significand_23_15_s1 <= a_significand[23:15];
     a_significand_wide_s1 <= a_significand_wide;
-    denormalise_distance_2_2_s1 <= denormalise_distance[2];
-    denormalise_distance_1_1_s1 <= denormalise_distance[1];
-    denormalise_distance_0_0_s1 <= denormalise_distance[0];
-    denormalise_distance_8_5_s1 <= denormalise_distance[8:5];
-    rebiased_exponent_7_0_and_s1 <= not_rebiased_exponent_10_10_and ? rebiased_exponent[7:0] : 8'd0;
-    a_hidden_s1 <= a_hidden;
-    overflow_s1 <= overflow;
+    a_significand_wide_15_0_any_s1 <= |a_significand_wide[15:0];
+    is_infinity_s1 <= is_infinity;
+    a_rebiased_exponent_7_0_and_s1 <= (~a_rebiased_exponent[10] & |a_rebiased_exponent) ? a_rebiased_exponent[7:0] : 8'd0;
     a_sign_s1 <= a_sign;
   end
-  wire denormalise_by_16_loses = denormalise_distance_4_4_s1 & a_significand_wide_15_0_any_s1;
-  wire [24:0] denormalise_by_16 = denormalise_distance_4_4_s1 ? {16'd0, a_significand_23_15_s1} : a_significand_wide_s1;
-  wire denormalise_by_8_loses = denormalise_distance_3_3_s1 & |denormalise_by_16[7:0];
-  wire [24:0] denormalise_by_8 = denormalise_distance_3_3_s1 ? {8'd0, denormalise_by_16[24:8]} : denormalise_by_16;
-  wire denormalise_by_4_loses = denormalise_distance_2_2_s1 & |denormalise_by_8[3:0];
-  wire [24:0] denormalise_by_4 = denormalise_distance_2_2_s1 ? {4'd0, denormalise_by_8[24:4]} : denormalise_by_8;
-  wire denormalise_by_2_loses = denormalise_distance_1_1_s1 & |denormalise_by_4[1:0];
-  wire [24:0] denormalise_by_2 = denormalise_distance_1_1_s1 ? {2'd0, denormalise_by_4[24:2]} : denormalise_by_4;
-  wire denormalise_by_1_loses = denormalise_distance_0_0_s1 & denormalise_by_2[0];
-  wire denormalise_far = |denormalise_distance_8_5_s1;
-  wire [24:0] denormalise_by_1 = denormalise_distance_0_0_s1 ? {1'b0, denormalise_by_2[24:1]} : denormalise_by_2;
+  wire [4:0] denormalise_distance = missing_places_capped_and_s1 | {5{is_special_s1}};
+  wire [24:0] denormalise_by_16 = denormalise_distance[4] ? {16'd0, a_significand_23_15_s1} : a_significand_wide_s1;
+  wire [24:0] denormalise_by_8 = denormalise_distance[3] ? {8'd0, denormalise_by_16[24:8]} : denormalise_by_16;
+  wire [24:0] denormalise_by_4 = denormalise_distance[2] ? {4'd0, denormalise_by_8[24:4]} : denormalise_by_8;
+  wire denormalise_by_2_loses = denormalise_distance[1] & |denormalise_by_4[1:0];
+  wire denormalise_by_16_loses = denormalise_distance[4] & a_significand_wide_15_0_any_s1;
+  wire denormalise_by_8_loses = denormalise_distance[3] & |denormalise_by_16[7:0];
+  wire denormalise_by_4_loses = denormalise_distance[2] & |denormalise_by_8[3:0];
+  wire [24:0] denormalise_by_2 = denormalise_distance[1] ? {2'd0, denormalise_by_4[24:2]} : denormalise_by_4;
+  wire [7:0] exponent_field = is_special_s1 ? {8{is_infinity_s1}} : a_rebiased_exponent_7_0_and_s1;
 
   // ---- stage 2 ----
-  reg [7:0] rebiased_exponent_7_0_and_s2;
-  reg [24:0] denormalise_by_1_s2;
-  reg denormalise_far_s2;
-  reg a_significand_wide_s1_any_s2;
-  reg denormalise_by_16_loses_or_or_or_or_s2;
-  reg a_hidden_s2;
-  reg overflow_s2;
   reg a_sign_s2;
+  reg [7:0] exponent_field_s2;
+  reg denormalise_distance_0_0_s2;
+  reg [24:0] denormalise_by_2_s2;
+  reg denormalise_by_16_loses_or_or_s2;
+  reg denormalise_by_2_loses_s2;
   always @(posedge clk) begin
-    rebiased_exponent_7_0_and_s2 <= rebiased_exponent_7_0_and_s1;
-    denormalise_by_1_s2 <= denormalise_by_1;
-    denormalise_far_s2 <= denormalise_far;
-    a_significand_wide_s1_any_s2 <= |a_significand_wide_s1;
-    denormalise_by_16_loses_or_or_or_or_s2 <= denormalise_by_16_loses | denormalise_by_8_loses | denormalise_by_4_loses | denormalise_by_2_loses | denormalise_by_1_loses;
-    a_hidden_s2 <= a_hidden_s1;
-    overflow_s2 <= overflow_s1;
     a_sign_s2 <= a_sign_s1;
+    exponent_field_s2 <= exponent_field;
+    denormalise_distance_0_0_s2 <= denormalise_distance[0];
+    denormalise_by_2_s2 <= denormalise_by_2;
+    denormalise_by_16_loses_or_or_s2 <= denormalise_by_16_loses | denormalise_by_8_loses | denormalise_by_4_loses;
+    denormalise_by_2_loses_s2 <= denormalise_by_2_loses;
   end
-  wire [24:0] denormalised = ~denormalise_far_s2 ? denormalise_by_1_s2 : 25'd0;
-  wire [30:0] truncated = {rebiased_exponent_7_0_and_s2, denormalised[23:1]};
-  wire guard = denormalised[0];
-  wire sticky = denormalise_far_s2 ? a_significand_wide_s1_any_s2 : denormalise_by_16_loses_or_or_or_or_s2;
-  wire round_up = guard & (sticky | denormalised[1]);
+  wire [24:0] denormalise_by_1 = denormalise_distance_0_0_s2 ? {1'b0, denormalise_by_2_s2[24:1]} : denormalise_by_2_s2;
+  wire [30:0] truncated = {exponent_field_s2, {denormalise_by_1[23], denormalise_by_1[22:1]}};
+  wire guard = denormalise_by_1[0];
+  wire denormalise_by_1_loses = denormalise_distance_0_0_s2 & denormalise_by_2_s2[0];
+  wire sticky = denormalise_by_16_loses_or_or_s2 | denormalise_by_2_loses_s2 | denormalise_by_1_loses;
+  wire round_up = guard & (sticky | denormalise_by_1[1]);
   wire [30:0] rounded = truncated + {30'd0, round_up};
-
-  // ---- stage 3 ----
-  reg a_sign_s3;
-  reg overflow_s3;
-  reg a_hidden_s3;
-  reg [30:0] rounded_s3;
-  always @(posedge clk) begin
-    a_sign_s3 <= a_sign_s2;
-    overflow_s3 <= overflow_s2;
-    a_hidden_s3 <= a_hidden_s2;
-    rounded_s3 <= rounded;
-  end
-  wire is_infinity = overflow_s3 & a_hidden_s3;
-  wire a_is_zero = ~a_hidden_s3;
-  wire is_special = is_infinity | a_is_zero;
-  wire [30:0] special_magnitude = {{8{is_infinity}}, 23'd0};
-  wire [30:0] magnitude = is_special ? special_magnitude : rounded_s3;
 
   // ---- registered outputs ----
   always @(posedge clk) begin
-    result <= {a_sign_s3, magnitude};
+    result <= {a_sign_s2, rounded};
   end
 
   // Bits that nothing needs.
-  wire unused = &{1'b0, denormalised[24], missing_exponent[10:9]};
+  wire unused = &{1'b0, denormalise_by_1[24], missing_exponent[9]};
 
 endmodule
 

@@ -73,33 +73,34 @@ module fp_convert_e8f23_finite_to_e10f23z (
   wire [23:0] a_normalise_by_8 = a_significand_7_0_zeros_wide_if[3] ? {a_normalise_by_16[15:0], 8'd0} : a_normalise_by_16;
   wire [23:0] a_normalise_by_4 = a_significand_7_0_zeros_wide_if[2] ? {a_normalise_by_8[19:0], 4'd0} : a_normalise_by_8;
   wire [23:0] a_normalise_by_2 = a_significand_7_0_zeros_wide_if[1] ? {a_normalise_by_4[21:0], 2'd0} : a_normalise_by_4;
-  wire [23:0] a_normalise_by_1 = a_significand_7_0_zeros_wide_if[0] ? {a_normalise_by_2[22:0], 1'b0} : a_normalise_by_2;
   wire [7:0] a_effective_exponent = {a_exponent_7_1_s1, a_exponent_0_0_or_not_a_hidden_s1};
+  wire [10:0] a_rebiased_exponent = {2'd0, {1'b0, a_effective_exponent}} + 11'd384;
   wire [4:0] a_significand_23_0_zeros = {a_significand_23_8_is_zero, a_significand_7_0_zeros_wide_if};
-  wire [8:0] a_normalised_exponent = {1'b0, a_effective_exponent} - {3'd0, {1'b0, a_significand_23_0_zeros}};
-  wire [10:0] rebiased_exponent = {{2{a_normalised_exponent[8]}}, a_normalised_exponent} + 11'd384;
+  wire [10:0] a_normalised_exponent = a_rebiased_exponent - {5'd0, {1'b0, a_significand_23_0_zeros}};
+  wire [9:0] exponent_field = ~a_is_zero_s1 ? a_normalised_exponent[9:0] : 10'd0;
 
   // ---- stage 2 ----
   reg a_sign_s2;
-  reg a_is_zero_s2;
-  reg [9:0] rebiased_exponent_9_0_s2;
-  reg [22:0] a_normalise_by_1_22_0_s2;
+  reg [9:0] exponent_field_s2;
+  reg a_significand_7_0_zeros_wide_if_0_0_s2;
+  reg [23:0] a_normalise_by_2_s2;
   always @(posedge clk) begin
     a_sign_s2 <= a_sign_s1;
-    a_is_zero_s2 <= a_is_zero_s1;
-    rebiased_exponent_9_0_s2 <= rebiased_exponent[9:0];
-    a_normalise_by_1_22_0_s2 <= a_normalise_by_1[22:0];
+    exponent_field_s2 <= exponent_field;
+    a_significand_7_0_zeros_wide_if_0_0_s2 <= a_significand_7_0_zeros_wide_if[0];
+    a_normalise_by_2_s2 <= a_normalise_by_2;
   end
-  wire [32:0] truncated = {rebiased_exponent_9_0_s2, a_normalise_by_1_22_0_s2};
-  wire [32:0] magnitude = a_is_zero_s2 ? 33'd0 : truncated;
+  wire [23:0] a_normalise_by_1 = a_significand_7_0_zeros_wide_if_0_0_s2 ? {a_normalise_by_2_s2[22:0], 1'b0} : a_normalise_by_2_s2;
+  wire [22:0] fraction_field = a_normalise_by_1[22:0];
+  wire [32:0] truncated = {exponent_field_s2, fraction_field};
 
   // ---- registered outputs ----
   always @(posedge clk) begin
-    result <= {a_sign_s2, magnitude};
+    result <= {a_sign_s2, truncated};
   end
 
   // Bits that nothing needs.
-  wire unused = &{1'b0, a_normalise_by_1[23], rebiased_exponent[10]};
+  wire unused = &{1'b0, a_normalise_by_1[23], a_normalised_exponent[10]};
 
 endmodule
 

@@ -18,13 +18,13 @@ module fp_halve_e10f23z_normal (
   wire a_sign = a[33];
   wire [9:0] a_exponent = a[32:23];
   wire [9:0] exponent_less_one = a_exponent - 10'd1;
-  wire [22:0] a_fraction = a[22:0];
   wire a_hidden = |a_exponent;
-  wire [32:0] magnitude = a_hidden ? {exponent_less_one, a_fraction} : 33'd0;
+  wire [22:0] a_fraction = a[22:0];
+  wire [32:0] truncated = {a_hidden ? exponent_less_one : 10'd0, a_hidden ? a_fraction : 23'd0};
 
   // ---- registered outputs ----
   always @(posedge clk) begin
-    result <= {a_sign, magnitude};
+    result <= {a_sign, truncated};
   end
 
 endmodule

@@ -33,13 +33,6 @@ module fp_mul_e10f23z_normal (
   wire a_sign = a[33];
   wire b_sign = b[33];
   wire product_sign = a_sign ^ b_sign;
-  wire [23:0] tile_0_0;
-  multiplier_12x12 tile_0_0_block (
-    .clk     (clk),
-    .a       (a_fraction[11:0]),
-    .b       (b_fraction[11:0]),
-    .product (tile_0_0)
-  );
   wire [23:0] tile_1_0;
   multiplier_12x12 tile_1_0_block (
     .clk     (clk),
@@ -61,72 +54,80 @@ module fp_mul_e10f23z_normal (
     .b       (b_significand[23:12]),
     .product (tile_1_1)
   );
+  wire [23:0] tile_0_0;
+  multiplier_12x12 tile_0_0_block (
+    .clk     (clk),
+    .a       (a_fraction[11:0]),
+    .b       (b_fraction[11:0]),
+    .product (tile_0_0)
+  );
+
+  // ---- stage 1 ----
+  reg not_is_zero_s1;
+  always @(posedge clk) begin
+    not_is_zero_s1 <= ~is_zero;
+  end
 
   // ---- stage 2 ----
+  reg not_is_zero_s2;
+  always @(posedge clk) begin
+    not_is_zero_s2 <= not_is_zero_s1;
+  end
   wire [24:0] tiles_sum_2 = {1'b0, tile_1_0} + {1'b0, tile_0_1};
   wire [47:0] tiles_0_0 = {tile_1_1, tile_0_0};
 
   // ---- stage 3 ----
   reg [35:0] tiles_0_0_47_12_s3;
   reg [24:0] tiles_sum_s3;
-  reg [11:0] tile_0_0_11_0_s3;
+  reg not_is_zero_s3;
+  reg tile_0_0_11_0_any_s3;
   always @(posedge clk) begin
     tiles_0_0_47_12_s3 <= tiles_0_0[47:12];
     tiles_sum_s3 <= tiles_sum_2;
-    tile_0_0_11_0_s3 <= tile_0_0[11:0];
+    not_is_zero_s3 <= not_is_zero_s2;
+    tile_0_0_11_0_any_s3 <= |tile_0_0[11:0];
   end
   wire [35:0] tiles_sum = tiles_0_0_47_12_s3 + {11'd0, tiles_sum_s3};
   wire product_at_least_two = tiles_sum[35];
-  wire [47:0] product = {tiles_sum, tile_0_0_11_0_s3};
-  wire [47:0] normalised = product_at_least_two ? product : {product[46:0], 1'b0};
-  wire [23:0] significand = normalised[47:24];
-  wire guard = normalised[23];
+  wire [24:0] normalised = product_at_least_two ? tiles_sum[35:11] : tiles_sum[34:10];
+  wire [23:0] significand = normalised[24:1];
+  wire [22:0] significand_22_0_and = not_is_zero_s3 ? significand[22:0] : 23'd0;
+  wire guard = normalised[0];
 
   // ---- stage 4 ----
-  reg guard_s4;
-  reg [22:0] normalised_22_0_s4;
-  reg significand_0_0_s4;
-  reg product_at_least_two_s4;
-  reg [22:0] significand_22_0_s4;
+  reg [2:0] product_sign_s4_line;
+  reg product_sign_s4;
+  reg [29:0] product_exponent_9_0_and_s4_line;
+  reg [9:0] product_exponent_9_0_and_s4;
+  reg [22:0] significand_22_0_and_s4;
+  reg product_at_least_two_and_s4;
+  reg guard_and_not_is_zero_s3_s4;
+  reg tile_0_0_11_0_any_s4;
+  reg tiles_sum_9_0_any_s4;
+  reg product_at_least_two_and_s4_2;
+  reg significand_22_0_and_0_0_s4;
   always @(posedge clk) begin
-    guard_s4 <= guard;
-    normalised_22_0_s4 <= normalised[22:0];
-    significand_0_0_s4 <= significand[0];
-    product_at_least_two_s4 <= product_at_least_two;
-    significand_22_0_s4 <= significand[22:0];
+    product_sign_s4_line <= {product_sign_s4_line[1:0], product_sign};
+    product_sign_s4 <= product_sign_s4_line[2];
+    product_exponent_9_0_and_s4_line <= {product_exponent_9_0_and_s4_line[19:0], ~is_zero ? product_exponent[9:0] : 10'd0};
+    product_exponent_9_0_and_s4 <= product_exponent_9_0_and_s4_line[29:20];
+    significand_22_0_and_s4 <= significand_22_0_and;
+    product_at_least_two_and_s4 <= product_at_least_two & not_is_zero_s3;
+    guard_and_not_is_zero_s3_s4 <= guard & not_is_zero_s3;
+    tile_0_0_11_0_any_s4 <= tile_0_0_11_0_any_s3;
+    tiles_sum_9_0_any_s4 <= |tiles_sum[9:0];
+    product_at_least_two_and_s4_2 <= product_at_least_two & tiles_sum[10];
+    significand_22_0_and_0_0_s4 <= significand_22_0_and[0];
   end
-  wire sticky = |normalised_22_0_s4;
-  wire round_up = guard_s4 & (sticky | significand_0_0_s4);
-
-  // ---- stage 5 ----
-  reg [3:0] product_sign_s5_line;
-  reg product_sign_s5;
-  reg [39:0] product_exponent_9_0_s5_line;
-  reg [9:0] product_exponent_9_0_s5;
-  reg [22:0] significand_22_0_s5;
-  reg product_at_least_two_s5;
-  reg round_up_s5;
-  reg [3:0] is_zero_s5_line;
-  reg is_zero_s5;
-  always @(posedge clk) begin
-    product_sign_s5_line <= {product_sign_s5_line[2:0], product_sign};
-    product_sign_s5 <= product_sign_s5_line[3];
-    product_exponent_9_0_s5_line <= {product_exponent_9_0_s5_line[29:0], product_exponent[9:0]};
-    product_exponent_9_0_s5 <= product_exponent_9_0_s5_line[39:30];
-    significand_22_0_s5 <= significand_22_0_s4;
-    product_at_least_two_s5 <= product_at_least_two_s4;
-    round_up_s5 <= round_up;
-    is_zero_s5_line <= {is_zero_s5_line[2:0], is_zero};
-    is_zero_s5 <= is_zero_s5_line[3];
-  end
-  wire [32:0] truncated = {product_exponent_9_0_s5, significand_22_0_s5};
-  wire [32:0] increments = {{9'd0, product_at_least_two_s5}, {22'd0, round_up_s5}};
+  wire [32:0] truncated = {product_exponent_9_0_and_s4, significand_22_0_and_s4};
+  wire sticky = tile_0_0_11_0_any_s4 | tiles_sum_9_0_any_s4 | product_at_least_two_and_s4_2;
+  wire round_up = guard_and_not_is_zero_s3_s4 & (sticky | significand_22_0_and_0_0_s4);
+  wire [32:0] increments = {{9'd0, product_at_least_two_and_s4}, {22'd0, round_up}};
   wire [32:0] rounded = truncated + increments;
-  wire [32:0] magnitude = ~is_zero_s5 ? rounded : 33'd0;
 
   // ---- registered outputs ----
   always @(posedge clk) begin
-    result <= {product_sign_s5, magnitude};
+    result <= {product_sign_s4, rounded};
   end
 
   // Bits that nothing needs.

@@ -1,6 +1,6 @@
 //! Delays of one value become one chain, however they were written.
 
-use contact_afu::hdl::{DelayModel, Evaluator, Graph, Module, Op, Primitive, delay_block};
+use contact_afu::hdl::{DelayModel, Evaluator, Graph, Module, Op, Primitive, Signal, delay_block};
 
 /// The delays of a module, each with its cycles and the name of what it delays, if that is not a delay.
 fn delays(module: &Module) -> Vec<(u32, Option<String>)> {
@@ -56,6 +56,24 @@ fn delays_that_nothing_needs_lengthen_nothing() {
     assert_eq!(delays(&g.finish().unwrap()), [(7, Some("x".to_owned()))]);
 }
 
+/// What comes from registers, through wiring alone, goes into a memory as it is; what logic computes passes a register.
+#[test]
+fn what_logic_computes_passes_a_register_before_a_memory() {
+    let cycles = |build: fn(&Graph) -> Signal<'_>, cycles: u32| {
+        let g = Graph::new("late");
+        g.output("y", build(&g).delay(cycles));
+        delays(&g.finish().unwrap()).into_iter().map(|(cycles, _)| cycles).collect::<Vec<_>>()
+    };
+    assert_eq!(cycles(|g| g.input("a", 24), 5), [5]);
+    assert_eq!(cycles(|g| g.input("a", 30).low(12).concat(g.input("b", 12)), 5), [5]);
+    assert_eq!(cycles(|g| g.input("a", 24) + g.input("b", 24), 5), [1, 4]);
+    // Of three cycles a wide delay is a memory already, but none for what would pass a register first.
+    assert_eq!(cycles(|g| g.input("a", 24), 3), [3]);
+    assert_eq!(cycles(|g| g.input("a", 24) + g.input("b", 24), 3), [1, 1, 1]);
+    // Few bits are no memory.
+    assert_eq!(cycles(|g| g.input("a", 4) + g.input("b", 4), 5), [5]);
+}
+
 #[test]
 fn of_equal_delays_the_named_one_stays() {
     let g = Graph::new("named");
@@ -106,7 +124,7 @@ fn wires_in_a_circle_are_an_error_wherever_it_is_entered() {
 fn delays_in_blocks_are_as_long_as_they_say() {
     let plain = DelayModel::default();
     let blocks = plain.clone().with_registered_tables(Some(Primitive::Dp16kd));
-    for cycles in [18, 19, 33, 34, 64, 513] {
+    for cycles in [18, 19, 33, 34, 64, 514] {
         assert!(delay_block(cycles, 32, &plain).unwrap().is_none());
         let module = delay_block(cycles, 32, &blocks).unwrap().expect("a block");
         assert_eq!(module.latency, cycles);
@@ -119,7 +137,7 @@ fn delays_in_blocks_are_as_long_as_they_say() {
             run.step();
         }
     }
-    for (cycles, width) in [(17, 32), (514, 32), (18, 23), (18, 37)] {
+    for (cycles, width) in [(17, 32), (515, 32), (18, 23), (18, 37)] {
         assert!(delay_block(cycles, width, &blocks).unwrap().is_none(), "{cycles} cycles of {width} bits");
     }
 }

@@ -9,7 +9,7 @@ use super::graph::Graph;
 use super::module::{Module, Primitive};
 
 /// The cycles of a delay in a block: a shorter one fits one primitive's depth in look-up tables, a longer one no block.
-const CYCLES: RangeInclusive<u32> = 18..=513;
+const CYCLES: RangeInclusive<u32> = 18..=514;
 /// The widths of a delay in a block: a narrower one wastes it, a wider one does not fit.
 const WIDTH: RangeInclusive<u32> = 24..=36;
 
@@ -28,8 +28,9 @@ pub fn delay_block(cycles: u32, width: u32, model: &DelayModel) -> Result<Option
 }
 
 fn line(cycles: u32, width: u32, primitive: Primitive) -> Result<Arc<Module>, Errors> {
-    // A word is read into one register and waits in another.
-    let depth = cycles - 1;
+    // A word is read into one register of the block and waits in another. Of that it comes late, and from afar: a register
+    // in the fabric takes it.
+    let depth = cycles - 2;
     let graph = Graph::new(format!("delay_{cycles}x{width}{}", primitive.suffix()));
     graph.about(format!("value, {cycles} cycles ago: a block memory with registers of its own"));
     let bits = 32 - (depth - 1).leading_zeros();
@@ -41,7 +42,7 @@ fn line(cycles: u32, width: u32, primitive: Primitive) -> Result<Arc<Module>, Er
     let value = graph.input("value", width);
     let ports = [("write_index", newest.value()), ("read_index", oldest), ("write_word", value)];
     let memory = memory(depth, width, bits, primitive)?;
-    graph.output("delayed", graph.instance("line", &memory, &ports).output("word"));
+    graph.output("delayed", graph.instance("line", &memory, &ports).output("word").delay(1));
     let mut module = graph.finish()?;
     Arc::make_mut(&mut module).latency = cycles;
     Ok(module)

@@ -4,6 +4,7 @@ use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
 
+use super::loads::{chooser, loads};
 use super::module::{Module, Node, NodeId, Op, Primitive};
 
 /// Tables with so many bits of index go into a block memory, where the target has such: shorter ones are a look-up table or
@@ -98,16 +99,16 @@ impl DelayModel {
     /// What `scripts/fit-delays` found: `docs/delays-ecp5.json` has the graphs and how far each is off.
     pub fn ecp5() -> Self {
         Self {
-            register: 1.033,
-            lut: 0.245,
-            spread: 0.265,
-            gate: 0.214,
-            mux: 0.065,
-            fanout: 0.13,
-            carry: 0.696,
+            register: 0.987,
+            lut: 0.152,
+            spread: 0.319,
+            gate: 0.23,
+            mux: 0.344,
+            fanout: 0.078,
+            carry: 0.727,
             carry_bit: 0.035,
-            carry_out: 0.691,
-            multiplier: 4.454,
+            carry_out: 0.667,
+            multiplier: 4.413,
             ..Self::guess()
         }
     }
@@ -187,7 +188,7 @@ impl DelayModel {
     #[must_use]
     pub fn with_registered_multipliers(self, primitive: Option<Primitive>) -> Self {
         // Read off routed SCPUs: blocks stand in a few columns, and ways to and from them are long.
-        let far = Self { multiplier_input: 1.15, multiplier_output: 0.75, ..self };
+        let far = Self { multiplier_input: 1.6, multiplier_output: 0.75, ..self };
         Self { multiplier_registers: 2, multiplier_primitive: primitive, ..far }
     }
 
@@ -305,14 +306,6 @@ impl DelayModel {
     }
 }
 
-/// The value that drives a line to many places: itself, what it is the complement of, or the bit that it repeats.
-fn chooser(module: &Module, id: NodeId) -> NodeId {
-    match module.node(id).op {
-        Op::Not => chooser(module, module.node(id).operands[0]),
-        _ => module.repeated_bit(id).map_or(id, |bit| chooser(module, bit)),
-    }
-}
-
 /// Whether a value comes straight out of a carry chain.
 fn is_chained(module: &Module, id: NodeId) -> bool {
     match module.node(id).op {
@@ -320,37 +313,6 @@ fn is_chained(module: &Module, id: NodeId) -> bool {
         Op::Add | Op::Sub | Op::SubAdd => true,
         _ => false,
     }
-}
-
-/// How many places each value chooses in, by node: bits of the choices, of the gates and of the differences or sums that
-/// it is the condition of.
-fn loads(module: &Module) -> Vec<u32> {
-    let mut loads = vec![0; module.nodes.len()];
-    for node in &module.nodes {
-        let chooses = |position: usize| match node.op {
-            Op::Mux => position == 0,
-            Op::SubAdd => position == 2,
-            Op::And | Op::Or | Op::Xor => module.repeated_bit(node.operands[position]).is_some(),
-            _ => false,
-        };
-        for position in (0..node.operands.len()).filter(|&position| chooses(position)) {
-            loads[chooser(module, node.operands[position]).index()] += node.width;
-        }
-    }
-    // And the busiest bit of what they are taken from or go into.
-    for id in module.ids() {
-        if let Op::Slice { .. } = module.node(id).op {
-            let whole = module.node(id).operands[0].index();
-            loads[whole] = loads[whole].max(loads[id.index()]);
-        }
-    }
-    for id in module.ids() {
-        if let Op::Concat = module.node(id).op {
-            let parts = module.node(id).operands.iter().map(|part| loads[part.index()]).max();
-            loads[id.index()] = loads[id.index()].max(parts.unwrap_or_default());
-        }
-    }
-    loads
 }
 
 #[cfg(test)]

@@ -13,6 +13,7 @@ mod finish;
 mod fold;
 mod graph;
 mod keywords;
+mod loads;
 mod lookup;
 mod module;
 mod share_delays;

@@ -236,6 +236,9 @@ pub struct Module {
 
 /// A longer delay than this many cycles is not a row of registers with names of their own.
 pub const LONGEST_REGISTER_DELAY: u32 = 3;
+/// A delay of so many cycles or more is a memory, if it is wide: two registers cost no more than a memory and what it is
+/// read into.
+const SHORTEST_MEMORY_DELAY: u32 = 3;
 /// A longer delay of fewer bits than this is a shift register: a memory is never narrower than a few bits, and its
 /// pointer costs more than it saves.
 const NARROWEST_MEMORY_DELAY: u32 = 12;
@@ -250,8 +253,11 @@ pub(super) const LONGEST_DISTRIBUTED_DELAY: u32 = 256;
 
 /// Whether a delay of a value of `width` bits is a memory with a pointer.
 pub(super) fn is_memory_delay(cycles: u32, width: u32) -> bool {
-    let is_narrow = width < NARROWEST_MEMORY_DELAY && width.saturating_mul(cycles) <= MOST_SHIFT_REGISTER_BITS;
-    cycles > LONGEST_REGISTER_DELAY && !is_narrow
+    if width >= NARROWEST_MEMORY_DELAY {
+        cycles >= SHORTEST_MEMORY_DELAY
+    } else {
+        cycles > LONGEST_REGISTER_DELAY && width.saturating_mul(cycles) > MOST_SHIFT_REGISTER_BITS
+    }
 }
 
 impl Module {

@@ -50,10 +50,11 @@ pub(super) fn chain(inner: &mut Inner, live: &[NodeId]) {
         }
     }
     for (source, delays) in of {
+        let is_late = !is_registered(&inner.nodes, source);
         let (mut from, mut distance) = (source, 0);
         for (cycles, id) in delays {
             let width = inner.nodes[id.index()].width;
-            while let Some(step) = step(cycles - distance, width) {
+            while let Some(step) = step(cycles - distance, width, is_late && distance == 0) {
                 let node = inner.nodes[id.index()].clone();
                 let node = Node { op: Op::Delay { cycles: step }, operands: vec![from], name: None, ..node };
                 from = NodeId(inner.nodes.len() as u32);
@@ -79,12 +80,25 @@ pub(super) fn chain(inner: &mut Inner, live: &[NodeId]) {
 }
 
 /// How much of a delay stands apart before the rest of it: a few cycles are as many registers, each with a name of its
-/// own; many are several memories, each of one primitive's depth.
-fn step(cycles: u32, width: u32) -> Option<u32> {
-    match cycles {
-        0 | 1 => None,
-        2..=LONGEST_REGISTER_DELAY => Some(1),
-        _ if cycles > LONGEST_DISTRIBUTED_DELAY || !is_memory_delay(cycles, width) => None,
-        _ => Some(DISTRIBUTED_DEPTH).filter(|depth| cycles > *depth),
+/// own; many are several memories, each of one primitive's depth. What `is_late` passes a register before it goes into a
+/// memory: a register stands beside the logic that it takes its value from, and the way into a memory is a long one.
+fn step(cycles: u32, width: u32, is_late: bool) -> Option<u32> {
+    match (cycles, is_memory_delay(cycles, width)) {
+        (0 | 1, _) => None,
+        (_, true) if is_late => Some(1),
+        (..=LONGEST_DISTRIBUTED_DELAY, true) => Some(DISTRIBUTED_DEPTH).filter(|depth| cycles > *depth),
+        (..=LONGEST_REGISTER_DELAY, false) => Some(1),
+        _ => None,
+    }
+}
+
+/// Whether a value comes from registers, through wiring alone. Inputs and outputs of instances do.
+fn is_registered(nodes: &[Node], id: NodeId) -> bool {
+    let node = &nodes[id.index()];
+    match node.op {
+        Op::Input | Op::Constant(_) | Op::Parameter(_) | Op::InstanceOutput { .. } => true,
+        Op::Delay { .. } | Op::Register { .. } => true,
+        Op::Slice { .. } | Op::Concat => node.operands.iter().all(|part| is_registered(nodes, *part)),
+        _ => false,
     }
 }

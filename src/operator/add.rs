@@ -2,8 +2,8 @@
 
 use super::Domain;
 use super::parts::{
-    Operand, Rounded, Rounding, Signed, Special, Unrounded, leading_zeros, normalise, pack, round, round_so,
-    shift_left, shift_right_sticky,
+    Fields, Operand, Rounding, Signed, Special, Unrounded, distance_bits, leading_zeros, normalise, pack, result,
+    round, shift_left, shift_right_sticky,
 };
 use crate::hdl::Signal;
 
@@ -31,20 +31,19 @@ pub fn add_to<'g>(
 
     let b_is_larger = a.magnitude().less_than(b.magnitude()).named("b_is_larger");
     let choose = |if_b, if_a, name: &str| b_is_larger.select(if_b, if_a).named(name);
-    // Both differences beside the comparison: the distance is then there as soon as that is.
+    // Both differences beside the comparison: the right one is then there as soon as that is.
     let [a_exponent, b_exponent] = [a.effective_exponent(), b.effective_exponent()];
-    let a_minus_b = (a_exponent - b_exponent).named("a_exponent_minus_b");
-    let b_minus_a = (b_exponent - a_exponent).named("b_exponent_minus_a");
-    let exponent_difference = choose(b_minus_a, a_minus_b, "exponent_difference");
+    let more = to.fraction_bits() - domain.fraction_bits();
+    let differences = [a_exponent - b_exponent, b_exponent - a_exponent];
+    let align_distance = align_distance(differences, b_is_larger, domain.significand_bits() + more + 2);
     let large_sign = choose(b.sign, a.sign, "large_sign");
     let large_exponent = choose(b_exponent, a_exponent, "large_exponent");
     let large_significand = choose(b.true_significand(), a.true_significand(), "large_significand");
     let small_significand = choose(a.true_significand(), b.true_significand(), "small_significand");
-    let more = to.fraction_bits() - domain.fraction_bits();
     let [large_significand, small_significand] = [large_significand, small_significand].map(|it| it.append_zeros(more));
 
     // Below the significand stand a guard bit, a round bit and the sticky bit; above it the carry.
-    let (mut aligned, mut sticky) = shift_right_sticky(small_significand.append_zeros(2), exponent_difference, "align");
+    let (mut aligned, mut sticky) = shift_right_sticky(small_significand.append_zeros(2), align_distance, "align");
     if !domain.keeps_subnormals() && !domain.is_normal() {
         // A flushed number's fraction does not count: dropped here, where it is cheap.
         let small_is_zero = b_is_larger.select(a.is_zero(), b.is_zero()).named("small_is_zero");
@@ -55,24 +54,40 @@ pub fn add_to<'g>(
     let augend = large_significand.append_zeros(3).extend(width).named("augend");
     let sum = augend.minus_or_plus(addend, !effective_subtraction).named("sum");
 
-    let (rounded, sum_is_zero) = match domain.keeps_subnormals() && to == domain {
+    let is_gradual = domain.keeps_subnormals() && to == domain;
+    let (fields, sum_is_zero) = match is_gradual {
         true => gradual(domain, rounding, sum, large_exponent),
         false => flushed(domain, to, rounding, sum, large_exponent),
     };
-    let is_zero = if domain.keeps_subnormals() || domain.is_normal() {
-        sum_is_zero
-    } else {
-        sum_is_zero | (a.is_zero() & b.is_zero())
-    };
-    let is_exact_zero = is_zero.named("is_exact_zero");
+    let both_zero =
+        if domain.keeps_subnormals() || domain.is_normal() { sum_is_zero.same(0) } else { a.is_zero() & b.is_zero() };
+    let is_exact_zero = (sum_is_zero | both_zero).named("is_exact_zero");
     let both_infinite = a.is_infinity() & b.is_infinity();
     let special = Special {
         nan: a.is_nan() | b.is_nan() | (both_infinite & effective_subtraction),
         infinity: a.is_infinity() | b.is_infinity(),
-        zero: is_exact_zero,
+        // A sum that is zero has an empty fraction; the exponent has seen to itself, but for results that may underflow.
+        zero: if is_gradual || to.is_normal() { both_zero } else { is_exact_zero },
     };
     let sign = large_sign & !(is_exact_zero & effective_subtraction);
-    pack(to, sign, rounded, special)
+    pack(to, sign, fields, special)
+}
+
+/// How far the smaller number is moved: the right one of both differences of the exponents, in as many bits as a value of
+/// `moved_bits` needs. Of each it is known before whether it is too far for them.
+fn align_distance<'g>(differences: [Signal<'g>; 2], b_is_larger: Signal<'g>, moved_bits: u32) -> Signal<'g> {
+    let [a_minus_b, b_minus_a] = differences;
+    let (a_minus_b, b_minus_a) = (a_minus_b.named("a_exponent_minus_b"), b_minus_a.named("b_exponent_minus_a"));
+    let bits = distance_bits(moved_bits);
+    if a_minus_b.width() <= bits {
+        return b_is_larger.select(b_minus_a, a_minus_b).named("align_distance");
+    }
+    let near = b_is_larger.select(b_minus_a.low(bits), a_minus_b.low(bits)).named("align_near");
+    let is_far = |difference: Signal<'g>, name: &str| difference.drop_low(bits).any().named(name);
+    let a_is_far = is_far(a_minus_b, "a_is_far_above");
+    let b_is_far = is_far(b_minus_a, "b_is_far_above");
+    let far = b_is_larger.select(b_is_far, a_is_far).named("align_far");
+    (near | far.repeat(bits)).named("align_distance")
 }
 
 /// Normalises and rounds `sum`, which is carry, significand and three bits. With subnormals the shift ends where the
@@ -82,7 +97,7 @@ fn gradual<'g>(
     rounding: Rounding,
     sum: Signal<'g>,
     large_exponent: Signal<'g>,
-) -> (Rounded<'g>, Signal<'g>) {
+) -> (Fields<'g>, Signal<'g>) {
     let sum_is_zero = sum.is_zero().named("sum_is_zero");
     // A one where the smallest normal number's would stand: what is counted ends there, so the count is the distance.
     let count_bits = u32::BITS - (sum.width() - 1).leading_zeros();
@@ -100,13 +115,17 @@ fn gradual<'g>(
     // Without its leading one a result is subnormal, or zero.
     let exponent = exponent.gate(normalised.msb()).named("normalised_exponent");
     let (significand, guard, sticky) = taken(domain, normalised);
-    let fraction = significand.low(domain.fraction_bits());
-    let rounded = Rounded {
-        magnitude: rounding.apply(exponent, fraction, guard, sticky),
+    let fields = Fields {
+        exponent,
+        fraction: significand.low(domain.fraction_bits()),
+        guard,
+        sticky,
+        doubled: None,
+        rounding,
         overflow: exponent.all().named("overflow"),
         underflow: guard.same(0),
     };
-    (rounded, sum_is_zero)
+    (fields, sum_is_zero)
 }
 
 /// The same without subnormals: the exponent may go below its end; rounding then flushes. The exponent of `from` goes into
@@ -117,7 +136,7 @@ fn flushed<'g>(
     rounding: Rounding,
     sum: Signal<'g>,
     large_exponent: Signal<'g>,
-) -> (Rounded<'g>, Signal<'g>) {
+) -> (Fields<'g>, Signal<'g>) {
     let normalised = normalise(sum, "normalise");
     let largest = i64::from(from.special_exponent()) - 1;
     let exponent = Signed::unsigned(large_exponent, 1, largest)
@@ -125,8 +144,10 @@ fn flushed<'g>(
         .minus(Signed::unsigned(normalised.zeros.named("leading_zeros"), 0, i64::from(sum.width()) - 1))
         .named("normalised_exponent");
     let (significand, guard, sticky) = taken(domain, normalised.value.named("normalised"));
+    let is_zero = !normalised.value.msb();
+    let exponent = if domain.is_normal() { exponent.gate(!is_zero).named("result_exponent") } else { exponent };
     let unrounded = Unrounded { exponent, significand, guard, sticky, doubled: None };
-    (round_so(domain, unrounded, rounding), !normalised.value.msb())
+    (round(domain, unrounded, rounding), is_zero)
 }
 
 /// Significand, guard and sticky bit of a normalised sum.
@@ -139,14 +160,17 @@ fn taken<'g>(domain: Domain, normalised: Signal<'g>) -> (Signal<'g>, Signal<'g>,
 /// exponents alone tell which is to be aligned.
 pub fn add_magnitudes<'g>(a: Signal<'g>, b: Signal<'g>, domain: Domain) -> Signal<'g> {
     let (a, b) = (Operand::unpack(a, domain, "a"), Operand::unpack(b, domain, "b"));
-    let b_is_larger = a.exponent.less_than(b.exponent).named("b_is_larger");
+    // Both differences, of which the borrow tells which is the right one.
+    let width = domain.exponent_bits() + 1;
+    let a_less_b = a.exponent.extend(width) - b.exponent.extend(width);
+    let b_is_larger = a_less_b.msb().named("b_is_larger");
+    let differences = [a_less_b.low(width - 1), b.exponent - a.exponent];
+    let align_distance = align_distance(differences, b_is_larger, domain.significand_bits() + 1);
     let choose = |if_b, if_a, name: &str| b_is_larger.select(if_b, if_a).named(name);
     let large_exponent = choose(b.exponent, a.exponent, "large_exponent");
-    let small_exponent = choose(a.exponent, b.exponent, "small_exponent");
     let augend = choose(b.true_significand(), a.true_significand(), "large_significand");
     let small_significand = choose(a.true_significand(), b.true_significand(), "small_significand");
-    let exponent_difference = (large_exponent - small_exponent).named("exponent_difference");
-    let (aligned, below) = shift_right_sticky(small_significand.append_zeros(1), exponent_difference, "align");
+    let (aligned, below) = shift_right_sticky(small_significand.append_zeros(1), align_distance, "align");
 
     // What lies below the larger significand passes by the adder.
     let width = domain.significand_bits() + 1;
@@ -164,5 +188,5 @@ pub fn add_magnitudes<'g>(a: Signal<'g>, b: Signal<'g>, domain: Domain) -> Signa
     };
     // Of two zeros all this is zero.
     let special = Special { nan: carry.same(0), infinity: carry.same(0), zero: carry.same(0) };
-    pack(domain, a.sign & b.sign, round(domain, unrounded), special)
+    result(domain, a.sign & b.sign, unrounded, special)
 }

@@ -1,16 +1,14 @@
 //! A number in another format.
 
 use super::Domain;
-use super::parts::{Operand, Special, Unrounded, pack, round};
+use super::parts::{Fields, Operand, Special, Unrounded, pack, result, round};
 use crate::hdl::Signal;
 use crate::number::Format;
 
 /// `a`, which is in `from`, in `to`: rounded once, or exact where `to` has the room.
 pub fn convert(a: Signal<'_>, from: Domain, to: Format) -> Signal<'_> {
     let a = Operand::unpack(a, from, "a");
-    let (a_exponent, significand) = a.normalised();
-    let exponent = a_exponent.offset(i64::from(to.bias() - from.bias())).named("rebiased_exponent");
-
+    let (exponent, significand) = a.normalised_for(to.bias());
     // At least the new significand and its guard bit.
     let padding = (to.significand_bits() + 1).saturating_sub(significand.width());
     let padded = significand.append_zeros(padding);
@@ -25,5 +23,11 @@ pub fn convert(a: Signal<'_>, from: Domain, to: Format) -> Signal<'_> {
     };
     let special = Special { nan: a.is_nan(), infinity: a.is_infinity(), zero: a.is_zero() };
     let to = Domain::from(to);
-    pack(to, a.sign, round(to, unrounded), special)
+    if from.keeps_subnormals() && exponent.min() > 0 {
+        // Zero's significand is zero, and its exponent is not too large: it only has to go.
+        let fields = round(to, unrounded, to.rounding());
+        let fields = Fields { exponent: fields.exponent.gate(!special.zero), ..fields };
+        return pack(to, a.sign, fields, Special { zero: a.sign.same(0), ..special });
+    }
+    result(to, a.sign, unrounded, special)
 }

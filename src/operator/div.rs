@@ -2,7 +2,7 @@
 //! exact, so the result is rounded correctly.
 
 use super::Domain;
-use super::parts::{Operand, Rounding, Special, Unrounded, pack, round};
+use super::parts::{Operand, Rounding, Special, Unrounded, result};
 use crate::hdl::Signal;
 
 /// a / b.
@@ -50,7 +50,7 @@ pub fn div<'g>(a: Signal<'g>, b: Signal<'g>, domain: Domain) -> Signal<'g> {
     };
     let nan = a.is_nan() | b.is_nan() | (a.is_infinity() & b.is_infinity()) | (a.is_zero() & b.is_zero());
     let special = Special { nan, infinity: a.is_infinity() | b.is_zero(), zero: a.is_zero() | b.is_infinity() };
-    pack(domain, sign, round(domain, unrounded), special)
+    result(domain, sign, unrounded, special)
 }
 
 /// One digit of a quotient, without restoring: what subtracting the divisor leaves stays as it is, negative or not, and

@@ -1,7 +1,7 @@
 //! Half of a number: the exponent less one, and at the lower end of the range the significand moved instead.
 
 use super::Domain;
-use super::parts::{Operand, Rounded, Special, pack};
+use super::parts::{Fields, Operand, Special, pack};
 use crate::hdl::Signal;
 
 /// a · ½.
@@ -11,17 +11,25 @@ pub fn halve(a: Signal<'_>, domain: Domain) -> Signal<'_> {
     let a = Operand::unpack(a, domain, "a");
     let is_normal = a.exponent.drop_low(1).any().named("half_is_normal");
     let less_one = a.exponent.minus(1).named("exponent_less_one");
-    let rounded = if domain.keeps_subnormals() {
+    let exact = Fields {
+        exponent: less_one,
+        fraction: a.fraction,
+        guard: never,
+        sticky: never,
+        doubled: None,
+        rounding: domain.rounding(),
+        overflow: never,
+        // Where results are normal, a smallest exponent never comes.
+        underflow: if domain.is_normal() { never } else { !is_normal },
+    };
+    let fields = if domain.keeps_subnormals() {
         // Half of a subnormal or of the smallest binade: the last bit falls off, and it may be a tie.
         let moved = is_normal.select(a.fraction, a.hidden.concat(a.fraction).drop_low(1)).named("half_fraction");
         let guard = (a.fraction.bit(0) & !is_normal).named("guard");
-        let magnitude = domain.rounding().apply(less_one.gate(is_normal), moved, guard, never);
-        Rounded { magnitude, overflow: never, underflow: never }
+        Fields { exponent: less_one.gate(is_normal), fraction: moved, guard, underflow: never, ..exact }
     } else {
-        // Where results are normal, a smallest exponent never comes.
-        let underflow = if domain.is_normal() { never } else { !is_normal };
-        Rounded { magnitude: less_one.concat(a.fraction), overflow: never, underflow }
+        exact
     };
     let special = Special { nan: a.is_nan(), infinity: a.is_infinity(), zero: a.is_zero() };
-    pack(domain, a.sign, rounded, special)
+    pack(domain, a.sign, fields, special)
 }

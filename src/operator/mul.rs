@@ -1,7 +1,7 @@
 //! Product and square: significands multiplied whole, normalised by at most one place, rounded.
 
 use super::Domain;
-use super::parts::{Operand, Signed, Special, Unrounded, pack, product, round, square};
+use super::parts::{Operand, Signed, Special, Unrounded, product, result, settled_bits, square};
 use crate::hdl::Signal;
 
 /// a · b.
@@ -13,7 +13,7 @@ pub fn mul<'g>(a: Signal<'g>, b: Signal<'g>, domain: Domain) -> Signal<'g> {
     let product = product(a_significand, b_significand).named("product");
     let nan = a.is_nan() | b.is_nan() | (a.is_infinity() & b.is_zero()) | (a.is_zero() & b.is_infinity());
     let special = Special { nan, infinity: a.is_infinity() | b.is_infinity(), zero: a.is_zero() | b.is_zero() };
-    pack(domain, sign, round(domain, unrounded(domain, a_exponent, b_exponent, product)), special)
+    result(domain, sign, unrounded(domain, a_exponent, b_exponent, product), special)
 }
 
 /// a · a: fewer multiplier blocks, and no sign.
@@ -22,22 +22,28 @@ pub fn squared(a: Signal<'_>, domain: Domain) -> Signal<'_> {
     let (exponent, significand) = a.normalised();
     let square = square(significand).named("square");
     let special = Special { nan: a.is_nan(), infinity: a.is_infinity(), zero: a.is_zero() };
-    pack(domain, a.sign.same(0), round(domain, unrounded(domain, exponent, exponent, square)), special)
+    result(domain, a.sign.same(0), unrounded(domain, exponent, exponent, square), special)
 }
 
 /// Two significands in [1, 2) have a product in [1, 4).
 fn unrounded<'g>(domain: Domain, a: Signed<'g>, b: Signed<'g>, product: Signal<'g>) -> Unrounded<'g> {
     let at_least_two = product.msb().named("product_at_least_two");
-    let width = product.width();
-    let normalised = at_least_two.select(product, product.low(width - 1).append_zeros(1)).named("normalised");
+    // Significand and guard bit are taken from one of two places; below the lower one everything is sticky either way.
+    let taken = domain.significand_bits() + 1;
+    let below = product.width() - taken - 1;
+    let normalised = at_least_two.select(product.high(taken), product.slice(below, taken)).named("normalised");
+    // What no row is added to is there early, and is looked through by itself.
+    let settled = settled_bits(domain.significand_bits()).min(below);
+    let rest = [(0, settled), (settled, below - settled)].into_iter().filter(|(_, width)| *width > 0);
+    let passed = at_least_two & product.bit(below);
+    let sticky = rest.map(|(low, width)| product.slice(low, width).any()).reduce(|one, other| one | other);
     // The bias is 2^n - 1: the one comes in as a carry, and of 2^n only the top bits know.
     let exponent = a.plus_and_one(b).named("exponent_sum").minus_bias_and_one(domain.bias()).named("product_exponent");
-    let fraction_bits = domain.fraction_bits();
     Unrounded {
         exponent,
-        significand: normalised.high(domain.significand_bits()).named("significand"),
-        guard: normalised.bit(fraction_bits).named("guard"),
-        sticky: normalised.low(fraction_bits).any().named("sticky"),
+        significand: normalised.drop_low(1).named("significand"),
+        guard: normalised.bit(0).named("guard"),
+        sticky: sticky.map_or(passed, |sticky| sticky | passed).named("sticky"),
         doubled: Some(at_least_two),
     }
 }

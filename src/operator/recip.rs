@@ -2,7 +2,7 @@
 
 use super::Domain;
 use super::div::Step;
-use super::parts::{Operand, Rounding, Signed, Special, Unrounded, pack, round};
+use super::parts::{Operand, Rounding, Signed, Special, Unrounded, result};
 use crate::hdl::Signal;
 
 /// 1 / a.
@@ -60,5 +60,5 @@ pub fn exponent<'g>(domain: Domain, a_exponent: Signed<'g>) -> Signed<'g> {
 /// A rounded reciprocal's word: of zero it is infinity, of infinity zero.
 pub fn finish<'g>(domain: Domain, a: Operand<'g>, unrounded: Unrounded<'g>) -> Signal<'g> {
     let special = Special { nan: a.is_nan(), infinity: a.is_zero(), zero: a.is_infinity() };
-    pack(domain, a.sign, round(domain, unrounded), special)
+    result(domain, a.sign, unrounded, special)
 }

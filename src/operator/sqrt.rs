@@ -1,7 +1,7 @@
 //! Square root, by digit recurrence without restoring: each step tries a 1 as the root's next digit.
 
 use super::Domain;
-use super::parts::{Operand, Rounding, Signed, Special, Unrounded, pack, round};
+use super::parts::{Operand, Rounding, Signed, Special, Unrounded, result};
 use crate::hdl::Signal;
 
 /// √a. √−0 is −0; of any other negative number it is NaN.
@@ -63,7 +63,7 @@ pub fn rounded<'g>(domain: Domain, a: Operand<'g>, root: Signal<'g>, is_inexact:
 pub fn finish<'g>(domain: Domain, a: Operand<'g>, unrounded: Unrounded<'g>) -> Signal<'g> {
     let negative = a.sign & !a.is_zero();
     let special = Special { nan: a.is_nan() | negative, infinity: a.is_infinity(), zero: a.is_zero() };
-    pack(domain, a.sign, round(domain, unrounded), special)
+    result(domain, a.sign, unrounded, special)
 }
 
 /// The first `count` digits of the root of `radicand`, which has two bits before the point and is at least 1; and

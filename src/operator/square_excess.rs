@@ -2,7 +2,7 @@
 
 use super::Domain;
 use super::parts::{
-    Operand, Signed, Special, Unrounded, leading_zeros, pack, round, shift_left, shift_right_sticky, square,
+    Operand, Signed, Special, Unrounded, leading_zeros, result, shift_left, shift_right_sticky, square,
 };
 use crate::hdl::Signal;
 use crate::number::{Format, WINDOW_BITS, WINDOW_INEXACT_BITS, WINDOW_LEADING_BITS, WINDOW_LOST_BITS};
@@ -55,7 +55,7 @@ pub fn square_excess<'g>(operands: [Signal<'g>; 4], domain: Domain, to: Format) 
     };
     let never = top.graph().constant(1, 0);
     let to = Domain::from(to);
-    pack(to, negative, round(to, unrounded), Special { nan, infinity: never, zero: is_zero })
+    result(to, negative, unrounded, Special { nan, infinity: never, zero: is_zero })
 }
 
 fn larger<'g>(a: Signal<'g>, b: Signal<'g>) -> Signal<'g> {

@@ -7,11 +7,13 @@ mod product;
 mod round;
 mod shift;
 mod signed;
+mod special;
 
 pub use leading_zeros::leading_zeros;
 pub use normalise::normalise;
 pub use operand::Operand;
-pub use product::{product, product_low, product_of, square, square_low};
-pub use round::{Rounded, Rounding, Special, Unrounded, pack, round, round_so};
-pub use shift::{shift_left, shift_right_sticky};
+pub use product::{product, product_low, product_of, settled_bits, square, square_low};
+pub use round::{Fields, Rounding, Unrounded, round};
+pub use shift::{capped, distance_bits, shift_left, shift_right_sticky};
 pub use signed::Signed;
+pub use special::{Special, pack, result};

@@ -110,18 +110,31 @@ impl<'g> Operand<'g> {
     /// is neither zero nor special.
     #[track_caller]
     pub fn normalised(&self) -> (Signed<'g>, Signal<'g>) {
+        self.normalised_for(self.domain.bias())
+    }
+
+    /// The same with the exponent for another bias. That of zero is then the smallest there is, if subnormals count, and its
+    /// significand is zero.
+    #[track_caller]
+    pub fn normalised_for(&self, bias: i32) -> (Signed<'g>, Signal<'g>) {
         let largest = i64::from(self.domain.special_exponent()) - 1;
+        // Added here, where there is time, and not behind the count of zeros.
+        let exponent = Signed::unsigned(self.effective_exponent(), 1, largest);
+        let exponent = match i64::from(bias - self.domain.bias()) {
+            0 => exponent,
+            by => exponent.offset(by).named(&format!("{}_rebiased_exponent", self.prefix)),
+        };
         let unshifted = self.significand();
         if !self.domain.keeps_subnormals() {
-            return (Signed::unsigned(self.exponent, 1, largest), unshifted);
+            return (exponent, unshifted);
         }
         let (zeros, _) = leading_zeros(unshifted, &format!("{}_significand", self.prefix));
         let zeros = self.name(zeros, "leading_zeros");
         let significand = self.name(shift_left(unshifted, zeros, &format!("{}_normalise", self.prefix)), "normalised");
         let most = i64::from(self.domain.fraction_bits());
-        let exponent = Signed::unsigned(self.effective_exponent(), 1, largest)
+        let exponent = exponent
             .minus(Signed::unsigned(zeros, 0, most))
-            .with_range(1 - most, largest)
+            .with_range(exponent.min() - most, exponent.max())
             .named(&format!("{}_normalised_exponent", self.prefix));
         (exponent, significand)
     }

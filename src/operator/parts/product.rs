@@ -34,6 +34,12 @@ pub fn square(a: Signal<'_>) -> Signal<'_> {
     total(rows, 2 * width)
 }
 
+/// How many of the low bits of a [`product`] of factors that wide, or of a [`square`], are one tile's own: they are there
+/// before the rows are summed.
+pub fn settled_bits(width: u32) -> u32 {
+    if width > digit_width(width) { digit_width(width) } else { 0 }
+}
+
 /// The whole product of two factors of any width, the second of at most one tile's: tiles are named after `name`.
 #[track_caller]
 pub fn product_of<'g>(a: Signal<'g>, b: Signal<'g>, name: &str) -> Signal<'g> {

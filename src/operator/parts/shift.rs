@@ -19,20 +19,34 @@ pub fn shift_left<'g>(value: Signal<'g>, distance: Signal<'g>, name: &str) -> Si
 #[track_caller]
 pub fn shift_right_sticky<'g>(value: Signal<'g>, distance: Signal<'g>, name: &str) -> (Signal<'g>, Signal<'g>) {
     let width = value.width();
-    // Bits of the distance that are worth the whole width and more move everything out at once.
-    let levels = (0..distance.width()).take_while(|&level| step(level) < width).count() as u32;
+    let distance = capped(distance, width, &format!("{name}_distance"));
     let mut shifted = value;
     let mut sticky = value.graph().constant(1, 0);
-    for level in (0..levels).rev() {
+    for level in (0..distance.width()).rev() {
         let (step, taken) = (step(level), distance.bit(level));
-        sticky = sticky | (taken & shifted.low(step).any()).named(&format!("{name}_by_{step}_loses"));
-        shifted = taken.select(shifted.drop_low(step).extend(width), shifted).named(&format!("{name}_by_{step}"));
+        sticky = sticky | (taken & shifted.low(step.min(width)).any()).named(&format!("{name}_by_{step}_loses"));
+        let moved = if step < width { shifted.drop_low(step).extend(width) } else { shifted.same(0) };
+        shifted = taken.select(moved, shifted).named(&format!("{name}_by_{step}"));
     }
-    if levels == distance.width() {
-        return (shifted, sticky);
+    (shifted, sticky)
+}
+
+/// Bits of a distance of which the largest moves a value of `width` bits out whole.
+pub fn distance_bits(width: u32) -> u32 {
+    u32::BITS - width.leading_zeros()
+}
+
+/// A distance in the bits that a value of `width` bits needs: one that moves it out whole and does not fit in them becomes
+/// the largest that does, which moves it out as well. So what is far costs a gate for each bit of the distance, not of the
+/// value. The result is named where it is not the distance itself.
+#[track_caller]
+pub fn capped<'g>(distance: Signal<'g>, width: u32, name: &str) -> Signal<'g> {
+    let levels = distance_bits(width);
+    if distance.width() <= levels {
+        return distance;
     }
-    let far = distance.drop_low(levels).any().named(&format!("{name}_far"));
-    (shifted.gate(!far), far.select(value.any(), sticky))
+    let far = distance.drop_low(levels).any().named(&format!("{name}_is_far"));
+    (distance.low(levels) | far.repeat(levels)).named(name)
 }
 
 /// How far a level of the shifter moves; beyond any width from the 31st bit on.

@@ -11,6 +11,8 @@ pub struct Signed<'g> {
     bits: Signal<'g>,
     min: i64,
     max: i64,
+    /// What it is by a constant more than, and that constant: another constant is then one step from there, not two.
+    offset_from: Option<(Signal<'g>, i64)>,
 }
 
 /// Bits of two's complement that hold both ends.
@@ -24,19 +26,24 @@ impl<'g> Signed<'g> {
     #[track_caller]
     pub fn unsigned(field: Signal<'g>, min: i64, max: i64) -> Self {
         let width = width_for(min, max).max(field.width() + 1);
-        Self { bits: field.extend(width), min, max }
+        Self { bits: field.extend(width), min, max, offset_from: None }
     }
 
     /// The same value where more is known of its range than its making tells.
     #[must_use]
     pub fn with_range(self, min: i64, max: i64) -> Self {
         let width = width_for(min, max);
-        Self { bits: self.bits(width), min, max }
+        Self { bits: self.bits(width), min, max, offset_from: None }
     }
 
     /// Smallest value.
     pub fn min(self) -> i64 {
         self.min
+    }
+
+    /// Largest value.
+    pub fn max(self) -> i64 {
+        self.max
     }
 
     /// Gives the value a name in the generated Verilog.
@@ -65,7 +72,7 @@ impl<'g> Signed<'g> {
     pub fn plus(self, other: Self) -> Self {
         let (min, max) = (self.min + other.min, self.max + other.max);
         let width = width_for(min, max);
-        Self { bits: self.bits(width) + other.bits(width), min, max }
+        Self { bits: self.bits(width) + other.bits(width), min, max, offset_from: None }
     }
 
     /// Sum and one more, by the carry into the adder.
@@ -75,7 +82,12 @@ impl<'g> Signed<'g> {
         let (min, max) = (self.min + other.min + 1, self.max + other.max + 1);
         let width = width_for(min, max);
         let one = self.bits.graph().constant(1, 1);
-        Self { bits: (self.bits(width).concat(one) + other.bits(width).concat(one)).drop_low(1), min, max }
+        Self {
+            bits: (self.bits(width).concat(one) + other.bits(width).concat(one)).drop_low(1),
+            min,
+            max,
+            offset_from: None,
+        }
     }
 
     /// Less `bias` + 1, which is a power of two: the bits below it stay.
@@ -87,7 +99,7 @@ impl<'g> Signed<'g> {
         let whole = self.offset(-by);
         let high = self.bits(whole.bits.width()).drop_low(low);
         let bits = high.minus(1).concat(self.bits.low(low));
-        Self { bits, ..whole }
+        Self { bits, offset_from: None, ..whole }
     }
 
     /// Difference.
@@ -96,7 +108,7 @@ impl<'g> Signed<'g> {
     pub fn minus(self, other: Self) -> Self {
         let (min, max) = (self.min - other.max, self.max - other.min);
         let width = width_for(min, max);
-        Self { bits: self.bits(width) - other.bits(width), min, max }
+        Self { bits: self.bits(width) - other.bits(width), min, max, offset_from: None }
     }
 
     /// Sum with a constant.
@@ -109,7 +121,7 @@ impl<'g> Signed<'g> {
             0.. => self.bits(width) + self.constant(width, by),
             _ => self.bits(width) - self.constant(width, -by),
         };
-        Self { bits, min, max }
+        Self { bits, min, max, offset_from: Some((self.bits, by)) }
     }
 
     /// A constant minus this.
@@ -117,27 +129,37 @@ impl<'g> Signed<'g> {
     #[must_use]
     pub fn subtracted_from(self, from: i64) -> Self {
         let (min, max) = (from - self.max, from - self.min);
+        let (bits, by) = self.offset_from.unwrap_or((self.bits, 0));
+        // What it is offset from may be wider than what comes out.
         let width = width_for(min, max);
-        Self { bits: self.constant(width, from) - self.bits(width), min, max }
+        let subtrahend = Self { bits, ..self }.bits(width);
+        Self { bits: self.constant(width, from - by) - subtrahend, min, max, offset_from: None }
     }
 
     /// Half, rounded down.
     #[must_use]
     pub fn half(self) -> Self {
-        Self { bits: self.bits.drop_low(1), min: self.min >> 1, max: self.max >> 1 }
+        Self { bits: self.bits.drop_low(1), min: self.min >> 1, max: self.max >> 1, offset_from: None }
     }
 
     /// Twice.
     #[must_use]
     pub fn twice(self) -> Self {
-        Self { bits: self.bits.append_zeros(1), min: 2 * self.min, max: 2 * self.max }
+        Self { bits: self.bits.append_zeros(1), min: 2 * self.min, max: 2 * self.max, offset_from: None }
+    }
+
+    /// This where `condition` (1 bit) is set, else zero.
+    #[track_caller]
+    #[must_use]
+    pub fn gate(self, condition: Signal<'g>) -> Self {
+        Self { bits: self.bits.gate(condition), min: self.min.min(0), max: self.max.max(0), offset_from: None }
     }
 
     /// One more where `bit` is set.
     #[track_caller]
     #[must_use]
     pub fn plus_bit(self, bit: Signal<'g>) -> Self {
-        self.plus(Self { bits: bit.extend(2), min: 0, max: 1 })
+        self.plus(Self { bits: bit.extend(2), min: 0, max: 1, offset_from: None })
     }
 
     /// One bit: below zero.

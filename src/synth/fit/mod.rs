@@ -146,3 +146,27 @@ fn groups(sorted: &[(f64, Sample)]) -> Vec<Vec<Sample>> {
     }
     groups
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The model's structure may change after a fit: then what the file says of its points must still be what it says today.
+    #[test]
+    fn the_committed_points_are_what_the_model_says() {
+        let fit: Fit = serde_json::from_str(include_str!("../../../docs/delays-ecp5.json")).unwrap();
+        let samples = samples();
+        assert_eq!(samples.len(), fit.points.len());
+        for point in &fit.points {
+            let sample = samples.iter().find(|sample| sample.name() == point.graph).unwrap();
+            assert_eq!(sample.fitted, point.fitted, "{}", point.graph);
+            let mhz = fit.model.clock(fit.model.longest(&sample.module().unwrap()));
+            assert!(
+                (mhz / point.modelled_mhz - 1.0).abs() < 1e-9,
+                "{}: {mhz}, not {}",
+                point.graph,
+                point.modelled_mhz
+            );
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! How busy lines are: a value whose bits choose in many places comes late wherever it goes.
+
+use super::module::{Module, NodeId, Op};
+
+/// How many places each value chooses in, by node: bits of the choices, of the gates and of the differences or sums that
+/// it is the condition of.
+pub(super) fn loads(module: &Module) -> Vec<u32> {
+    let mut loads = vec![0; module.nodes.len()];
+    for node in &module.nodes {
+        let chooses = |position: usize| match node.op {
+            Op::Mux => position == 0,
+            Op::SubAdd => position == 2,
+            Op::And | Op::Or | Op::Xor => module.repeated_bit(node.operands[position]).is_some(),
+            _ => false,
+        };
+        for position in (0..node.operands.len()).filter(|&position| chooses(position)) {
+            loads[chooser(module, node.operands[position]).index()] += node.width;
+        }
+    }
+    // Its complement and its copies are as busy: a register may lie on either side of them.
+    for id in module.ids() {
+        loads[id.index()] = loads[id.index()].max(loads[chooser(module, id).index()]);
+    }
+    // And the busiest bit of what they are taken from or go into.
+    for id in module.ids() {
+        if let Op::Slice { .. } = module.node(id).op {
+            let whole = module.node(id).operands[0].index();
+            loads[whole] = loads[whole].max(loads[id.index()]);
+        }
+    }
+    for id in module.ids() {
+        if let Op::Concat = module.node(id).op {
+            let parts = module.node(id).operands.iter().map(|part| loads[part.index()]).max();
+            loads[id.index()] = loads[id.index()].max(parts.unwrap_or_default());
+        }
+    }
+    loads
+}
+
+/// The value that drives a line to many places: itself, what it is the complement of, or the bit that it repeats.
+pub(super) fn chooser(module: &Module, id: NodeId) -> NodeId {
+    match module.node(id).op {
+        Op::Not => chooser(module, module.node(id).operands[0]),
+        _ => module.repeated_bit(id).map_or(id, |bit| chooser(module, bit)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::hdl::module::Op;
+    use crate::hdl::{DelayModel, Graph};
+
+    /// A comparison of a line that chooses takes as long whichever side of the inverter it reads, alone or beside others.
+    #[test]
+    fn a_complement_is_as_busy_as_its_line() {
+        let model = DelayModel::ecp5();
+        let compared = |chooses: bool, behind: bool, beside: bool| {
+            let g = Graph::new("one");
+            let line = g.input("line", 1);
+            let condition = if chooses { line } else { g.input("another", 1) };
+            g.output("chosen", (!condition).select(g.input("a", 30), g.input("b", 30)));
+            let read = if behind { !line } else { line };
+            let read = if beside { g.input("high", 1).concat(read) } else { read };
+            g.output("less", g.input("other", read.width()).less_than(read));
+            let module = g.finish().unwrap();
+            let less = module.nodes.iter().position(|node| node.op == Op::Less).unwrap();
+            model.delays(&module)[less]
+        };
+        for beside in [false, true] {
+            let busy = compared(true, false, beside);
+            assert!(busy > compared(false, false, beside), "beside another: {beside}");
+            assert_eq!(compared(true, true, beside), busy, "beside another: {beside}");
+        }
+    }
+}
