@@ -76,6 +76,28 @@ fn records_of_16_bits_are_told_of_everywhere() {
     );
 }
 
+/// Roots and reciprocals are made by table, or digit by digit where multiplier blocks are to be spared.
+#[test]
+fn multiplier_blocks_can_be_spared() {
+    let room = tempfile::tempdir().expect("a temporary folder");
+    let rtl = ["rtl", "--shell", "line", "--interval", "1", "--out"];
+    afu(room.path(), &[&rtl[..], &["used"]].concat()).success();
+    afu(room.path(), &[&rtl[..], &["spared", "--multipliers", "spare"]].concat()).success();
+    let [used, spared] = ["used", "spared"].map(|folder| contents(&room.path().join(folder)));
+    let says = |files: &BTreeMap<String, Vec<u8>>, file: &str, what: &str| {
+        String::from_utf8_lossy(&files[file]).contains(what)
+    };
+    for root in ["fp_sqrt_e10f23z_normal.v", "fp_recip_e10f23z_normal.v"] {
+        assert!(says(&used, root, "piece_begin") && !says(&spared, root, "piece_begin"), "{root}");
+        assert!(!says(&used, root, "partial_1") && says(&spared, root, "partial_1"), "{root}");
+    }
+    let manifest: serde_json::Value = serde_json::from_slice(&spared["manifest.json"]).expect("JSON");
+    assert_eq!(manifest["config"]["multipliers"], "spare");
+    assert!(says(&spared, "scpu.v", "--multipliers spare"));
+    afu(room.path(), &["rtl", "--config", "spared", "--multipliers", "use", "--out", "again"]).success();
+    assert_eq!(contents(&room.path().join("again")), used, "use is the default, and not told of");
+}
+
 #[test]
 fn a_folder_of_somebody_else_is_refused_without_force() {
     let room = tempfile::tempdir().expect("a temporary folder");
@@ -121,9 +143,14 @@ fn what_is_not_built_yet_or_out_of_range_is_one_line_and_exit_2() {
         let said = said(&refused);
         assert!(said.starts_with("afu: ") && said.lines().count() == 1 && said.contains(word), "{said}");
     }
-    for arguments in
-        [["--record", "f8"], ["--profile", "exactly"], ["--contact", "mass"], ["--shell", "pcie"], ["--scpus", "ten"]]
-    {
+    for arguments in [
+        ["--record", "f8"],
+        ["--profile", "exactly"],
+        ["--contact", "mass"],
+        ["--multipliers", "save"],
+        ["--shell", "pcie"],
+        ["--scpus", "ten"],
+    ] {
         afu(room.path(), &[&["rtl", "--out", "out"][..], &arguments].concat()).code(2);
     }
     assert_eq!(fs::read_dir(room.path()).expect("there").count(), 0, "nothing is written");

@@ -1,7 +1,7 @@
 //! The AFU as generated today against the reference kernel, over every preset link.
 #![cfg(feature = "cosim")]
 
-use contact_afu::config::{Config, Record, Results, Shell};
+use contact_afu::config::{Config, Multipliers, Record, Results, Shell};
 use contact_afu::kernel::PairRecord;
 use contact_afu::link::LinkModel;
 use contact_afu::pairs::Set;
@@ -81,6 +81,22 @@ fn records_of_16_bits_come_back_as_the_reference_has_them() {
             assert!(verdict.outcome.contacts > 20 && verdict.outcome.invalid > 20, "{:?}", verdict.outcome.contacts);
         }
     }
+}
+
+/// Roots and reciprocals digit by digit in the place of tables: more cycles, and the same bits.
+#[test]
+fn spared_multiplier_blocks_change_no_bit() {
+    let pairs = Set::Random(3_001).pairs(5);
+    let latency = [Multipliers::Use, Multipliers::Spare].map(|multipliers| {
+        let profile = "e8f7z".parse().expect("a format");
+        let config = Config { scpus: 1, profile, multipliers, shell: Shell::Line, ..Config::default() };
+        let bench = Bench::new(&config).expect("a model");
+        let verdict = bench.run(&pairs, &LinkModel::ideal(), 1).expect("it finishes");
+        good(&verdict, &multipliers.to_string());
+        assert!(verdict.outcome.contacts > 500, "{}", verdict.outcome.contacts);
+        verdict.outcome.cycles
+    });
+    assert!(latency[0] != latency[1], "the hardware is another: {latency:?} cycles");
 }
 
 /// Only contacts, below the paper's platform: as many lines as there are contacts.

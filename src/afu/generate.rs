@@ -54,7 +54,7 @@ impl Afu {
             clock_mhz: spec.config.clock_mhz,
             interval: spec.config.interval,
             valid_is_late: spec.config.interval <= 1,
-            model: spec.delays.clone(),
+            model: spec.model(),
         })?;
         Self::around(spec, kernel)
     }

@@ -1,6 +1,6 @@
 //! What an accelerator is generated from: the configuration, and what only proofs and integrators change.
 
-use crate::config::{Config, INTERVALS};
+use crate::config::{Config, INTERVALS, Multipliers};
 use crate::hdl::{DelayModel, Reset};
 
 use super::{COUNT_BITS, Layout};
@@ -60,6 +60,11 @@ impl From<Config> for Spec {
 }
 
 impl Spec {
+    /// How long the target takes, with multiplier blocks spared where the configuration says so.
+    pub fn model(&self) -> DelayModel {
+        self.delays.clone().with_spared_multipliers(self.config.multipliers == Multipliers::Spare)
+    }
+
     /// The record layout.
     pub fn layout(&self) -> Layout {
         Layout::of(self.line_bits, &self.config).with_words_of(self.word_bits)

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use contact_afu::afu::Spec;
-use contact_afu::config::{self, Config, Input, Profile, Record, Results, Shell};
+use contact_afu::config::{self, Config, Input, Multipliers, Profile, Record, Results, Shell};
 use contact_afu::kernel::Fields;
 use contact_afu::number::{FormatError, Roots, Rounding, Subnormals};
 use contact_afu::synth::Target;
@@ -44,6 +44,10 @@ pub struct Machine {
     /// [default: f32]
     #[arg(long, value_name = "FORMAT")]
     pub record: Option<Record>,
+    /// Multiplier blocks: use, or spare (roots and reciprocals digit by digit: more logic and cycles, the same bits)
+    /// [default: use]
+    #[arg(long, value_name = "HOW")]
+    pub multipliers: Option<Multipliers>,
     /// What stands around the AFU's line port: spl2 (Intel HARP v1), line (nothing) [default: spl2]
     #[arg(long, value_name = "SHELL")]
     pub shell: Option<Shell>,
@@ -103,6 +107,7 @@ impl Machine {
         set(&mut config.results, &self.results);
         config.radius = self.radius.or(config.radius);
         set(&mut config.record, &self.record);
+        set(&mut config.multipliers, &self.multipliers);
         set(&mut config.shell, &self.shell);
         set(&mut config.clock_mhz, &self.clock);
         Ok(config)
@@ -175,6 +180,7 @@ impl One {
             ("--results", m.results.is_some()),
             ("--radius", m.radius.is_some()),
             ("--record", m.record.is_some()),
+            ("--multipliers", m.multipliers.is_some()),
             ("--shell", m.shell.is_some()),
             ("--clock", m.clock.is_some()),
             ("--target", m.target.is_some()),

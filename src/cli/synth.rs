@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use contact_afu::afu::BuildError;
-use contact_afu::config::Config;
+use contact_afu::config::{Config, Multipliers};
 use contact_afu::hdl::DelayModel;
 use contact_afu::kernel::Fields;
 use contact_afu::number::Format;
@@ -151,7 +151,7 @@ fn units(options: &Synth, config: &Config, target: Target) -> Result<Vec<Unit>, 
         [all] if all == "all" => OPERATORS.to_vec(),
         names => names.iter().map(String::as_str).collect(),
     };
-    let model = target.delays();
+    let model = target.delays().with_spared_multipliers(config.multipliers == Multipliers::Spare);
     let is_normal =
         is_normal(config.profile.arithmetic(), Fields::ALL).map_err(BuildError::from).map_err(SynthError::from)?;
     let models = if options.compare { vec![model.clone(), model.with_spared_multipliers(true)] } else { vec![model] };

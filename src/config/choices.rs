@@ -93,6 +93,22 @@ choice!(
     Bf16 = "bf16"
 );
 
+choice!(
+    /// Whether multiplier blocks serve where logic does as well. It changes no bit of a result.
+    Multipliers, "multipliers", default Use,
+    /// Roots and reciprocals by table, the fewest cycles.
+    Use = "use",
+    /// Roots and reciprocals digit by digit: for a device that runs out of multiplier blocks first.
+    Spare = "spare"
+);
+
+impl Multipliers {
+    /// Whether it is the default, which files leave out.
+    pub(super) fn are_used(&self) -> bool {
+        *self == Self::Use
+    }
+}
+
 impl Record {
     /// The format of a word.
     pub const fn format(self) -> Format {

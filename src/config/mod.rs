@@ -4,7 +4,7 @@ mod choices;
 mod file;
 mod profile;
 
-pub use choices::{Input, Record, Results, Shell};
+pub use choices::{Input, Multipliers, Record, Results, Shell};
 pub use file::{MANIFEST_SCHEMA, ReadError, read};
 pub use profile::Profile;
 
@@ -46,6 +46,9 @@ pub struct Config {
     /// The numbers of records in memory.
     #[serde(skip_serializing_if = "Record::is_f32")]
     pub record: Record,
+    /// Whether multiplier blocks are to be spared.
+    #[serde(skip_serializing_if = "Multipliers::are_used")]
+    pub multipliers: Multipliers,
     /// The shell around the line port.
     pub shell: Shell,
     /// The clock that stages are cut for, in MHz; simulated time is told in it.
@@ -63,6 +66,7 @@ impl Default for Config {
             results: Results::All,
             radius: None,
             record: Record::F32,
+            multipliers: Multipliers::Use,
             shell: Shell::Spl2,
             clock_mhz: 200.0,
         }
@@ -190,6 +194,7 @@ impl Config {
             ("--results", self.results.to_string(), default.results.to_string()),
             ("--radius", radius(self), radius(&default)),
             ("--record", self.record.to_string(), default.record.to_string()),
+            ("--multipliers", self.multipliers.to_string(), default.multipliers.to_string()),
             ("--shell", self.shell.to_string(), default.shell.to_string()),
             ("--clock", self.clock_mhz.to_string(), default.clock_mhz.to_string()),
         ];
@@ -233,6 +238,8 @@ mod tests {
         assert_eq!(Config::default().flags(), ["--interval", "1"]);
         let config = Config { scpus: 3, profile: "paper".parse().expect("a profile"), ..Config::default() };
         assert_eq!(config.flags(), ["--scpus", "3", "--interval", "1", "--profile", "paper"]);
+        let sparing = Config { multipliers: Multipliers::Spare, ..Config::default() };
+        assert_eq!(sparing.flags(), ["--interval", "1", "--multipliers", "spare"]);
     }
 
     #[test]
