@@ -8,7 +8,7 @@ use std::process::{Command, Output};
 
 use contact_afu::afu::spl2::map;
 use contact_afu::afu::{Afu, Spec, top_name};
-use contact_afu::config::{Config, Results, Shell};
+use contact_afu::config::{Config, Multipliers, Results, Shell};
 use contact_afu::kernel::{PairRecord, Reference};
 use contact_afu::pairs;
 
@@ -38,7 +38,8 @@ fn configurations() -> Vec<Config> {
     };
     vec![
         Config::shipped(),
-        Config { shell: Shell::Line, ..Config::default() },
+        Config::default(),
+        Config { shell: Shell::Line, multipliers: Multipliers::Spare, ..Config::default() },
         with("paper", "hit,depth,normal,position", 200.0),
         with("wide", "hit", 250.0),
         with("paper", "hit", 100.0),
