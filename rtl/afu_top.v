@@ -40,6 +40,9 @@ module afu_top #(
   wire rst;
 
   // ---- state ----
+  reg core_answered;
+  reg [9:0] spl_rx_hdr0_9_0_d1;
+  reg [511:0] received;
   reg in_reset;
 
   // ---- outputs of instances ----
@@ -95,10 +98,12 @@ module afu_top #(
   // ---- logic ----
   wire power_on = ~reset_n;
   wire core_gave_up = core_error == 4'd4;
-  wire core_answered = spl_rx_rd_valid & (~|spl_rx_hdr0[13:12] & (spl_rx_hdr0[11:6] == epoch));
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
+    core_answered <= spl_rx_rd_valid & (~|spl_rx_hdr0[13:12] & (spl_rx_hdr0[11:6] == epoch));
+    spl_rx_hdr0_9_0_d1 <= spl_rx_hdr0[9:0];
+    received <= spl_rx_data;
     in_reset <= power_on | spl_reset | ~spl_enable;
   end
 
@@ -214,8 +219,8 @@ module afu_top #(
     .abort_job      (sequencer_abort_job),
     .rd_req_ready   (core_rd_ready),
     .rd_rsp_valid   (core_answered),
-    .rd_rsp_tag     (spl_rx_hdr0[9:0]),
-    .rd_rsp_data    (spl_rx_data),
+    .rd_rsp_tag     (spl_rx_hdr0_9_0_d1),
+    .rd_rsp_data    (received),
     .rd_rsp_error   (1'b0),
     .wr_req_ready   (core_wr_ready),
     .wr_rsp_valid   (acknowledge_valid),

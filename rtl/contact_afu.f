@@ -2,7 +2,9 @@ spl2_transmit.v
 spl2_sequence.v
 spl2_registers.v
 contact_afu_control.v
+line_memory_64x512.v
 contact_afu_collector.v
+line_memory_256x512.v
 contact_afu_dispatcher.v
 contact_afu_packer.v
 contact_afu_feeder.v

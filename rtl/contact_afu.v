@@ -64,7 +64,6 @@ module contact_afu #(
 
   // ---- state ----
   reg [1:0] group_done;
-  reg [1:0] group_answered;
   reg [8:0] travelled;
   reg [6:0] cycles_since_reset;
   (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
@@ -103,7 +102,8 @@ module contact_afu #(
   wire [31:0] control_job_count;
   wire [3:0] control_job_epoch;
   wire [31:0] control_lines;
-  wire [9:0] control_room;
+  wire control_last_place;
+  wire control_may_enter;
   wire collector_line_valid;
   wire [511:0] collector_line;
   wire collector_response;
@@ -119,11 +119,11 @@ module contact_afu #(
   wire packer_line_valid;
   wire [511:0] packer_line;
   wire packer_done;
+  wire [1:0] entered;
   wire [1:0] feeder_issue_group;
   wire [6:0] feeder_issue_turn;
   wire [511:0] feeder_issue_pairs;
   wire take_line;
-  wire [1:0] entered;
   wire waits_for_input;
   wire waits_for_output;
   wire [SCPUS*256-1:0] slots_record_0_all;
@@ -175,11 +175,9 @@ module contact_afu #(
   always @(posedge clk) begin
     if (rst) begin
       group_done <= 2'd0;
-      group_answered <= 2'd0;
       cycles_since_reset <= 7'd0;
     end else begin
-      group_done <= group_answered;
-      group_answered <= group_out;
+      group_done <= group_out;
       cycles_since_reset <= settled ? cycles_since_reset : (cycles_since_reset + 7'd1);
     end
   end
@@ -220,7 +218,8 @@ module contact_afu #(
     .job_count        (control_job_count),
     .job_epoch        (control_job_epoch),
     .lines            (control_lines),
-    .room             (control_room)
+    .last_place       (control_last_place),
+    .may_enter        (control_may_enter)
   );
 
   contact_afu_collector collector (
@@ -265,7 +264,7 @@ module contact_afu #(
     .wr_req_address (wr_req_address),
     .wr_req_tag     (wr_req_tag),
     .wr_req_data    (wr_req_data),
-    .take           (line_left),
+    .line_left      (line_left),
     .response       (dispatcher_response),
     .failed         (write_failed),
     .asking         (dispatcher_asking),
@@ -299,15 +298,16 @@ module contact_afu #(
     .start            (control_begin_job),
     .run              (control_run),
     .scpus            (SCPUS[6:0]),
-    .count            (control_job_count),
+    .lines            (control_lines),
+    .last_place       (control_last_place),
     .line_valid       (collector_line_valid),
     .line             (collector_line),
-    .room             (control_room),
+    .may_enter        (control_may_enter),
+    .entered          (entered),
     .issue_group      (feeder_issue_group),
     .issue_turn       (feeder_issue_turn),
     .issue_pairs      (feeder_issue_pairs),
     .take             (take_line),
-    .group            (entered),
     .waits_for_input  (waits_for_input),
     .waits_for_output (waits_for_output)
   );

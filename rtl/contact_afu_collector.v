@@ -24,71 +24,92 @@ module contact_afu_collector (
   output reg  [57:0]  rd_req_address,
   output reg  [9:0]   rd_req_tag,
   output reg          line_valid,
-  output reg  [511:0] line,
+  output wire [511:0] line,
   output wire         response,
   output wire         failed,
   output wire         asking,
   output wire         idle
 );
 
-  // ---- memories ----
-  (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg [511:0] reorder [0:63];
-
   // ---- state ----
+  reg may_ask;
   reg [31:0] lines_to_request;
+  reg taken;
   reg [6:0] reserved;
   reg [57:0] next_address;
   reg [5:0] next_slot;
-  reg [63:0] filled;
+  reg [63:0] came;
+  reg two_valid;
+  reg [5:0] arrived_age;
+  reg arrived;
+  reg [5:0] oldest;
   reg [5:0] head;
   reg [6:0] outstanding;
 
   // ---- logic ----
-  wire slot_free = ~reserved[6];
   wire port_free = ~rd_req_valid | rd_req_ready;
-  wire issue = run & |lines_to_request & slot_free & port_free;
-  wire [6:0] issue_wide = {6'd0, issue};
-  wire [5:0] next_head = head + {5'd0, take};
-  wire [5:0] response_slot = rd_rsp_tag[5:0];
+  wire issue = may_ask & port_free;
+  wire may_ask_next = run & (issue ? |lines_to_request[31:1] : |lines_to_request) & ~(~taken & (reserved[6] | (&reserved[5:0] & issue)));
+  wire start_or_issue = start | issue;
+  wire oldest_goes = came[0] & ~two_valid;
+  wire [63:0] marked = came | (arrived ? (64'd1 << arrived_age) : 64'd0);
   wire [3:0] response_epoch = rd_rsp_tag[9:6];
   assign response = rd_rsp_valid & (response_epoch == epoch);
-  wire [63:0] arrived = response ? (64'd1 << response_slot) : 64'd0;
-  wire [63:0] left = take ? (64'd1 << head) : 64'd0;
+  wire [5:0] response_slot = rd_rsp_tag[5:0];
+  wire [5:0] next_oldest = oldest + {5'd0, oldest_goes};
   assign failed = response & rd_rsp_error;
-  assign idle = ~|outstanding & ~rd_req_valid;
+  assign asking = rd_req_valid | may_ask;
+  assign idle = ~|outstanding & ~rd_req_valid & ~may_ask;
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
     if (issue) rd_req_address <= next_address;
-    if (start | issue) next_address <= start ? source : (next_address + 58'd1);
+    if (start_or_issue) next_address <= start ? source : (next_address + 58'd1);
     if (issue) rd_req_tag <= {epoch, next_slot};
-    line <= reorder[next_head];
-    if (response) reorder[response_slot] <= rd_rsp_data;
+    arrived_age <= response_slot - next_oldest;
   end
   always @(posedge clk) begin
     if (rst) begin
       rd_req_valid <= 1'b0;
+      may_ask <= 1'b0;
       lines_to_request <= 32'd0;
+      taken <= 1'b0;
       reserved <= 7'd0;
       next_slot <= 6'd0;
       line_valid <= 1'b0;
-      filled <= 64'd0;
+      came <= 64'd0;
+      two_valid <= 1'b0;
+      arrived <= 1'b0;
+      oldest <= 6'd0;
       head <= 6'd0;
       outstanding <= 7'd0;
     end else begin
       rd_req_valid <= issue | (rd_req_valid & ~rd_req_ready);
-      lines_to_request <= start ? lines : (issue ? (lines_to_request - 32'd1) : lines_to_request);
-      reserved <= start ? 7'd0 : ((reserved + issue_wide) - {6'd0, take});
-      next_slot <= start ? 6'd0 : (next_slot + {5'd0, issue});
-      line_valid <= ~start & |(filled & (64'd1 << next_head));
-      filled <= start ? 64'd0 : ((filled | arrived) & ~left);
-      head <= start ? 6'd0 : next_head;
-      outstanding <= start ? 7'd0 : ((outstanding + issue_wide) - {6'd0, response});
+      may_ask <= may_ask_next;
+      if (start_or_issue) lines_to_request <= start ? lines : (lines_to_request - 32'd1);
+      taken <= take & ~start;
+      if (start | (issue ^ taken)) reserved <= start ? 7'd0 : (issue ? (reserved + 7'd1) : (reserved - 7'd1));
+      if (start_or_issue) next_slot <= start ? 6'd0 : (next_slot + 6'd1);
+      line_valid <= ~start & (oldest_goes | two_valid | (line_valid & ~take));
+      came <= start ? 64'd0 : (oldest_goes ? {1'b0, marked[63:1]} : marked);
+      two_valid <= ~start & ~take & (two_valid | (line_valid & oldest_goes));
+      arrived <= response & ~start;
+      oldest <= start ? 6'd0 : next_oldest;
+      if (start | take) head <= start ? 6'd0 : (head + 6'd1);
+      if (start | (issue ^ response)) outstanding <= start ? 7'd0 : (issue ? (outstanding + 7'd1) : (outstanding - 7'd1));
     end
   end
 
-  assign asking = rd_req_valid;
+  line_memory_64x512 reorder (
+    .clk         (clk),
+    .write       (response),
+    .write_index (response_slot),
+    .write_word  (rd_rsp_data),
+    .read_index  (head),
+    .read        (1'b1),
+    .advance     (1'b1),
+    .word        (line)
+  );
 
 endmodule
 

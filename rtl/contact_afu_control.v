@@ -42,73 +42,110 @@ module contact_afu_control (
   output reg  [31:0] job_count,
   output reg  [3:0]  job_epoch,
   output wire [31:0] lines,
-  output reg  [9:0]  room
+  output reg         last_place,
+  output reg         may_enter
 );
 
   // ---- state ----
   reg running;
   reg draining;
+  reg read_failed_heard;
+  reg write_failed_heard;
+  reg expired;
+  reg complete;
+  reg stopped;
+  reg [9:0] pairs_inside;
+  reg link_idle_heard;
+  reg given_up;
+  reg asking_heard;
   reg [31:0] job_watchdog;
   reg [31:0] silence;
-  reg [9:0] pairs_inside;
-  reg given_up;
+  reg response_heard;
+  reg [31:0] job_lines;
+  reg [9:0] room;
+  reg [9:0] room_change;
 
   // ---- logic ----
   assign busy = running | draining;
   wire accept = start & ~busy;
-  wire expired = |job_watchdog & (silence >= job_watchdog);
-  wire [3:0] cause = (|mode & accept) ? 4'd5 : ((running & abort_job) ? 4'd1 : ((running & read_failed) ? 4'd2 : ((running & write_failed) ? 4'd3 : ((running & expired) ? 4'd4 : 4'd0))));
+  wire [3:0] cause = (|mode & accept) ? 4'd5 : ((running & abort_job) ? 4'd1 : ((running & read_failed_heard) ? 4'd2 : ((running & write_failed_heard) ? 4'd3 : ((running & expired) ? 4'd4 : 4'd0))));
   assign run = running & ~begin_job;
-  wire complete = run & packer_done & dispatched & link_idle;
-  wire failing = |cause & ~complete;
-  wire drained = draining & ~|pairs_inside & (link_idle | (given_up & ~asking));
+  wire completes = run & complete;
+  wire failing = |cause & ~completes;
+  wire none_inside = ~|pairs_inside & ~|entered;
+  wire drained = draining & stopped & none_inside & (link_idle_heard | (given_up & ~asking_heard));
   wire gives_up = busy & expired;
   wire [9:0] entered_wide = {8'd0, entered};
-  wire not_waiting = response | link_idle;
+  wire not_waiting = response_heard | link_idle_heard;
   wire [3:0] failed = failing ? cause : (accept ? 4'd0 : error);
-  wire [32:0] rounded_count = {1'b0, job_count} + 33'd1;
-  assign lines = rounded_count[32:1];
+  wire [32:0] rounded_count = {1'b0, count} + 33'd1;
+  wire [9:0] next_room = room + room_change;
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
     if (accept) job_source <= source;
     if (accept) job_destination <= destination;
+    if (accept) last_place <= count[0] - 1'b1;
   end
   always @(posedge clk) begin
     if (rst) begin
       cycles_busy <= 64'd0;
       running <= 1'b0;
       draining <= 1'b0;
+      read_failed_heard <= 1'b0;
+      write_failed_heard <= 1'b0;
+      expired <= 1'b0;
+      begin_job <= 1'b0;
+      complete <= 1'b0;
+      stopped <= 1'b0;
+      pairs_inside <= 10'd0;
+      link_idle_heard <= 1'b0;
+      given_up <= 1'b0;
+      asking_heard <= 1'b0;
       job_watchdog <= 32'd0;
       silence <= 32'd0;
-      begin_job <= 1'b0;
-      pairs_inside <= 10'd0;
-      given_up <= 1'b0;
+      response_heard <= 1'b0;
       cycles_input <= 64'd0;
       cycles_output <= 64'd0;
       done <= 1'b0;
       error <= 4'd0;
       job_count <= 32'd0;
       job_epoch <= 4'd0;
+      job_lines <= 32'd0;
+      may_enter <= 1'b0;
       room <= 10'd512;
+      room_change <= 10'd0;
     end else begin
-      cycles_busy <= accept ? 64'd0 : (cycles_busy + {63'd0, busy});
-      running <= (accept & ~failing) | (running & ~complete & ~failing);
+      if (accept | busy) cycles_busy <= accept ? 64'd0 : (cycles_busy + 64'd1);
+      running <= (accept & ~failing) | (running & ~completes & ~failing);
       draining <= failing | (draining & ~drained);
+      read_failed_heard <= read_failed;
+      write_failed_heard <= write_failed;
+      expired <= busy & |job_watchdog & (silence >= job_watchdog);
+      begin_job <= accept;
+      complete <= run & packer_done & dispatched & link_idle;
+      stopped <= draining;
+      pairs_inside <= (pairs_inside + entered_wide) - {8'd0, emerged};
+      link_idle_heard <= link_idle;
+      given_up <= ~accept & (given_up | gives_up);
+      asking_heard <= asking;
       if (accept) job_watchdog <= watchdog;
       silence <= (not_waiting | ~busy) ? 32'd0 : (silence + 32'd1);
-      begin_job <= accept;
-      pairs_inside <= (pairs_inside + entered_wide) - {8'd0, emerged};
-      given_up <= ~accept & (given_up | gives_up);
-      cycles_input <= accept ? 64'd0 : (cycles_input + {63'd0, waits_for_input & running});
-      cycles_output <= accept ? 64'd0 : (cycles_output + {63'd0, waits_for_output & running});
-      done <= ~accept & (done | complete | drained);
+      response_heard <= response;
+      if (accept | (waits_for_input & running)) cycles_input <= accept ? 64'd0 : (cycles_input + 64'd1);
+      if (accept | (waits_for_output & running)) cycles_output <= accept ? 64'd0 : (cycles_output + 64'd1);
+      done <= ~accept & (done | completes | drained);
       error <= gives_up ? 4'd4 : failed;
       if (accept) job_count <= count;
       if (accept) job_epoch <= epoch;
-      room <= begin_job ? 10'd512 : ((room - entered_wide) + (line_left ? 10'd2 : 10'd0));
+      if (accept) job_lines <= rounded_count[32:1];
+      may_enter <= run & |next_room[9:3];
+      room <= begin_job ? 10'd512 : next_room;
+      room_change <= ~begin_job ? ((line_left ? 10'd2 : 10'd0) - entered_wide) : 10'd0;
     end
   end
+
+  assign lines = job_lines;
 
   // Bits that nothing needs.
   wire unused = &{1'b0, rounded_count[0]};

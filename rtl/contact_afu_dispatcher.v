@@ -22,8 +22,8 @@ module contact_afu_dispatcher (
   output reg          wr_req_valid,
   output reg  [57:0]  wr_req_address,
   output reg  [9:0]   wr_req_tag,
-  output reg  [511:0] wr_req_data,
-  output wire         take,
+  output wire [511:0] wr_req_data,
+  output reg          line_left,
   output wire         response,
   output wire         failed,
   output wire         asking,
@@ -31,68 +31,90 @@ module contact_afu_dispatcher (
   output wire         empty
 );
 
-  // ---- memories ----
-  (* ram_style = "block", ramstyle = "M20K, no_rw_check" *)
-  reg [511:0] finished [0:255];
-
   // ---- state ----
+  reg may_send;
+  reg read_valid;
   reg ready;
-  reg [63:0] busy_slots;
-  reg [5:0] next_slot;
   reg [8:0] stored;
+  reg [63:0] came;
+  reg [6:0] reserved;
+  reg [5:0] arrived_age;
+  reg arrived;
+  reg [5:0] oldest;
   reg [57:0] next_address;
-  reg [511:0] oldest;
-  reg [7:0] head;
+  reg [5:0] next_slot;
   reg [7:0] tail;
+  reg [7:0] head;
   reg [6:0] outstanding;
 
   // ---- logic ----
-  wire [63:0] next_slot_one_hot = 64'd1 << next_slot;
-  wire slot_free = ~|(busy_slots & next_slot_one_hot);
+  wire has_line = may_send & read_valid;
   wire port_free = ~wr_req_valid | wr_req_ready;
-  assign take = run & ready & slot_free & port_free;
-  wire [63:0] taken = take ? next_slot_one_hot : 64'd0;
+  wire goes = has_line & port_free;
+  wire read = ~read_valid | goes;
+  wire take = read & ready;
+  wire oldest_goes = came[0];
+  wire [63:0] marked = came | (arrived ? (64'd1 << arrived_age) : 64'd0);
   wire [3:0] response_epoch = wr_rsp_tag[9:6];
   assign response = wr_rsp_valid & (response_epoch == epoch);
-  wire [63:0] freed = response ? (64'd1 << wr_rsp_tag[5:0]) : 64'd0;
-  wire [8:0] left = stored - {8'd0, take};
-  wire [7:0] next_head = head + {7'd0, take};
+  wire [5:0] next_oldest = oldest + {5'd0, oldest_goes};
+  wire start_or_goes = start | goes;
   assign failed = response & wr_rsp_error;
-  assign idle = ~|outstanding & ~wr_req_valid;
-  assign empty = ~|stored;
+  assign asking = wr_req_valid | has_line;
+  assign idle = ~|outstanding & ~wr_req_valid & ~has_line;
+  assign empty = ~|stored & ~read_valid;
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
-    if (take) wr_req_address <= next_address;
-    if (start | take) next_address <= start ? destination : (next_address + 58'd1);
-    if (take) wr_req_tag <= {epoch, next_slot};
-    if (take) wr_req_data <= oldest;
-    oldest <= finished[next_head];
-    if (line_valid) finished[tail] <= line;
+    arrived_age <= wr_rsp_tag[5:0] - next_oldest;
+    if (goes) wr_req_address <= next_address;
+    if (start_or_goes) next_address <= start ? destination : (next_address + 58'd1);
+    if (goes) wr_req_tag <= {epoch, next_slot};
   end
   always @(posedge clk) begin
     if (rst) begin
       wr_req_valid <= 1'b0;
+      may_send <= 1'b0;
+      read_valid <= 1'b0;
       ready <= 1'b0;
-      busy_slots <= 64'd0;
-      next_slot <= 6'd0;
       stored <= 9'd0;
-      head <= 8'd0;
+      came <= 64'd0;
+      reserved <= 7'd0;
+      arrived <= 1'b0;
+      oldest <= 6'd0;
+      next_slot <= 6'd0;
       tail <= 8'd0;
+      head <= 8'd0;
+      line_left <= 1'b0;
       outstanding <= 7'd0;
     end else begin
-      wr_req_valid <= take | (wr_req_valid & ~wr_req_ready);
-      ready <= ~start & |left;
-      busy_slots <= start ? 64'd0 : ((busy_slots | taken) & ~freed);
-      next_slot <= start ? 6'd0 : (next_slot + {5'd0, take});
-      stored <= start ? 9'd0 : (left + {8'd0, line_valid});
-      head <= start ? 8'd0 : next_head;
-      tail <= start ? 8'd0 : (tail + {7'd0, line_valid});
-      outstanding <= start ? 7'd0 : ((outstanding + {6'd0, take}) - {6'd0, response});
+      wr_req_valid <= goes | (wr_req_valid & ~wr_req_ready);
+      may_send <= run & ~(~oldest_goes & (reserved[6] | (&reserved[5:0] & goes)));
+      read_valid <= ~start & (take | (read_valid & ~goes));
+      ready <= ~start & (line_valid | (|stored[8:1] | (stored[0] & ~take)));
+      if (start | (line_valid ^ take)) stored <= start ? 9'd0 : (line_valid ? (stored + 9'd1) : (stored - 9'd1));
+      came <= start ? 64'd0 : (oldest_goes ? {1'b0, marked[63:1]} : marked);
+      if (start | (goes ^ oldest_goes)) reserved <= start ? 7'd0 : (goes ? (reserved + 7'd1) : (reserved - 7'd1));
+      arrived <= response & ~start;
+      oldest <= start ? 6'd0 : next_oldest;
+      if (start_or_goes) next_slot <= start ? 6'd0 : (next_slot + 6'd1);
+      if (start | line_valid) tail <= start ? 8'd0 : (tail + 8'd1);
+      if (start | take) head <= start ? 8'd0 : (head + 8'd1);
+      line_left <= take & ~start;
+      if (start | (goes ^ response)) outstanding <= start ? 7'd0 : (goes ? (outstanding + 7'd1) : (outstanding - 7'd1));
     end
   end
 
-  assign asking = wr_req_valid;
+  line_memory_256x512 finished (
+    .clk         (clk),
+    .write       (line_valid),
+    .write_index (tail),
+    .write_word  (line),
+    .read_index  (head),
+    .read        (read),
+    .advance     (goes),
+    .word        (wr_req_data)
+  );
 
 endmodule
 

@@ -12,92 +12,129 @@ module contact_afu_feeder (
   input  wire         start,
   input  wire         run,
   input  wire [6:0]   scpus,
-  input  wire [31:0]  count,
+  input  wire [31:0]  lines,
+  input  wire         last_place,
   input  wire         line_valid,
   input  wire [511:0] line,
-  input  wire [9:0]   room,
+  input  wire         may_enter,
+  output wire [1:0]   entered,
   output reg  [1:0]   issue_group,
   output reg  [6:0]   issue_turn,
   output reg  [511:0] issue_pairs,
   output wire         take,
-  output wire [1:0]   group,
-  output wire         waits_for_input,
-  output wire         waits_for_output
+  output reg          waits_for_input,
+  output reg          waits_for_output
 );
 
   // ---- state ----
+  reg [1:0] group_rank_0;
   reg [2:0] phase;
   reg [2:0] turn_phase;
-  reg held_valid;
+  reg in_hand;
+  reg last;
   reg place;
-  reg [31:0] remaining;
   reg [6:0] turn;
+  reg any_lines_left;
+  reg one_lines_left;
+  reg [31:0] lines_left;
+  reg [1:0] group_rank_1;
+  reg [6:0] turn_d2;
+  reg [6:0] turn_d1;
+  reg first_place;
   reg [511:0] held;
+  reg takes_line;
+  reg take_d1;
+  reg place_d1;
 
   // ---- logic ----
   wire may_go = phase == turn_phase;
-  wire [1:0] reach_0 = {1'b0, place};
-  wire present_0 = held_valid & ((reach_0 < 2'd2) | line_valid);
-  wire wanted_0 = |remaining;
-  wire roomy_0 = |room;
+  wire [2:0] last_wide = {2'd0, last};
+  wire [2:0] place_wide = {2'd0, place};
+  wire last_wide_below_place_wide = last_wide < place_wide;
+  wire present_0 = ~last_wide_below_place_wide;
   wire [7:0] turn_wide = {1'b0, turn};
   wire [6:0] scpus_unless_not_scpus_below_10_unle_unless = (scpus >= 7'd40) ? 7'd40 : ((scpus >= 7'd30) ? 7'd30 : ((scpus >= 7'd20) ? 7'd20 : ((scpus >= 7'd10) ? 7'd10 : scpus)));
   wire [6:0] scpus_in_turn = (scpus >= 7'd60) ? 7'd60 : ((scpus >= 7'd50) ? 7'd50 : scpus_unless_not_scpus_below_10_unle_unless);
   wire [7:0] scpus_in_turn_wide = {1'b0, scpus_in_turn};
   wire unit_0 = turn_wide < scpus_in_turn_wide;
-  wire go_0 = run & may_go & present_0 & wanted_0 & roomy_0 & unit_0;
-  wire [1:0] reach_1 = reach_0 + 2'd1;
-  wire present_1 = held_valid & ((reach_1 < 2'd2) | line_valid);
-  wire wanted_1 = |remaining[31:1];
-  wire roomy_1 = |room[9:1];
-  wire unit_1 = ((turn_wide + 8'd1) < scpus_in_turn_wide) & (1'b0 >= turn[0]);
-  wire go_1 = go_0 & present_1 & wanted_1 & roomy_1 & unit_1;
-  assign group = {1'b0, go_0} + {1'b0, go_1};
-  wire [7:0] next_turn = turn_wide + {6'd0, group};
-  wire turn_wraps = next_turn >= scpus_in_turn_wide;
-  wire [7:0] turned = turn_wraps ? (next_turn - scpus_in_turn_wide) : next_turn;
-  wire [2:0] group_wide = {1'b0, group};
-  wire [2:0] next_place = {2'd0, place} + group_wide;
-  wire next_place_below_2 = next_place < 3'd2;
-  wire line_done = ~next_place_below_2;
-  wire [2:0] wrapped_place = line_done ? (next_place - 3'd2) : next_place;
-  assign take = line_valid & (line_done | ~held_valid);
-  wire ends_block = ({2'd0, turn[0]} + group_wide) == 3'd2;
+  wire go_0 = may_enter & may_go & in_hand & present_0 & unit_0;
+  wire [2:0] place_wide_plus_1 = place_wide + 3'd1;
+  wire last_wide_below_place_wide_plus_1 = last_wide < place_wide_plus_1;
+  wire line_comes = line_valid & any_lines_left;
+  wire next_last = one_lines_left ? last_place : 1'b1;
+  wire present_1 = ~last_wide_below_place_wide_plus_1 | (|place_wide_plus_1[2:1] & line_comes & (next_last >= place_wide_plus_1[0]));
+  wire [7:0] turn_wide_plus_1 = turn_wide + 8'd1;
+  wire turn_wide_plus_1_below = turn_wide_plus_1 < scpus_in_turn_wide;
+  wire unit_1 = turn_wide_plus_1_below & (1'b0 >= turn[0]);
+  wire go_1 = go_0 & present_1 & unit_1;
+  wire [1:0] group = go_1 ? 2'd2 : (go_0 ? 2'd1 : 2'd0);
+  wire [2:0] place_wide_plus_2 = place_wide + 3'd2;
+  wire line_done = go_1 ? (last_wide < place_wide_plus_2) : (go_0 ? last_wide_below_place_wide_plus_1 : last_wide_below_place_wide);
+  assign take = line_comes & (line_done | ~in_hand);
+  wire lines_left_31_1_any = |lines_left[31:1];
+  wire one_lines_left_next = start ? (lines[0] & ~|lines[31:1]) : (take ? (~|lines_left[31:2] & lines_left[1] & ~lines_left[0]) : (lines_left[0] & ~lines_left_31_1_any));
+  wire [7:0] turn_wide_plus_2 = turn_wide + 8'd2;
+  wire not_turn_wide_plus_2_below = turn_wide_plus_2 >= scpus_in_turn_wide;
+  wire [7:0] turn_wide_plus_2_minus_if = not_turn_wide_plus_2_below ? (turn_wide_plus_2 - scpus_in_turn_wide) : turn_wide_plus_2;
+  wire [7:0] turn_wide_plus_1_minus_if = ~turn_wide_plus_1_below ? (turn_wide_plus_1 - scpus_in_turn_wide) : turn_wide_plus_1;
+  wire [6:0] next_turn = go_1 ? turn_wide_plus_2_minus_if[6:0] : (go_0 ? turn_wide_plus_1_minus_if[6:0] : turn);
+  wire next_place = go_1 ? place_wide_plus_2[0] : (go_0 ? place_wide_plus_1[0] : place);
+  wire turn_wraps = go_1 ? not_turn_wide_plus_2_below : (go_0 ? ~turn_wide_plus_1_below : 1'b0);
+  wire [2:0] turn_0_0_wide = {2'd0, turn[0]};
+  wire ends_block = go_1 ? ((turn_0_0_wide + 3'd2) == 3'd2) : (go_0 ? ((turn_0_0_wide + 3'd1) == 3'd2) : (turn_0_0_wide == 3'd2));
   wire [1023:0] window = {line, held};
-  wire [1023:0] window_1023_256_wide_if_place = place ? {256'd0, window[1023:256]} : window;
-  wire [511:0] aligned = window_1023_256_wide_if_place[511:0];
-  wire run_and_wanted_0 = run & wanted_0;
-  assign waits_for_input = run_and_wanted_0 & ~held_valid;
-  assign waits_for_output = run_and_wanted_0 & held_valid & ~roomy_0;
+  wire [1023:0] window_1023_256_wide_if_first_place = first_place ? {256'd0, window[1023:256]} : window;
+  wire [511:0] aligned = window_1023_256_wide_if_first_place[511:0];
+  wire waits = run & (in_hand | any_lines_left);
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
-    issue_turn <= turn;
+    if (take) last <= next_last;
+    issue_turn <= turn_d2;
+    turn_d2 <= turn_d1;
+    turn_d1 <= turn;
     issue_pairs <= aligned;
-    if (take) held <= line;
+    first_place <= place_d1;
+    if (takes_line) held <= line;
+    takes_line <= take_d1;
+    take_d1 <= take;
+    place_d1 <= place;
+    waits_for_input <= waits & ~in_hand;
+    waits_for_output <= waits & in_hand & ~may_enter;
   end
   always @(posedge clk) begin
     if (rst) begin
-      issue_group <= 2'd0;
+      group_rank_0 <= 2'd0;
       phase <= 3'd0;
       turn_phase <= 3'd0;
-      held_valid <= 1'b0;
+      in_hand <= 1'b0;
       place <= 1'b0;
-      remaining <= 32'd0;
       turn <= 7'd0;
+      any_lines_left <= 1'b0;
+      one_lines_left <= 1'b0;
+      lines_left <= 32'd0;
+      issue_group <= 2'd0;
+      group_rank_1 <= 2'd0;
     end else begin
-      issue_group <= group;
+      group_rank_0 <= group;
       phase <= (phase == 3'd4) ? 3'd0 : (phase + 3'd1);
       turn_phase <= (start | turn_wraps) ? 3'd0 : (ends_block ? ((turn_phase == 3'd4) ? 3'd0 : (turn_phase + 3'd1)) : turn_phase);
-      held_valid <= ~start & (take | (held_valid & next_place_below_2));
-      place <= (start | ~held_valid) ? 1'b0 : wrapped_place[0];
-      remaining <= start ? count : (remaining - {30'd0, group});
-      turn <= start ? 7'd0 : turned[6:0];
+      in_hand <= ~start & (take | (in_hand & ~line_done));
+      place <= (start | ~in_hand) ? 1'b0 : next_place;
+      turn <= start ? 7'd0 : next_turn;
+      any_lines_left <= start ? |lines : (take ? lines_left_31_1_any : |lines_left);
+      one_lines_left <= one_lines_left_next;
+      if (start | take) lines_left <= start ? lines : (lines_left - 32'd1);
+      issue_group <= group_rank_1;
+      group_rank_1 <= group_rank_0;
     end
   end
 
+  assign entered = group_rank_0;
+
   // Bits that nothing needs.
-  wire unused = &{1'b0, turned[7], wrapped_place[2:1], window_1023_256_wide_if_place[1023:512]};
+  wire unused = &{1'b0, turn_wide_plus_2_minus_if[7], turn_wide_plus_1_minus_if[7],
+    window_1023_256_wide_if_first_place[1023:512]};
 
 endmodule
 

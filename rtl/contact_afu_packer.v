@@ -27,47 +27,71 @@ module contact_afu_packer (
 );
 
   // ---- state ----
+  reg goes;
+  reg went;
   reg place;
+  reg all_out;
   reg [31:0] emerged;
   reg [511:0] filling;
+  reg [767:0] shifted;
+  reg first_place;
+  reg emptied;
+  reg full;
+  reg fills_d1;
+  reg start_or_flushes_d1;
   reg [31:0] contact_count;
   reg [31:0] invalid_count;
   reg [31:0] first_invalid_pair;
+  reg none_invalid;
+  reg [31:0] emerged_before;
 
   // ---- logic ----
   wire [2:0] next_place = {2'd0, place} + {1'b0, group};
-  wire full = next_place >= 3'd2;
-  wire all_out = emerged == count;
-  wire flush = all_out & place & ~|group;
-  wire emptied = start | flush;
-  wire [2:0] wrapped_place = full ? (next_place - 3'd2) : next_place;
-  wire [511:0] record_1_wide = {record_1, record_0};
-  wire [767:0] shifted = place ? {record_1_wide, 256'd0} : {256'd0, record_1_wide};
+  wire fills = next_place >= 3'd2;
+  wire flushes = all_out & place & ~|group;
+  wire start_or_flushes = start | flushes;
+  wire [2:0] wrapped_place = fills ? (next_place - 3'd2) : next_place;
   wire [767:0] merged = {256'd0, filling} | shifted;
-  assign done = all_out & ~place & ~line_valid;
+  wire [511:0] record_1_wide = {record_1, record_0};
+  assign done = all_out & ~place & ~went & ~goes & ~line_valid;
   wire some_invalid = invalid_0 | invalid_1;
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
     line <= merged[511:0];
+    shifted <= first_place ? {record_1_wide, 256'd0} : {256'd0, record_1_wide};
+    first_place <= place;
+    emptied <= start_or_flushes_d1;
+    full <= fills_d1;
+    fills_d1 <= fills;
+    start_or_flushes_d1 <= start_or_flushes;
+    emerged_before <= emerged;
   end
   always @(posedge clk) begin
     if (rst) begin
       line_valid <= 1'b0;
+      goes <= 1'b0;
+      went <= 1'b0;
       place <= 1'b0;
+      all_out <= 1'b0;
       emerged <= 32'd0;
       filling <= 512'd0;
       contact_count <= 32'd0;
       invalid_count <= 32'd0;
       first_invalid_pair <= 32'hffffffff;
+      none_invalid <= 1'b1;
     end else begin
-      line_valid <= ~start & (full | flush);
-      place <= emptied ? 1'b0 : wrapped_place[0];
+      line_valid <= ~start & goes;
+      goes <= ~start & went;
+      went <= ~start & (fills | flushes);
+      place <= start_or_flushes ? 1'b0 : wrapped_place[0];
+      all_out <= ~start & (emerged == count);
       emerged <= start ? 32'd0 : (emerged + {30'd0, group});
       filling <= emptied ? 512'd0 : (full ? {256'd0, merged[767:512]} : merged[511:0]);
       contact_count <= start ? 32'd0 : (contact_count + {30'd0, {1'b0, contact_0} + {1'b0, contact_1}});
       invalid_count <= start ? 32'd0 : (invalid_count + {30'd0, {1'b0, invalid_0} + {1'b0, invalid_1}});
-      first_invalid_pair <= start ? 32'hffffffff : ((some_invalid & ~|invalid_count) ? (invalid_0 ? emerged : (emerged + 32'd1)) : first_invalid_pair);
+      first_invalid_pair <= start ? 32'hffffffff : ((some_invalid & none_invalid) ? (invalid_0 ? emerged_before : (emerged_before + 32'd1)) : first_invalid_pair);
+      none_invalid <= start | (none_invalid & ~some_invalid);
     end
   end
 

@@ -24,39 +24,53 @@ module spl2_acknowledge (
   reg [9:0] waiting [0:63];
 
   // ---- state ----
-  reg ready;
+  reg answered;
+  reg counts_0;
   reg [6:0] stored;
+  reg counts_1;
+  reg from_first;
+  reg [9:0] mdata_0_9_0_d2;
   reg [9:0] oldest;
   reg [5:0] head;
   reg [5:0] tail;
+  reg [9:0] mdata_1_9_0_d1;
+  reg [9:0] mdata_0_9_0_d1;
 
   // ---- logic ----
-  wire core_s_0 = valid_0 & (~|mdata_0[13:12] & (mdata_0[11:6] == epoch));
-  wire take = ready & ~core_s_0;
-  assign valid = core_s_0 | take;
+  wire take = |stored & ~counts_0;
   wire [6:0] left = stored - {6'd0, take};
   wire core_s_1 = valid_1 & (~|mdata_1[13:12] & (mdata_1[11:6] == epoch));
-  assign tag = core_s_0 ? mdata_0[9:0] : oldest;
-  wire [5:0] next_head = head + {5'd0, take};
+  wire core_s_0 = valid_0 & (~|mdata_0[13:12] & (mdata_0[11:6] == epoch));
+  assign tag = from_first ? mdata_0_9_0_d2 : oldest;
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
-    oldest <= waiting[next_head];
-    if (core_s_1) waiting[tail] <= mdata_1[9:0];
+    from_first <= counts_0;
+    mdata_0_9_0_d2 <= mdata_0_9_0_d1;
+    oldest <= waiting[head];
+    mdata_1_9_0_d1 <= mdata_1[9:0];
+    mdata_0_9_0_d1 <= mdata_0[9:0];
+    if (counts_1) waiting[tail] <= mdata_1_9_0_d1;
   end
   always @(posedge clk) begin
     if (rst) begin
-      ready <= 1'b0;
+      answered <= 1'b0;
+      counts_0 <= 1'b0;
       stored <= 7'd0;
+      counts_1 <= 1'b0;
       head <= 6'd0;
       tail <= 6'd0;
     end else begin
-      ready <= ~start & |left;
-      stored <= start ? 7'd0 : (left + {6'd0, core_s_1});
-      head <= start ? 6'd0 : next_head;
-      tail <= start ? 6'd0 : (tail + {5'd0, core_s_1});
+      answered <= ~start & (counts_0 | take);
+      counts_0 <= core_s_0 & ~start;
+      stored <= start ? 7'd0 : (left + {6'd0, counts_1});
+      counts_1 <= core_s_1 & ~start;
+      head <= start ? 6'd0 : (head + {5'd0, take});
+      tail <= start ? 6'd0 : (tail + {5'd0, counts_1});
     end
   end
+
+  assign valid = answered;
 
 endmodule
 

@@ -40,116 +40,160 @@ module spl2_sequence (
   output wire [31:0]  watchdog,
   output wire         abort_job,
   output wire         wr_valid,
-  output wire         wr_fence,
-  output wire         wr_virtual,
-  output wire [57:0]  wr_address,
-  output wire [511:0] wr_data
+  output reg          wr_fence,
+  output reg          wr_virtual,
+  output reg  [57:0]  wr_address,
+  output reg  [511:0] wr_data
 );
 
   // ---- state ----
-  reg [3:0] state;
+  reg asks;
+  reg at_context;
+  reg at_poll;
+  reg at_run;
   reg waiting;
   reg [9:0] pause;
-  reg [11:0] expected;
+  reg answered;
+  reg has_start_word;
   reg some_job;
+  reg is_other;
+  reg [511:0] received;
   reg [31:0] job_sequence;
+  reg [511:0] compared;
+  reg is_own;
+  reg [11:0] expected;
   reg [16:0] age;
-  reg refused;
+  reg at_start;
+  reg not_buffer_lines_wide_below_source_lines_d1;
+  reg not_buffer_lines_wide_below_d1;
   reg [31:0] buffer_lines;
-  reg [32:0] source_lines;
   reg [32:0] destination_lines;
   reg [31:0] job_count;
+  reg [32:0] source_lines;
+  reg at_compare;
+  reg at_measure;
+  reg at_status;
+  reg at_latency;
+  reg at_performance;
+  reg at_fence;
+  reg refused;
+  reg at_idle;
   reg [57:0] source_line;
   reg [57:0] destination_line;
   reg [3:0] job_mode;
   reg [31:0] job_watchdog;
   reg abort;
+  reg has_abort;
+  reg writes;
   reg [31:0] first_write;
   reg [31:0] first_read;
   reg [31:0] since_start;
+  reg read_now;
   reg read_seen;
+  reg write_now;
   reg write_seen;
 
   // ---- logic ----
-  wire at_context = state == 4'd1;
-  wire at_poll = state == 4'd2;
-  wire at_run = state == 4'd5;
   wire pause_any = |pause;
-  wire asks = (at_context | at_poll | at_run) & ~waiting & ~pause_any;
-  wire answered = rsp_valid & waiting & ((rsp_mdata[13:12] == 2'd1) & (rsp_mdata[11:0] == expected));
-  wire has_start_word = rsp_data[31:0] == 32'h406cccff;
-  wire is_new = ~some_job | (rsp_data[127:96] != job_sequence);
+  wire is_new = ~some_job | is_other;
   wire got_job = at_poll & answered & has_start_word & is_new;
   wire runs = got_job | at_run;
   wire overdue = waiting & age[16];
-  wire at_status = state == 4'd9;
-  wire at_latency = state == 4'd6;
-  wire at_performance = state == 4'd7;
+  wire fits = not_buffer_lines_wide_below_source_lines_d1 & not_buffer_lines_wide_below_d1;
+  assign start = at_start & fits;
+  wire [32:0] buffer_lines_wide = {1'b0, buffer_lines};
+  wire [32:0] job_count_wide_plus_1 = {1'b0, job_count} + 33'd1;
+  wire [32:0] job_count_wide_plus_1_32_1_wide = {1'b0, job_count_wide_plus_1[32:1]};
+  wire got_context = at_context & answered;
   wire to_dsm = at_latency | at_performance;
-  wire at_fence = state == 4'd8;
   wire gave_up = core_error == 4'd4;
   wire ran = ~refused;
   wire fences = at_fence & ~(gave_up & ran);
   wire written = wr_granted | (to_dsm & ~dsm_valid) | (at_fence & ~fences);
-  wire at_start = state == 4'd4;
-  wire [32:0] buffer_lines_wide = {1'b0, buffer_lines};
-  wire fits = (buffer_lines_wide >= source_lines) & (buffer_lines_wide >= destination_lines);
   wire at_start_and_not_fits = at_start & ~fits;
-  assign start = at_start & fits;
-  wire at_measure = state == 4'd3;
-  wire got_context = at_context & answered;
-  wire at_idle = state == 4'd0;
-  wire [3:0] next_of_beginning = at_start_and_not_fits ? 4'd6 : (start ? 4'd5 : (at_measure ? 4'd4 : (got_job ? 4'd3 : (got_context ? 4'd2 : ((at_idle & context_valid) ? 4'd1 : state)))));
-  wire [3:0] next_state = (at_status & written) ? 4'd2 : ((at_fence & written) ? 4'd9 : ((at_performance & written) ? 4'd8 : ((at_latency & written) ? 4'd7 : ((at_run & core_done) ? 4'd6 : next_of_beginning))));
-  wire [32:0] job_count_wide_plus_1 = {1'b0, job_count} + 33'd1;
-  wire [32:0] job_count_wide_plus_1_32_1_wide = {1'b0, job_count_wide_plus_1[32:1]};
   wire [57:0] address = at_context ? context_line : source_line;
   wire [57:0] first_pairs = source_line + 58'd1;
-  wire aborts = answered & |rsp_data[159:128] & runs;
-  assign wr_valid = (to_dsm & dsm_valid) | fences | at_status;
-  assign wr_virtual = ~to_dsm;
-  assign wr_address = to_dsm ? (at_latency ? {dsm_line[57:6], 6'd4} : {dsm_line[57:6], 6'd5}) : (context_line + 58'd1);
+  wire aborts = answered & has_abort & runs;
   wire [63:0] ran_wide = {64{ran}};
   wire [31:0] ran_wide_2 = {32{ran}};
-  assign wr_data = to_dsm ? (at_latency ? {416'd0, {job_sequence, first_write, first_read}} : {288'd0, {job_sequence, cycles_output & ran_wide, cycles_input & ran_wide, cycles_busy & ran_wide}}) : {128'd0, {128'hf885f92148fc4b0b8fd1f127a3a0b8e2, capability, 32'd1, first_invalid | {32{refused}}, invalid & ran_wide_2, contacts & ran_wide_2, job_sequence, 20'd0, ran ? core_error : 4'd8, 7'd0, 1'b1}};
-  wire [31:0] since_start_plus_1 = since_start + 32'd1;
+  wire [511:0] job_sequence_wide_wide_if_at_latency_if = to_dsm ? (at_latency ? {416'd0, {job_sequence, first_write, first_read}} : {288'd0, {job_sequence, cycles_output & ran_wide, cycles_input & ran_wide, cycles_busy & ran_wide}}) : {128'd0, {128'hf885f92148fc4b0b8fd1f127a3a0b8e2, capability, 32'd1, first_invalid | {32{refused}}, invalid & ran_wide_2, contacts & ran_wide_2, job_sequence, 20'd0, ran ? core_error : 4'd8, 7'd0, 1'b1}};
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
+    has_start_word <= received[31:0] == 32'h406cccff;
+    is_other <= received[127:96] != job_sequence;
+    received <= rsp_data;
+    if (got_job) job_sequence <= compared[127:96];
+    compared <= received;
+    is_own <= rsp_valid & ((rsp_mdata[13:12] == 2'd1) & (rsp_mdata[11:0] == expected));
     if (rd_granted) expected <= read_number;
-    if (got_job) job_sequence <= rsp_data[127:96];
     age <= rd_granted ? 17'd0 : (age + 17'd1);
-    if (got_context) buffer_lines <= rsp_data[223:192];
-    source_lines <= job_count_wide_plus_1_32_1_wide + 33'd1;
+    not_buffer_lines_wide_below_source_lines_d1 <= buffer_lines_wide >= source_lines;
+    not_buffer_lines_wide_below_d1 <= buffer_lines_wide >= destination_lines;
+    if (got_context) buffer_lines <= compared[223:192];
     destination_lines <= job_count_wide_plus_1_32_1_wide;
-    if (got_job) job_count <= rsp_data[63:32];
-    if (got_context) source_line <= rsp_data[127:70];
-    if (got_context) destination_line <= rsp_data[191:134];
-    if (got_job) job_mode <= rsp_data[67:64] | {3'd0, |rsp_data[95:68]};
-    if (got_job) job_watchdog <= rsp_data[191:160];
-    if (at_start | ~write_seen) first_write <= at_start ? 32'd0 : (core_write_asked ? since_start_plus_1 : 32'd0);
-    if (at_start | ~read_seen) first_read <= at_start ? 32'd0 : (core_read_answered ? since_start_plus_1 : 32'd0);
-    since_start <= start ? 32'd0 : since_start_plus_1;
+    if (got_job) job_count <= compared[63:32];
+    source_lines <= job_count_wide_plus_1_32_1_wide + 33'd1;
+    if (got_context) source_line <= compared[127:70];
+    if (got_context) destination_line <= compared[191:134];
+    if (got_job) job_mode <= compared[67:64] | {3'd0, |compared[95:68]};
+    if (got_job) job_watchdog <= compared[191:160];
+    has_abort <= |received[159:128];
+    wr_fence <= at_fence;
+    wr_virtual <= ~to_dsm;
+    wr_address <= to_dsm ? (at_latency ? {dsm_line[57:6], 6'd4} : {dsm_line[57:6], 6'd5}) : (context_line + 58'd1);
+    wr_data <= job_sequence_wide_wide_if_at_latency_if;
+    if (at_start | ~write_seen) first_write <= (write_now & ~at_start) ? since_start : 32'd0;
+    if (at_start | ~read_seen) first_read <= (read_now & ~at_start) ? since_start : 32'd0;
+    since_start <= start ? 32'd0 : (since_start + 32'd1);
+    read_now <= core_read_answered;
+    write_now <= core_write_asked;
   end
   always @(posedge clk) begin
     if (rst) begin
-      state <= 4'd0;
+      asks <= 1'b0;
+      at_context <= 1'b0;
+      at_poll <= 1'b0;
+      at_run <= 1'b0;
       waiting <= 1'b0;
       pause <= 10'd0;
+      answered <= 1'b0;
       some_job <= 1'b0;
+      at_start <= 1'b0;
+      at_compare <= 1'b0;
+      at_measure <= 1'b0;
+      at_status <= 1'b0;
+      at_latency <= 1'b0;
+      at_performance <= 1'b0;
+      at_fence <= 1'b0;
       refused <= 1'b0;
+      at_idle <= 1'b1;
       abort <= 1'b0;
+      writes <= 1'b0;
       read_seen <= 1'b0;
       write_seen <= 1'b0;
     end else begin
-      state <= next_state;
+      asks <= (at_context | at_poll | at_run) & ~waiting & ~rd_granted & ~pause_any;
+      at_context <= (at_idle & context_valid) | (at_context & ~answered);
+      at_poll <= got_context | (at_status & written) | (at_poll & ~got_job);
+      at_run <= start | (at_run & ~core_done);
       waiting <= rd_granted | (waiting & ~answered & ~overdue);
       pause <= (answered & ~at_context) ? (runs ? 10'd512 : 10'd32) : (pause_any ? (pause - 10'd1) : pause);
+      answered <= is_own & waiting & ~answered;
       some_job <= some_job | got_job;
+      at_start <= at_compare;
+      at_compare <= at_measure;
+      at_measure <= got_job;
+      at_status <= (at_fence & written) | (at_status & ~written);
+      at_latency <= at_start_and_not_fits | (at_run & core_done) | (at_latency & ~written);
+      at_performance <= (at_latency & written) | (at_performance & ~written);
+      at_fence <= (at_performance & written) | (at_fence & ~written);
       refused <= at_start_and_not_fits | (refused & ~at_start);
+      at_idle <= at_idle & ~context_valid;
       abort <= aborts | (abort & ~got_job);
-      read_seen <= ~at_start & (read_seen | (at_run & core_read_answered));
-      write_seen <= ~at_start & (write_seen | (at_run & core_write_asked));
+      writes <= ((to_dsm & dsm_valid) | fences | at_status) & ~written;
+      read_seen <= ~at_start & (read_seen | (at_run & read_now));
+      write_seen <= ~at_start & (write_seen | (at_run & write_now));
     end
   end
 
@@ -161,10 +205,11 @@ module spl2_sequence (
   assign mode = job_mode;
   assign watchdog = job_watchdog;
   assign abort_job = abort;
-  assign wr_fence = at_fence;
+  assign wr_valid = writes;
 
   // Bits that nothing needs.
-  wire unused = &{1'b0, rsp_data[511:224], job_count_wide_plus_1[0], dsm_line[5:0]};
+  wire unused = &{1'b0, compared[31:0], compared[133:128], compared[511:224],
+    job_count_wide_plus_1[0], dsm_line[5:0]};
 
 endmodule
 

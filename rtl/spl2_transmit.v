@@ -46,36 +46,59 @@ module spl2_transmit (
 );
 
   // ---- state ----
+  reg own_rd_turn;
+  reg rd_room;
+  reg core_rd_turn;
+  reg discards;
+  reg own_wr_turn;
+  reg wr_room;
+  reg is_register;
+  reg core_wr_turn;
+  reg [98:0] own_header;
   reg [11:0] write_number;
+  reg [511:0] own_data;
 
   // ---- logic ----
   wire [5:0] next_epoch = epoch + {5'd0, start};
   assign core_epoch = next_epoch[3:0];
-  assign own_rd_granted = own_rd_valid & ~rd_almostfull;
   wire [11:0] not_power_on_wide = {12{~power_on}};
-  assign core_rd_ready = discard | (~own_rd_valid & ~rd_almostfull);
-  assign register_wr_granted = register_wr_valid & ~wr_almostfull;
-  assign end_wr_granted = end_wr_valid & ~register_wr_valid & ~wr_almostfull;
-  wire own_write = register_wr_valid | end_wr_valid;
-  assign core_wr_ready = discard | (~own_write & ~wr_almostfull);
-  wire reading = own_rd_granted | (core_rd_ready & core_rd_valid & ~discard);
-  wire [57:0] own_rd_address_if_own_rd_valid = own_rd_valid ? own_rd_address : core_rd_address;
-  wire register_wr_granted_or = register_wr_granted | end_wr_granted;
-  wire writing = register_wr_granted_or | (core_wr_ready & core_wr_valid & ~discard);
-  wire [57:0] register_wr_address_if = register_wr_valid ? register_wr_address : (end_wr_valid ? end_wr_address : core_wr_address);
+  assign own_rd_granted = own_rd_valid & (own_rd_turn & rd_room);
+  wire own_rd_waits = own_rd_valid & ~own_rd_granted;
+  wire own_wr_turn_and_wr_room = own_wr_turn & wr_room;
+  assign register_wr_granted = own_wr_turn_and_wr_room & is_register & register_wr_valid;
+  assign end_wr_granted = own_wr_turn_and_wr_room & ~is_register & end_wr_valid;
+  wire own_granted = register_wr_granted | end_wr_granted;
+  wire own_wr_waits = (register_wr_valid | end_wr_valid) & ~own_granted;
+  wire reading = own_rd_granted | (core_rd_turn & core_rd_valid & ~discards);
+  wire [57:0] own_rd_address_if_own_rd_granted = own_rd_granted ? own_rd_address : core_rd_address;
+  wire writing = own_granted | (core_wr_turn & core_wr_valid & ~discards);
+  wire [57:0] register_wr_address_if = register_wr_valid ? register_wr_address : end_wr_address;
   wire is_fence = end_wr_fence & ~register_wr_valid;
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
     epoch <= ~power_on ? next_epoch : 6'd0;
-    read_number <= (read_number + {11'd0, own_rd_granted}) & not_power_on_wide;
+    if (own_rd_granted | power_on) read_number <= (read_number + 12'd1) & not_power_on_wide;
+    own_rd_turn <= own_rd_waits & ~power_on;
+    rd_room <= ~rd_almostfull;
+    core_rd_turn <= discards | (~own_rd_waits & ~rd_almostfull);
+    discards <= discard;
+    own_wr_turn <= own_wr_waits & ~power_on;
+    wr_room <= ~wr_almostfull;
+    is_register <= register_wr_valid;
+    core_wr_turn <= discards | (~own_wr_waits & ~wr_almostfull);
     tx_rd_valid <= reading & ~power_on;
-    if (reading) tx_rd_hdr <= {6'd1, own_rd_address_if_own_rd_valid[57:32], 1'b1, 10'd0, 4'd4, 6'd0, own_rd_address_if_own_rd_valid[31:0], own_rd_valid ? {2'd1, read_number} : {2'd0, {epoch, core_rd_tag[5:0]}}};
+    tx_rd_hdr <= {6'd1, own_rd_address_if_own_rd_granted[57:32], 1'b1, 10'd0, 4'd4, 6'd0, own_rd_address_if_own_rd_granted[31:0], own_rd_granted ? {2'd1, read_number} : {2'd0, {epoch, core_rd_tag[5:0]}}};
     tx_wr_valid <= writing & ~power_on;
-    if (writing) tx_wr_hdr <= {6'd1, register_wr_address_if[57:32], register_wr_valid ? 1'b0 : (end_wr_valid ? end_wr_virtual : 1'b1), 10'd0, is_fence ? 4'd5 : 4'd2, 6'd0, register_wr_address_if[31:0], own_write ? {2'd1, write_number} : {2'd0, {epoch, core_wr_tag[5:0]}}};
-    write_number <= (write_number + {11'd0, register_wr_granted_or}) & not_power_on_wide;
-    if (writing) tx_data <= register_wr_valid ? register_wr_data : (end_wr_valid ? end_wr_data : core_wr_data);
+    tx_wr_hdr <= own_wr_turn ? own_header : {6'd1, core_wr_address[57:32], 1'b1, 10'd0, 4'd2, 6'd0, core_wr_address[31:0], {2'd0, {epoch, core_wr_tag[5:0]}}};
+    own_header <= {6'd1, register_wr_address_if[57:32], register_wr_valid ? 1'b0 : end_wr_virtual, 10'd0, is_fence ? 4'd5 : 4'd2, 6'd0, register_wr_address_if[31:0], {2'd1, write_number}};
+    if (own_granted | power_on) write_number <= (write_number + 12'd1) & not_power_on_wide;
+    tx_data <= own_wr_turn ? own_data : core_wr_data;
+    own_data <= register_wr_valid ? register_wr_data : end_wr_data;
   end
+
+  assign core_rd_ready = core_rd_turn;
+  assign core_wr_ready = core_wr_turn;
 
   // Bits that nothing needs.
   wire unused = &{1'b0, core_rd_tag[9:6], core_wr_tag[9:6]};

@@ -233,7 +233,7 @@ fn a_job_that_does_not_finish_is_exit_1_and_says_what_it_waits_for() {
     let file = room.path().join("rtl/contact_afu_dispatcher.v");
     let text = fs::read_to_string(&file).expect("written");
     // Lines pile up and none is ever offered.
-    let faulty = text.replacen("wr_req_valid <= take |", "wr_req_valid <= 1'b0 & take |", 1);
+    let faulty = text.replacen("wr_req_valid <= goes |", "wr_req_valid <= 1'b0 & goes |", 1);
     assert_ne!(text, faulty, "the place to break is there:\n{text}");
     fs::write(&file, faulty).expect("written");
 

@@ -55,9 +55,9 @@ pub(super) fn backlog(spec: &Spec, places: u32) -> Result<Arc<Module>, Errors> {
     group_out.next(group.gate(!start));
     graph.output("group", group_out.value());
     for (lane, entry) in leaves.into_iter().take(leaving as usize).enumerate() {
-        // The packer merges what comes: a lane without a contact is zero.
+        // The packer hears of their number a cycle before, and merges what comes: a lane without a contact is zero.
         let taken = group.greater_than(group.same(lane as u128));
-        graph.output(&format!("record_{lane}"), entry.gate(taken).delay(1).named(&format!("leaving_{lane}")));
+        graph.output(&format!("record_{lane}"), entry.gate(taken).delay(2).named(&format!("leaving_{lane}")));
     }
     graph.output("empty", !stored.any() & !group_out.any());
     graph.finish()

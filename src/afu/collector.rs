@@ -2,17 +2,22 @@
 //!
 //! A line's slot in the reorder memory is the low part of its number and the low part of its request's tag; the
 //! upper part of the tag is the job's epoch, by which responses to an earlier job are known and dropped.
+//!
+//! A line comes [two cycles](super::lines) after it was offered, whatever is taken in the meantime.
 
 use std::sync::Arc;
 
-use crate::hdl::{Errors, Graph, Module, Signal};
+use crate::hdl::{Errors, Graph, Module, Register, Signal};
 
+use super::countdown::Countdown;
+use super::in_order::{self, Arrival, goes_in_order};
+use super::lines::{Access, LineMemory};
 use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, Spec};
 
 /// From the first cycle in which it runs to its first request.
-pub(super) const CYCLES_TO_REQUEST: u32 = 1;
-/// From a response to the line offered, if it is the next in order.
-pub(super) const CYCLES_TO_LINE: u32 = 2;
+pub(super) const CYCLES_TO_REQUEST: u32 = 2;
+/// From a response to the line offered, if it is the next in order: known to have come, and its turn.
+pub(super) const CYCLES_TO_LINE: u32 = in_order::CYCLES_TO_COME + 1;
 
 /// Builds the module `contact_afu_collector`.
 pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, Errors> {
@@ -34,7 +39,7 @@ pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let response_error = graph.input("rd_rsp_error", 1);
 
     // Requests: one for each free slot, in order of lines.
-    let remaining = graph.register("lines_to_request", COUNT_BITS, 0);
+    let remaining = Countdown::new(&graph, "lines_to_request", COUNT_BITS);
     let next_address = graph.data_register("next_address", ADDRESS_BITS);
     let next_slot = graph.register("next_slot", slot_bits, 0);
     let reserved = graph.register("reserved", slot_bits + 1, 0);
@@ -43,50 +48,69 @@ pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let request_tag = graph.data_register("rd_req_tag", EPOCH_BITS + slot_bits);
 
     let port_free = (!*request_valid | request_ready).named("port_free");
-    let slot_free = (!reserved.msb()).named("slot_free");
-    let issue = (run & remaining.any() & slot_free & port_free).named("issue");
+    // Whether one may go is known a cycle before.
+    let may_ask = graph.register("may_ask", 1, 0);
+    let issue = (*may_ask & port_free).named("issue");
     request_valid.next(issue | (*request_valid & !request_ready));
     request_address.next_if(issue, next_address.value());
     request_tag.next_if(issue, epoch.concat(next_slot.value()));
-    remaining.next(start.select(lines, issue.select(remaining.minus(1), *remaining)));
+    let some_left = remaining.connect(start, lines, issue);
     next_address.next_if(start | issue, start.select(source, next_address.plus(1)));
-    next_slot.next(start.select(next_slot.same(0), next_slot.value() + issue.extend(slot_bits)));
-    reserved.next(start.select(reserved.same(0), up_down(*reserved, issue, take)));
+    next_slot.next_if(start | issue, start.select(next_slot.same(0), next_slot.plus(1)));
+    // A slot is free a cycle after its line was taken.
+    let taken = graph.register("taken", 1, 0);
+    taken.next(take & !start);
+    up_down(reserved, start, issue, *taken);
+    may_ask.next(run & some_left & !all_used(reserved, issue, *taken));
 
     // Responses: into the slot the tag names.
     let response_epoch = response_tag.high(EPOCH_BITS).named("response_epoch");
     let response = (response_valid & response_epoch.equals(epoch)).named("response");
     let response_slot = response_tag.low(slot_bits).named("response_slot");
-    let store = graph.memory("reorder", slots, spec.line_bits);
-    store.write(response, response_slot, response_data);
     let outstanding = graph.register("outstanding", slot_bits + 1, 0);
-    outstanding.next(start.select(outstanding.same(0), up_down(*outstanding, issue, response)));
+    up_down(outstanding, start, issue, response);
 
-    // Lines leave in order: the slot at the head, once it is filled. The memory's registered read runs one line ahead.
-    let head = graph.register("head", slot_bits, 0);
-    let next_head = (head.value() + take.extend(slot_bits)).named("next_head");
-    head.next(start.select(head.same(0), next_head));
-    let filled = graph.register("filled", slots, 0);
-    let arrived = response_slot.one_hot().gate(response).named("arrived");
-    let left = head.one_hot().gate(take).named("left");
-    filled.next(start.select(filled.same(0), (*filled | arrived) & !left));
+    // Lines are offered in order, up to two ahead of the one that is taken: so whether there is one never waits for what
+    // is taken.
     let line_valid = graph.register("line_valid", 1, 0);
-    line_valid.next(!start & (*filled & next_head.one_hot()).any());
+    let two_valid = graph.register("two_valid", 1, 0);
+    let arrival = Arrival { valid: response, slot: response_slot };
+    let offers = goes_in_order(&graph, slots, start, &arrival, !*two_valid);
+    two_valid.next(!start & !take & (*two_valid | (*line_valid & offers)));
+    line_valid.next(!start & (offers | *two_valid | (*line_valid & !take)));
+    let head = graph.register("head", slot_bits, 0);
+    head.next_if(start | take, start.select(head.same(0), head.plus(1)));
+    let always = graph.constant(1, 1);
+    let access = Access {
+        write: response,
+        write_index: response_slot,
+        line: response_data,
+        read: always,
+        read_index: head.value(),
+        advance: always,
+    };
+    let line = LineMemory::new(spec, slots)?.instance(&graph, "reorder", &access);
 
     graph.output("rd_req_valid", request_valid.value());
     graph.output("rd_req_address", request_address.value());
     graph.output("rd_req_tag", request_tag.value());
     graph.output("line_valid", line_valid.value());
-    graph.output("line", store.read(next_head).named("line"));
+    graph.output("line", line);
     graph.output("response", response);
     graph.output("failed", response & response_error);
-    graph.output("asking", request_valid.value());
-    graph.output("idle", !outstanding.any() & !*request_valid);
+    graph.output("asking", *request_valid | *may_ask);
+    graph.output("idle", !outstanding.any() & !*request_valid & !*may_ask);
     graph.finish()
 }
 
-/// A counter that one event takes up and another down.
-pub(super) fn up_down<'g>(count: Signal<'g>, up: Signal<'g>, down: Signal<'g>) -> Signal<'g> {
-    let width = count.width();
-    count + up.extend(width) - down.extend(width)
+/// Connects a counter, from 0 at `start`, that one event takes up and another down: which comes last.
+pub(super) fn up_down<'g>(count: Register<'g>, start: Signal<'g>, up: Signal<'g>, down: Signal<'g>) {
+    let moved = up.select(count.plus(1), count.minus(1));
+    count.next_if(start | (up ^ down), start.select(count.same(0), moved));
+}
+
+/// Whether all of a power of two slots are used after a cycle, of which `reserved` are at its beginning.
+pub(super) fn all_used<'g>(reserved: Register<'g>, takes: Signal<'g>, frees: Signal<'g>) -> Signal<'g> {
+    let slots = reserved.width() - 1;
+    !frees & (reserved.msb() | (reserved.low(slots).all() & takes))
 }

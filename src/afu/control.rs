@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::config::Results;
 use crate::hdl::{Errors, Graph, Module};
 
-use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, Spec};
+use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, Spec, feeder};
 
 /// How a job ended, as the port `error` tells it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,7 +37,7 @@ const CYCLE_BITS: u32 = 64;
 /// From the cycle in which `start` is high to the first in which the parts run.
 pub(super) const CYCLES_TO_RUN: u32 = 2;
 /// From the cycle in which nothing is left to do to `done`.
-pub(super) const CYCLES_TO_DONE: u32 = 1;
+pub(super) const CYCLES_TO_DONE: u32 = 2;
 
 /// Builds the module `contact_afu_control`; `capacity` is the number of results there is room for.
 pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, Errors> {
@@ -54,11 +54,16 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, Errors>
     let epoch = graph.input("epoch", EPOCH_BITS);
     let watchdog = graph.input("watchdog", COUNT_BITS);
     let abort = graph.input("abort_job", 1);
-    let read_failed = graph.input("read_failed", 1);
-    let write_failed = graph.input("write_failed", 1);
-    let response = graph.input("response", 1);
-    let link_idle = graph.input("link_idle", 1);
-    let asking = graph.input("asking", 1);
+    // What comes from afar is heard a cycle later.
+    let heard = |name: &str| {
+        let register = graph.register(&format!("{name}_heard"), 1, 0);
+        register.next(graph.input(name, 1));
+        register.value()
+    };
+    let [read_failed, write_failed] = ["read_failed", "write_failed"].map(heard);
+    let response = heard("response");
+    let link_idle_now = graph.input("link_idle", 1);
+    let asking = heard("asking");
     let packed = graph.input("packer_done", 1);
     let dispatched = graph.input("dispatched", 1);
     let entered = graph.input("entered", spec.group_bits());
@@ -74,11 +79,12 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, Errors>
     let draining = graph.register("draining", 1, 0);
     let done = graph.register("done", 1, 0);
     let error = graph.register("error", ERROR_BITS, 0);
+    let begin = graph.register("begin_job", 1, 0);
+    let run = (*running & !*begin).named("run");
     let busy = (*running | *draining).named("busy");
     let accept = (start & !busy).named("accept");
 
     // The job, held from its start; everything downstream begins a cycle later.
-    let begin = graph.register("begin_job", 1, 0);
     begin.next(accept);
     let job_source = graph.data_register("job_source", ADDRESS_BITS);
     job_source.next_if(accept, source);
@@ -92,8 +98,12 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, Errors>
     job_watchdog.next_if(accept, watchdog);
     let per_line = layout.pairs_per_line();
     let shift = per_line.ilog2();
-    let rounded = job_count.extend(COUNT_BITS + 1).plus(u128::from(per_line - 1)).named("rounded_count");
-    let lines = rounded.drop_low(shift).extend(COUNT_BITS + 1).low(COUNT_BITS).named("lines");
+    let rounded = count.extend(COUNT_BITS + 1).plus(u128::from(per_line - 1)).named("rounded_count");
+    let job_lines = graph.register("job_lines", COUNT_BITS, 0);
+    job_lines.next_if(accept, rounded.drop_low(shift).extend(COUNT_BITS + 1).low(COUNT_BITS));
+    let last_place = graph.data_register("last_place", shift.max(1));
+    let fewer = count.low(shift.max(1)).minus(1);
+    last_place.next_if(accept, if shift == 0 { fewer.same(0) } else { fewer });
 
     // Pairs inside, and room for results: a pair takes its place when it enters, a line frees its places when it
     // leaves for memory. Where only contacts come back, a pair that is none frees its place as soon as that is known,
@@ -103,24 +113,35 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, Errors>
         Results::All => graph.constant(room_bits, u128::from(layout.contacts_per_line())).gate(freed),
         Results::Hits => freed.extend(room_bits),
     };
-    room.next(begin.select(room.same(u128::from(capacity)), room.value() - entered.extend(room_bits) + returned));
+    let change = graph.register("room_change", room_bits, 0);
+    change.next((returned - entered.extend(room_bits)).gate(!*begin));
+    let next_room = (room.value() + change.value()).named("next_room");
+    room.next(begin.select(room.same(u128::from(capacity)), next_room));
+    // Whether a group may enter, whatever those before it were that do not show yet.
+    let may_enter = graph.register("may_enter", 1, 0);
+    may_enter.next(run & next_room.drop_low(room_to_enter(spec).ilog2()).any());
     let inside = graph.register("pairs_inside", room_bits, 0);
     inside.next(inside.value() + entered.extend(room_bits) - emerged.extend(room_bits));
 
     // Watchdog: cycles since the last response while one is owed.
     let silence = graph.register("silence", COUNT_BITS, 0);
-    let quiet = (response | link_idle).named("not_waiting");
+    let link_idle = graph.register("link_idle_heard", 1, 0);
+    link_idle.next(link_idle_now);
+    let quiet = (response | *link_idle).named("not_waiting");
     silence.next((quiet | !busy).select(silence.same(0), silence.plus(1)));
-    let expired = (job_watchdog.any() & silence.at_least(*job_watchdog)).named("expired");
+    let expired = graph.register("expired", 1, 0);
+    expired.next(busy & job_watchdog.any() & silence.at_least(*job_watchdog));
 
     // The end.
-    let complete = (*running & !*begin & packed & dispatched & link_idle).named("complete");
+    let complete = graph.register("complete", 1, 0);
+    complete.next(run & packed & dispatched & link_idle_now);
+    let complete = (run & *complete).named("completes");
     let causes = [
         (mode.any() & accept, JobError::Mode),
         (*running & abort, JobError::Aborted),
         (*running & read_failed, JobError::Read),
         (*running & write_failed, JobError::Write),
-        (*running & expired, JobError::Watchdog),
+        (*running & *expired, JobError::Watchdog),
     ];
     let mut cause = graph.constant(ERROR_BITS, 0);
     for (condition, code) in causes.into_iter().rev() {
@@ -129,11 +150,15 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, Errors>
     let cause = cause.named("cause");
     let failing = (cause.any() & !complete).named("failing");
     // Whatever else went wrong, this is what the host must know: late responses may still come, and late writes.
-    let gives_up = (busy & expired).named("gives_up");
+    let gives_up = (busy & *expired).named("gives_up");
     let given_up = graph.register("given_up", 1, 0);
     given_up.next(!accept & (*given_up | gives_up));
-    // A request on the port stays until it is accepted, even if nobody waits for its response any more.
-    let drained = (*draining & !inside.any() & (link_idle | (*given_up & !asking))).named("drained");
+    // What runs hears a cycle later that it should not; a request on the port stays until it is accepted, even if nobody
+    // waits for its response any more.
+    let stopped = graph.register("stopped", 1, 0);
+    stopped.next(*draining);
+    let empty = (!inside.any() & !entered.any()).named("none_inside");
+    let drained = (*draining & *stopped & empty & (*link_idle | (*given_up & !asking))).named("drained");
     running.next((accept & !failing) | (*running & !complete & !failing));
     draining.next(failing | (*draining & !drained));
     done.next(!accept & (*done | complete | drained));
@@ -156,24 +181,31 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, Errors>
         ("cycles_output", waits_for_output & *running),
     ] {
         let counter = graph.register(name, CYCLE_BITS, 0);
-        counter.next(accept.select(counter.same(0), counter.value() + counts.extend(CYCLE_BITS)));
+        counter.next_if(accept | counts, accept.select(counter.same(0), counter.plus(1)));
         graph.output(name, counter.value());
     }
     graph.output("busy", busy);
     graph.output("done", done.value());
     graph.output("error", error.value());
     graph.output("begin_job", begin.value());
-    graph.output("run", (*running & !*begin).named("run"));
+    graph.output("run", run);
     graph.output("job_source", job_source.value());
     graph.output("job_destination", job_destination.value());
     graph.output("job_count", job_count.value());
     graph.output("job_epoch", job_epoch.value());
-    graph.output("lines", lines);
-    graph.output("room", room.value());
+    graph.output("lines", job_lines.value());
+    graph.output("last_place", last_place.value());
+    graph.output("may_enter", may_enter.value());
     graph.finish()
 }
 
+/// Results that there must be room for when a group enters, a power of two: its own, and those of the groups before it that
+/// do not show yet.
+pub(super) fn room_to_enter(spec: &Spec) -> u32 {
+    spec.lanes() * feeder::UNSEEN_GROUPS.next_power_of_two()
+}
+
 /// Bits that hold a number of results up to `capacity`.
-pub(super) fn room_bits(capacity: u32) -> u32 {
+fn room_bits(capacity: u32) -> u32 {
     capacity.ilog2() + 1
 }

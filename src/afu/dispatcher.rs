@@ -10,7 +10,10 @@ use std::sync::Arc;
 use crate::config::Results;
 use crate::hdl::{Errors, Graph, Module};
 
-use super::collector::up_down;
+use super::collector::{all_used, up_down};
+use super::countdown::Countdown;
+use super::in_order::{Arrival, goes_in_order};
+use super::lines::{Access, LineMemory};
 use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, Spec};
 
 /// From a line to its write request: stored, at the head, registered.
@@ -38,78 +41,84 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, Errors>
     let response_error = graph.input("wr_rsp_error", 1);
     let bounded = spec.config.results == Results::Hits;
 
-    // Finished lines wait in a memory; its registered read runs one line ahead. It cannot overflow: a pair enters
-    // an SCPU only when its result has a place here.
-    let store = graph.memory("finished", depth, spec.line_bits);
+    // Finished lines wait in a memory, the oldest of them read already. It cannot overflow: a pair enters an SCPU only when
+    // its result has a place here.
     let tail = graph.register("tail", place_bits, 0);
     let head = graph.register("head", place_bits, 0);
     let stored = graph.register("stored", place_bits + 1, 0);
     let ready = graph.register("ready", 1, 0);
-    let take = graph.wire("take", 1);
-    store.write(line_valid, tail.value(), line);
-    tail.next(start.select(tail.same(0), tail.value() + line_valid.extend(place_bits)));
-    let next_head = (head.value() + take.extend(place_bits)).named("next_head");
-    head.next(start.select(head.same(0), next_head));
-    let left = (stored.value() - take.extend(place_bits + 1)).named("left");
-    let next_stored = start.select(stored.same(0), left + line_valid.extend(place_bits + 1));
-    stored.next(next_stored);
-    ready.next(!start & left.any());
+    let read_valid = graph.register("read_valid", 1, 0);
+    let goes = graph.wire("goes", 1);
+    let read = (!*read_valid | goes).named("read");
+    let take = (read & *ready).named("take");
+    tail.next_if(start | line_valid, start.select(tail.same(0), tail.plus(1)));
+    head.next_if(start | take, start.select(head.same(0), head.plus(1)));
+    up_down(stored, start, line_valid, take);
+    let some_left = stored.drop_low(1).any() | (stored.bit(0) & !take);
+    ready.next(!start & (line_valid | some_left));
+    read_valid.next(!start & (take | (*read_valid & !goes)));
 
-    // Write requests.
+    // Write requests. Whether one may be sent is known a cycle before.
     let next_address = graph.data_register("next_address", ADDRESS_BITS);
     let next_slot = graph.register("next_slot", slot_bits, 0);
-    let busy = graph.register("busy_slots", slots, 0);
+    let reserved = graph.register("reserved", slot_bits + 1, 0);
+    let may_send = graph.register("may_send", 1, 0);
     let request_valid = graph.register("wr_req_valid", 1, 0);
     let request_address = graph.data_register("wr_req_address", ADDRESS_BITS);
     let request_tag = graph.data_register("wr_req_tag", EPOCH_BITS + slot_bits);
-    let request_data = graph.data_register("wr_req_data", spec.line_bits);
-    let slot_free = (!(*busy & next_slot.one_hot()).any()).named("slot_free");
     let port_free = (!*request_valid | request_ready).named("port_free");
-    take.drive(run & *ready & slot_free & port_free);
+    let has_line = (*may_send & *read_valid).named("has_line");
+    goes.drive(has_line & port_free);
     let send = if bounded {
         let lines = graph.input("lines", COUNT_BITS);
-        let room = graph.register("lines_of_room", COUNT_BITS, 0);
-        let fits = room.any().named("fits");
-        let send = (take & fits).named("send");
-        room.next(start.select(lines, room.value() - send.extend(COUNT_BITS)));
+        let room = Countdown::new(&graph, "lines_of_room", COUNT_BITS);
+        let fits = room.any;
+        let send = (goes & fits).named("send");
+        room.connect(start, lines, send);
         let overflowed = graph.register("overflowed", 1, 0);
-        overflowed.next(!start & (*overflowed | take & !fits));
+        overflowed.next(!start & (*overflowed | goes & !fits));
         graph.output("overflowed", overflowed.value());
         // The packer hears a few cycles before the memory is full: lines are still on their way then.
         let accepts = graph.register("accepts", 1, 0);
-        accepts.next(!next_stored.high(2).any());
+        accepts.next(!stored.high(2).any());
         graph.output("accepts", accepts.value());
         send
     } else {
-        take
+        goes
     };
     request_valid.next(send | (*request_valid & !request_ready));
     request_address.next_if(send, next_address.value());
     request_tag.next_if(send, epoch.concat(next_slot.value()));
-    request_data.next_if(send, store.read(next_head).named("oldest"));
+    // The memory's own register is the port's.
+    let access =
+        Access { write: line_valid, write_index: tail.value(), line, read, read_index: head.value(), advance: send };
+    let request_data = LineMemory::new(spec, depth)?.instance(&graph, "finished", &access);
     next_address.next_if(start | send, start.select(destination, next_address.plus(1)));
-    next_slot.next(start.select(next_slot.same(0), next_slot.value() + send.extend(slot_bits)));
+    next_slot.next_if(start | send, start.select(next_slot.same(0), next_slot.plus(1)));
 
     // Acknowledgements, in any order.
     let response_epoch = response_tag.high(EPOCH_BITS).named("response_epoch");
     let response = (response_valid & response_epoch.equals(epoch)).named("response");
-    let taken = next_slot.one_hot().gate(send).named("taken");
-    let freed = response_tag.low(slot_bits).one_hot().gate(response).named("freed");
-    busy.next(start.select(busy.same(0), (*busy | taken) & !freed));
+    let arrival = Arrival { valid: response, slot: response_tag.low(slot_bits) };
+    let freed = goes_in_order(&graph, slots, start, &arrival, graph.constant(1, 1));
+    up_down(reserved, start, send, freed);
+    may_send.next(run & !all_used(reserved, send, freed));
     let outstanding = graph.register("outstanding", slot_bits + 1, 0);
-    outstanding.next(start.select(outstanding.same(0), up_down(*outstanding, send, response)));
+    up_down(outstanding, start, send, response);
 
     graph.output("wr_req_valid", request_valid.value());
     graph.output("wr_req_address", request_address.value());
     graph.output("wr_req_tag", request_tag.value());
-    graph.output("wr_req_data", request_data.value());
+    graph.output("wr_req_data", request_data);
     if !bounded {
-        graph.output("take", take);
+        let line_left = graph.register("line_left", 1, 0);
+        line_left.next(take & !start);
+        graph.output("line_left", line_left.value());
     }
     graph.output("response", response);
     graph.output("failed", response & response_error);
-    graph.output("asking", request_valid.value());
-    graph.output("idle", !outstanding.any() & !*request_valid);
-    graph.output("empty", !stored.any());
+    graph.output("asking", *request_valid | has_line);
+    graph.output("idle", !outstanding.any() & !*request_valid & !has_line);
+    graph.output("empty", !stored.any() & !*read_valid);
     graph.finish()
 }

@@ -6,14 +6,21 @@ use std::sync::Arc;
 
 use crate::hdl::{Errors, Graph, Module, Signal};
 
+use super::countdown::Countdown;
+use super::lines::CYCLES_TO_WORD;
 use super::rounds::Rounds;
 use super::{COUNT_BITS, SCPU_BITS, Spec};
 
-/// From a line offered to a group of its pairs on their way to the slots: the line in hand, the group registered.
-pub(super) const CYCLES_TO_ISSUE: u32 = 2;
+/// Register ranks from the decision which pairs go to them on their way: its data come as late as lines do, and are
+/// registered.
+const RANKS: u32 = CYCLES_TO_WORD + 1;
+/// From a line offered to a group of its pairs on their way to the slots: the line in hand, and the decision's ranks.
+pub(super) const CYCLES_TO_ISSUE: u32 = 1 + RANKS;
+/// Groups that do not show yet in whether there is room when one is decided, that one among them.
+pub(super) const UNSEEN_GROUPS: u32 = 3;
 
-/// Builds the module `contact_afu_feeder`. `room_bits` holds the number of results there is room for.
-pub(super) fn feeder(spec: &Spec, room_bits: u32) -> Result<Arc<Module>, Errors> {
+/// Builds the module `contact_afu_feeder`.
+pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let graph = Graph::new("contact_afu_feeder");
     graph.about("hands pairs to the SCPUs in turn, only when there is room for their results");
     let layout = spec.layout();
@@ -23,78 +30,112 @@ pub(super) fn feeder(spec: &Spec, room_bits: u32) -> Result<Arc<Module>, Errors>
     let start = graph.input("start", 1);
     let run = graph.input("run", 1);
     let scpus = graph.input("scpus", SCPU_BITS);
-    let count = graph.input("count", COUNT_BITS);
-    let line_valid = graph.input("line_valid", 1);
+    let lines = graph.input("lines", COUNT_BITS);
+    let last_place = graph.input("last_place", place_bits);
+    let offered = graph.input("line_valid", 1);
     let line = graph.input("line", spec.line_bits);
-    let room = graph.input("room", room_bits);
+    let may_enter = graph.input("may_enter", 1);
 
-    // A window of two lines: the one in hand, and the one the collector offers.
-    let held = graph.data_register("held", spec.line_bits);
-    let held_valid = graph.register("held_valid", 1, 0);
+    // A window of two lines: the one in hand, and the one the collector offers. What they hold comes later; here are the
+    // places in the one in hand of the next pair and of the last.
+    let in_hand = graph.register("in_hand", 1, 0);
     let place = graph.register("place", place_bits, 0);
-    let remaining = graph.register("remaining", COUNT_BITS, 0);
+    let last = graph.data_register("last", place_bits);
     let turn = graph.register("turn", SCPU_BITS, 0);
+    let lines_left = Countdown::new(&graph, "lines_left", COUNT_BITS);
+    let (some_left, last_is_next) = (lines_left.any, lines_left.one);
+    // Whatever a link brings that nobody asked for: no more than the job's.
+    let line_valid = (offered & some_left).named("line_comes");
+    let of_full = graph.constant(place_bits, u128::from(per_line - 1));
+    let next_last = last_is_next.select(last_place, of_full).named("next_last");
 
     // Lane j carries a pair when all lanes before it do.
     let rounds = Rounds::new(&graph, spec, scpus, turn.value());
-    let mut going = rounds.as_ref().map_or(run, |rounds| run & rounds.may_go);
+    let after = |pairs: u32| place.extend(place_bits + 2).plus(u128::from(pairs));
+    let beyond = |pairs: u32| after(pairs).greater_than(last.extend(place_bits + 2));
+    let mut going = rounds.as_ref().map_or(may_enter, |rounds| may_enter & rounds.may_go) & *in_hand;
     let mut go = Vec::new();
     for lane in 0..lanes {
-        let reach = place.extend(place_bits + 1).plus(u128::from(lane)).named(&format!("reach_{lane}"));
-        let in_held = reach.less_than(reach.same(u128::from(per_line)));
-        let present = (*held_valid & (in_held | line_valid)).named(&format!("present_{lane}"));
-        let wanted = more_than(remaining.value(), lane).named(&format!("wanted_{lane}"));
-        let roomy = more_than(room, lane).named(&format!("roomy_{lane}"));
+        let reach = after(lane);
+        let is_next = reach.drop_low(place_bits).any() & line_valid & reach.low(place_bits).at_most(next_last);
+        let is_next = if lane == 0 { graph.constant(1, 0) } else { is_next };
+        let present = (!beyond(lane) | is_next).named(&format!("present_{lane}"));
         let unit = rounds.as_ref().map_or_else(|| more_than(scpus, lane), |rounds| rounds.admits(lane));
         let unit = unit.named(&format!("unit_{lane}"));
-        going = (going & present & wanted & roomy & unit).named(&format!("go_{lane}"));
+        going = (going & present & unit).named(&format!("go_{lane}"));
         go.push(going);
     }
     let group_bits = spec.group_bits();
-    let group = go.iter().fold(graph.constant(group_bits, 0), |sum, go| sum + go.extend(group_bits)).named("group");
+    let group = by_group(&go, |pairs| graph.constant(group_bits, pairs.into())).named("group");
 
-    // The pairs of the window, from `place` on.
-    let window = line.concat(held.value()).named("window");
-    let mut aligned = window;
+    let line_done = by_group(&go, beyond).named("line_done");
+    let take = (line_valid & (line_done | !*in_hand)).named("take");
+    in_hand.next(!start & (take | (*in_hand & !line_done)));
+    last.next_if(take, next_last);
+    // In the next line, where the one in hand is done; after the last there is none, and it does not matter.
+    let place_after = |pairs: u32| if per_line == 1 { place.same(0) } else { after(pairs).low(place_bits) };
+    let next_place = by_group(&go, place_after).named("next_place");
+    place.next((start | !*in_hand).select(place.same(0), next_place));
+    lines_left.connect(start, lines, take);
+
+    let all = rounds.as_ref().map_or(scpus, |rounds| rounds.scpus).extend(SCPU_BITS + 1);
+    let turn_after = |pairs: u32| turn.extend(SCPU_BITS + 1).plus(u128::from(pairs));
+    let wraps_after = |pairs: u32| match pairs {
+        0 => graph.constant(1, 0),
+        _ => turn_after(pairs).at_least(all),
+    };
+    let next_turn = by_group(&go, |pairs| {
+        let next = turn_after(pairs);
+        wraps_after(pairs).select(next - all, next).low(SCPU_BITS)
+    });
+    turn.next(start.select(turn.same(0), next_turn.named("next_turn")));
+    if let Some(rounds) = &rounds {
+        rounds.advance(
+            start,
+            by_group(&go, |pairs| rounds.ends_block(pairs)),
+            by_group(&go, wraps_after).named("turn_wraps"),
+        );
+    }
+
+    // The window itself, as late as lines come, and its pairs from the decision's place on.
+    let held = graph.data_register("held", spec.line_bits);
+    held.next_if(take.delay(CYCLES_TO_WORD).named("takes_line"), line);
+    let first_place = place.delay(CYCLES_TO_WORD).named("first_place");
+    let mut aligned = line.concat(held.value()).named("window");
     for bit in (0..place_bits).rev() {
         let step = pair_bits << bit;
         if step < aligned.width() {
             let shifted = aligned.drop_low(step).extend(aligned.width());
-            aligned = place.bit(bit).select(shifted, aligned);
+            aligned = first_place.bit(bit).select(shifted, aligned);
         }
     }
     let aligned = aligned.low(lanes * pair_bits).named("aligned");
 
-    let sum_bits = place_bits.max(group_bits) + 1;
-    let next_place = (place.extend(sum_bits) + group.extend(sum_bits)).named("next_place");
-    let line_done = next_place.at_least(next_place.same(u128::from(per_line))).named("line_done");
-    let take = (line_valid & (line_done | !*held_valid)).named("take");
-    held.next_if(take, line);
-    held_valid.next(!start & (take | (*held_valid & !line_done)));
-    let wrapped = line_done.select(next_place.minus(u128::from(per_line)), next_place).named("wrapped_place");
-    place.next((start | !*held_valid).select(place.same(0), wrapped.low(place_bits)));
-    remaining.next(start.select(count, remaining.value() - group.extend(COUNT_BITS)));
-
-    let next_turn = (turn.extend(SCPU_BITS + 1) + group.extend(SCPU_BITS + 1)).named("next_turn");
-    let all = rounds.as_ref().map_or(scpus, |rounds| rounds.scpus).extend(SCPU_BITS + 1);
-    let turn_wraps = next_turn.at_least(all).named("turn_wraps");
-    let turned = turn_wraps.select(next_turn - all, next_turn).named("turned");
-    turn.next(start.select(turn.same(0), turned.low(SCPU_BITS)));
-    if let Some(rounds) = &rounds {
-        rounds.advance(start, group, turn_wraps);
-    }
-
     // Registered towards the slots.
-    let group_out = graph.register("issue_group", group_bits, 0);
-    group_out.next(group);
-    graph.output("issue_group", group_out.value());
-    graph.output("issue_turn", turn.delay(1).named("issue_turn"));
+    let ranks = (0..RANKS).scan(group, |before, rank| {
+        let last = rank + 1 == RANKS;
+        let name = if last { "issue_group".to_owned() } else { format!("group_rank_{rank}") };
+        let register = graph.register(&name, group_bits, 0);
+        register.next(*before);
+        *before = register.value();
+        Some(*before)
+    });
+    let ranks: Vec<_> = ranks.collect();
+    graph.output("entered", ranks[0]);
+    graph.output("issue_group", ranks[RANKS as usize - 1]);
+    graph.output("issue_turn", turn.delay(RANKS).named("issue_turn"));
     graph.output("issue_pairs", aligned.delay(1).named("issue_pairs"));
     graph.output("take", take);
-    graph.output("group", group);
-    graph.output("waits_for_input", run & remaining.any() & !*held_valid);
-    graph.output("waits_for_output", run & remaining.any() & *held_valid & !room.any());
+    let waits = (run & (*in_hand | some_left)).named("waits");
+    graph.output("waits_for_input", (waits & !*in_hand).delay(1));
+    graph.output("waits_for_output", (waits & *in_hand & !may_enter).delay(1));
     graph.finish()
+}
+
+/// What `of` the number of pairs comes to that go. What each number would come to is known beforehand; which it is comes
+/// last.
+fn by_group<'g>(go: &[Signal<'g>], of: impl Fn(u32) -> Signal<'g>) -> Signal<'g> {
+    (1..).zip(go).fold(of(0), |fewer, (pairs, go)| go.select(of(pairs), fewer))
 }
 
 /// One bit: `value` > `lane`, for a small lane: no carry chain over the whole width.

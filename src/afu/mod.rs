@@ -6,11 +6,14 @@
 mod backlog;
 mod collector;
 mod control;
+mod countdown;
 mod dispatcher;
 mod feeder;
 mod files;
 mod generate;
+mod in_order;
 mod layout;
+mod lines;
 mod packer;
 mod results;
 mod rounds;

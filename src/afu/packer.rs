@@ -8,10 +8,12 @@ use crate::hdl::{Errors, Graph, Module, Signal};
 
 use super::{COUNT_BITS, Spec, status};
 
-/// From a group to the line that it fills.
-pub(super) const CYCLES_TO_LINE: u32 = 1;
+/// From a group's records to the line that they fill: shifted to their place, merged.
+pub(super) const CYCLES_TO_LINE: u32 = 2;
 /// As many more for a last line that is not full.
-pub(super) const CYCLES_TO_FLUSH: u32 = 1;
+pub(super) const CYCLES_TO_FLUSH: u32 = 2;
+/// To what is known of a job without pairs: that all has come.
+pub(super) const CYCLES_TO_NOTHING: u32 = 1;
 
 /// Builds the module `contact_afu_packer`.
 pub(super) fn packer(spec: &Spec) -> Result<Arc<Module>, Errors> {
@@ -40,13 +42,15 @@ fn of_all(spec: &Spec) -> Result<Arc<Module>, Errors> {
     }
     let emerged = graph.register("emerged", COUNT_BITS, 0);
     emerged.next(start.select(emerged.same(0), emerged.value() + group.extend(COUNT_BITS)));
-    let all_out = emerged.equals(count).named("all_out");
-    fill(&graph, spec, start, group, records, all_out);
-    status::count(&graph, start, *emerged, &contacts, &invalids);
+    let all_out = graph.register("all_out", 1, 0);
+    all_out.next(!start & emerged.equals(count));
+    fill(&graph, spec, start, group, records, *all_out);
+    status::count(&graph, start, emerged.delay(1).named("emerged_before"), &contacts, &invalids);
     graph.finish()
 }
 
-/// Contacts of a cycle in order of pairs, each a record with its number; `all_out` when no more will come.
+/// Contacts of a cycle in order of pairs, each a record with its number, a cycle after how many they are; `all_out` when no
+/// more will come.
 fn of_hits(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let graph = Graph::new("contact_afu_packer");
     graph.about("packs contacts into destination lines");
@@ -62,18 +66,21 @@ fn of_hits(spec: &Spec) -> Result<Arc<Module>, Errors> {
     if layout.contacts_per_line() == 1 {
         // A record is a line: there is nothing to gather.
         let line_valid = graph.register("line_valid", 1, 0);
-        line_valid.next(!start & group);
+        let comes = graph.register("line_comes", 1, 0);
+        comes.next(!start & group);
+        line_valid.next(!start & *comes);
         graph.output("line_valid", line_valid.value());
         graph.output("line", records[0].delay(1).named("line"));
-        graph.output("done", all_out & !*line_valid);
+        graph.output("done", all_out & !*comes & !*line_valid);
     } else {
         fill(&graph, spec, start, group, records, all_out);
     }
     graph.finish()
 }
 
-/// Packs the first `group` of `records` (as wide as in a line) behind those before them, as the outputs `line_valid`,
-/// `line` and `done`. At most as many as share a line come in one cycle. Once `all_out`, the line in hand goes out.
+/// Packs the first `group` of `records` (as wide as in a line), which come a cycle after their number, behind those before
+/// them, as the outputs `line_valid`, `line` and `done`. At most as many as share a line come in one cycle. Once `all_out`,
+/// the line in hand goes out.
 fn fill<'g>(
     graph: &'g Graph,
     spec: &Spec,
@@ -86,34 +93,43 @@ fn fill<'g>(
     let (lanes, record_bits, per_line) = (records.len() as u32, layout.contact_bits(), layout.contacts_per_line());
     let place_bits = per_line.ilog2().max(1);
 
-    // The line being filled, and a group shifted to the first free place in it.
-    let filling = graph.register("filling", spec.line_bits, 0);
+    // Where a group goes is decided before its records come.
     let place = graph.register("place", place_bits, 0);
+    let sum_bits = place_bits.max(group.width()) + 1;
+    let next_place = (place.extend(sum_bits) + group.extend(sum_bits)).named("next_place");
+    let fills = next_place.at_least(next_place.same(u128::from(per_line))).named("fills");
+    // After the last record the line in hand goes out as it is, its unused part zero.
+    let flushes = (all_out & place.any() & !group.any()).named("flushes");
+    let wrapped = fills.select(next_place.minus(u128::from(per_line)), next_place).named("wrapped_place");
+    place.next((start | flushes).select(place.same(0), wrapped.low(place_bits)));
+    let flag = |name: &str, next: Signal<'g>| {
+        let register = graph.register(name, 1, 0);
+        register.next(next);
+        register.value()
+    };
+    let went = flag("went", !start & (fills | flushes));
+    let goes = flag("goes", !start & went);
+    let full = fills.delay(2).named("full");
+    let emptied = (start | flushes).delay(2).named("emptied");
+    let first_place = place.delay(1).named("first_place");
+
+    // A group is shifted to its place in the line, and a cycle later merged with what is in the line.
+    let filling = graph.register("filling", spec.line_bits, 0);
     records.reverse();
     let mut shifted = Signal::join(&records).extend(spec.line_bits + (lanes - 1) * record_bits);
     for bit in 0..place_bits {
         let step = record_bits << bit;
         if step < shifted.width() {
             let moved = shifted.low(shifted.width() - step).append_zeros(step);
-            shifted = place.bit(bit).select(moved, shifted);
+            shifted = first_place.bit(bit).select(moved, shifted);
         }
     }
-    let merged = (filling.extend(shifted.width()) | shifted.named("shifted")).named("merged");
-    let sum_bits = place_bits.max(group.width()) + 1;
-    let next_place = (place.extend(sum_bits) + group.extend(sum_bits)).named("next_place");
-    let full = next_place.at_least(next_place.same(u128::from(per_line))).named("full");
+    let merged = (filling.extend(shifted.width()) | shifted.delay(1).named("shifted")).named("merged");
     let over = if lanes == 1 { filling.same(0) } else { merged.drop_low(spec.line_bits).extend(spec.line_bits) };
-
-    // After the last record the line in hand goes out as it is, its unused part zero.
-    let flush = (all_out & place.any() & !group.any()).named("flush");
-    let emptied = (start | flush).named("emptied");
     let kept = full.select(over, merged.low(spec.line_bits));
     filling.next(emptied.select(filling.same(0), kept));
-    let wrapped = full.select(next_place.minus(u128::from(per_line)), next_place).named("wrapped_place");
-    place.next(emptied.select(place.same(0), wrapped.low(place_bits)));
-    let line_valid = graph.register("line_valid", 1, 0);
-    line_valid.next(!start & (full | flush));
-    graph.output("line_valid", line_valid.value());
+    let line_valid = flag("line_valid", !start & goes);
+    graph.output("line_valid", line_valid);
     graph.output("line", merged.low(spec.line_bits).delay(1).named("line"));
-    graph.output("done", all_out & !place.any() & !*line_valid);
+    graph.output("done", all_out & !place.any() & !went & !goes & !line_valid);
 }

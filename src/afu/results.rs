@@ -5,7 +5,8 @@ use std::sync::Arc;
 use crate::config::Results;
 use crate::hdl::{Errors, Graph, Instantiated, Module, Signal};
 
-use super::{Spec, backlog, packer, sieve};
+use super::control::room_to_enter;
+use super::{Spec, backlog, feeder, packer, sieve};
 
 /// How much there is room for.
 #[derive(Clone, Copy, Debug)]
@@ -21,15 +22,19 @@ impl Room {
     pub(super) fn of(spec: &Spec, slot_latency: u32) -> Self {
         let layout = spec.layout();
         // Results that are in the SCPUs or wait for their write request, and some more to ride out a stall of the link.
-        let in_flight = (slot_latency + spec.dispatch_cycles) * spec.lanes();
+        let in_flight = (feeder::CYCLES_TO_ISSUE + slot_latency + spec.dispatch_cycles) * spec.lanes();
         let least_lines = spec.dispatch_cycles.next_power_of_two();
         match spec.config.results {
             Results::All => {
                 let lines = in_flight.div_ceil(layout.contacts_per_line()) + spec.dispatch_cycles / 2;
-                let lines = lines.next_power_of_two().max(least_lines);
+                // A line that waits for more must not keep them out.
+                let least = (room_to_enter(spec) + layout.contacts_per_line()).div_ceil(layout.contacts_per_line());
+                let lines = lines.max(least).next_power_of_two().max(least_lines);
                 Self { results: lines * layout.contacts_per_line(), lines }
             }
-            Results::Hits => Self { results: in_flight.next_power_of_two(), lines: least_lines },
+            Results::Hits => {
+                Self { results: in_flight.max(room_to_enter(spec)).next_power_of_two(), lines: least_lines }
+            }
         }
     }
 }
@@ -59,7 +64,7 @@ impl Parts {
         Ok(Self { packer: packer::packer(spec)?, before })
     }
 
-    /// The instances. `lanes` has the slots' outputs by name; `accepts` is high while the dispatcher has room for more.
+    /// The instances. `lanes` has the slots' outputs by name, which come a cycle after their number, `group`; `accepts` is high while the dispatcher has room for more.
     pub(super) fn instances<'g>(
         &self,
         graph: &'g Graph,

@@ -54,15 +54,16 @@ impl<'g> Rounds<'g> {
         }
     }
 
-    /// Takes the next turn's phase along: `wraps` when turns begin anew with this `group`.
-    pub fn advance(&self, start: Signal<'g>, group: Signal<'g>, wraps: Signal<'g>) {
-        let ends_block = match self.within() {
-            None => group.any(),
-            Some(within) => {
-                let width = group.width() + 1;
-                (within.extend(width) + group.extend(width)).is(u128::from(self.lanes))
-            }
-        };
+    /// Whether a group of so many pairs is the last of its block.
+    pub fn ends_block(&self, pairs: u32) -> Signal<'g> {
+        match self.within() {
+            None => self.graph.constant(1, u128::from(pairs > 0)),
+            Some(within) => within.extend(within.width() + 2).plus(u128::from(pairs)).is(u128::from(self.lanes)),
+        }
+    }
+
+    /// Takes the next turn's phase along: `wraps` when turns begin anew with this group, `ends_block` when its block ends.
+    pub fn advance(&self, start: Signal<'g>, ends_block: Signal<'g>, wraps: Signal<'g>) {
         let moved = ends_block.named("ends_block").select(following(*self.turn_phase, self.interval), *self.turn_phase);
         let first = self.graph.constant(moved.width(), 0);
         self.turn_phase.next((start | wraps).select(first, moved));

@@ -29,7 +29,12 @@ pub(super) fn sieve(spec: &Spec) -> Result<Arc<Module>, Errors> {
 
     let start = graph.input("start", 1);
     let count = graph.input("count", COUNT_BITS);
-    let group = graph.input("group", group_bits);
+    // It comes a cycle before what it counts.
+    let group = {
+        let register = graph.register("group_here", group_bits, 0);
+        register.next(graph.input("group", group_bits));
+        register.value()
+    };
     let mut records = Vec::new();
     let mut contacts = Vec::new();
     let mut invalids = Vec::new();
@@ -81,7 +86,9 @@ pub(super) fn sieve(spec: &Spec) -> Result<Arc<Module>, Errors> {
         graph.output(&format!("entry_{lane}"), contact.entry);
     }
     graph.output("dropped", dropped.value());
-    graph.output("all_out", emerged.equals(count) & !on_its_way);
+    let all_seen = graph.register("all_seen", 1, 0);
+    all_seen.next(!start & emerged.equals(count));
+    graph.output("all_out", *all_seen & !on_its_way);
     status::count(&graph, start, *emerged, &contacts, &invalids);
     graph.finish()
 }

@@ -19,13 +19,14 @@ pub(super) fn count<'g>(
     let first_invalid = graph.register("first_invalid_pair", COUNT_BITS, u128::from(u32::MAX));
     contact_count.next(start.select(contact_count.same(0), contact_count.value() + ones(graph, contacts)));
     invalid_count.next(start.select(invalid_count.same(0), invalid_count.value() + ones(graph, invalids)));
-    let none_yet = !invalid_count.any();
+    let none_yet = graph.register("none_invalid", 1, 1);
     let mut first = emerged.plus(u128::from(lanes - 1));
     for lane in (0..lanes - 1).rev() {
         first = invalids[lane as usize].select(emerged.plus(u128::from(lane)), first);
     }
     let some = invalids.iter().fold(graph.constant(1, 0), |any, bit| any | *bit).named("some_invalid");
-    let updated = (some & none_yet).select(first, *first_invalid);
+    none_yet.next(start | (*none_yet & !some));
+    let updated = (some & *none_yet).select(first, *first_invalid);
     first_invalid.next(start.select(first_invalid.same(u128::from(u32::MAX)), updated));
     graph.output("contacts", contact_count.value());
     graph.output("invalid", invalid_count.value());

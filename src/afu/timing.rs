@@ -23,6 +23,8 @@ pub struct Timing {
     pub pack: u32,
     /// Packer: more for a last line that is not full.
     pub flush: u32,
+    /// Packer: to knowing that a job has no pairs.
+    pub nothing: u32,
     /// Dispatcher: to its write request.
     pub dispatch: u32,
     /// Dispatcher: from the last acknowledgement to its being counted.
@@ -71,6 +73,7 @@ impl Afu {
             gather: top::RANKS_AFTER,
             pack: packer::CYCLES_TO_LINE,
             flush: packer::CYCLES_TO_FLUSH,
+            nothing: packer::CYCLES_TO_NOTHING,
             dispatch: dispatcher::CYCLES_TO_REQUEST,
             acknowledge: dispatcher::CYCLES_TO_IDLE,
             done: control::CYCLES_TO_DONE,

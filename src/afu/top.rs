@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::config::Results;
 use crate::hdl::{Errors, Graph, Module, Signal};
 
-use super::control::{MODE_BITS, control, room_bits};
+use super::control::{MODE_BITS, control};
 use super::results::{Parts, Room};
 use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, MAX_SCPUS, SCPU_BITS, Spec};
 use super::{collector, dispatcher, feeder, slot, timing};
@@ -23,7 +23,7 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, E
 
     let control = control(spec, places.results)?;
     let collector = collector::collector(spec)?;
-    let feeder = feeder::feeder(spec, room_bits(places.results))?;
+    let feeder = feeder::feeder(spec)?;
     let slot = slot::slot(spec, unit)?;
     let results = Parts::new(spec, places)?;
     let dispatcher = dispatcher::dispatcher(spec, places.lines)?;
@@ -120,14 +120,15 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, E
             ("start", begin),
             ("run", run),
             ("scpus", scpus),
-            ("count", job_count),
+            ("lines", control.output("lines")),
+            ("last_place", control.output("last_place")),
             ("line_valid", collector.output("line_valid")),
             ("line", collector.output("line")),
-            ("room", control.output("room")),
+            ("may_enter", control.output("may_enter")),
         ],
     );
     take.drive(feeder.output("take"));
-    entered.drive(feeder.output("group"));
+    entered.drive(feeder.output("entered"));
     waits_for_input.drive(feeder.output("waits_for_input"));
     waits_for_output.drive(feeder.output("waits_for_output"));
 
@@ -146,8 +147,9 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, E
         slot_inputs.push(("in_group", group));
     }
     let slots = graph.array("slots", &slot, scpus, &slot_inputs);
-    // The slots' answers come a cycle after `group_out`, and are registered once more after the or.
-    let group_done = register(&graph, "group_done", register(&graph, "group_answered", group_out));
+    // The slots' answers come a cycle after `group_out`, and are registered once more after the or: so it is known a cycle
+    // before they are there how many there will be.
+    let group_done = register(&graph, "group_done", group_out);
     let kinds = ["record", "contact", "invalid"].into_iter().filter(|kind| has_records || *kind != "record");
     let lane_outputs: Vec<(String, Signal<'_>)> = (0..lanes)
         .flat_map(|lane| kinds.clone().map(move |what| format!("{what}_{lane}")))
@@ -181,7 +183,7 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, E
     packed.drive(packer.output("done"));
     dispatched.drive(dispatcher.output("empty"));
     emerged.drive(group_done);
-    line_left.drive(packed_results.places_freed.unwrap_or_else(|| dispatcher.output("take")));
+    line_left.drive(packed_results.places_freed.unwrap_or_else(|| dispatcher.output("line_left")));
 
     for name in ["busy", "done", "error"] {
         graph.output(name, control.output(name));

@@ -3,6 +3,7 @@
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
+use super::block_memory::{Ports, block_memory};
 use super::delay_model::DelayModel;
 use super::error::Errors;
 use super::graph::Graph;
@@ -41,23 +42,9 @@ fn line(cycles: u32, width: u32, primitive: Primitive) -> Result<Arc<Module>, Er
     newest.next(oldest);
     let value = graph.input("value", width);
     let ports = [("write_index", newest.value()), ("read_index", oldest), ("write_word", value)];
-    let memory = memory(depth, width, bits, primitive)?;
+    let memory = block_memory(depth, width, Ports::Free, Some(primitive))?;
     graph.output("delayed", graph.instance("line", &memory, &ports).output("word").delay(1));
     let mut module = graph.finish()?;
     Arc::make_mut(&mut module).latency = cycles;
-    Ok(module)
-}
-
-fn memory(depth: u32, width: u32, bits: u32, primitive: Primitive) -> Result<Arc<Module>, Errors> {
-    let graph = Graph::new(format!("memory_{depth}x{width}{}", primitive.suffix()));
-    graph.about("a word is written, another is read two cycles later: one block memory with its registers");
-    let words = graph.memory("words", depth, width);
-    words.write(graph.constant(1, 1), graph.input("write_index", bits), graph.input("write_word", width));
-    let read = words.read(graph.input("read_index", bits)).named("word_read");
-    graph.output("word", read.delay(1).named("word_register"));
-    let mut module = graph.finish()?;
-    let memory = Arc::make_mut(&mut module);
-    memory.latency = 2;
-    memory.primitive = Some(primitive);
     Ok(module)
 }

@@ -4,6 +4,7 @@
 //! operation records an [`Error`] with its place and yields a poisoned handle; [`Graph::finish`] returns all of
 //! them together or a [`Module`], from which nothing can be taken that its outputs do not need.
 
+mod block_memory;
 mod cut;
 mod delay_block;
 mod delay_model;
@@ -22,6 +23,7 @@ mod state;
 pub mod verilog;
 mod wiring;
 
+pub use block_memory::{Ports, block_memory};
 pub use cut::{Timing, cut};
 pub use delay_block::delay_block;
 pub use delay_model::DelayModel;

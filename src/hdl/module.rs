@@ -71,7 +71,8 @@ pub enum Op {
         /// The value on reset; without one it is not reset.
         reset: Option<u128>,
     },
-    /// The word read from a memory one cycle ago. Operand: address.
+    /// The word read from a memory at the last clock edge, or the last at which the enable was set. Operands: address, then
+    /// an enable (1 bit) if it has one.
     MemoryRead {
         /// Index into [`Module::memories`].
         memory: usize,

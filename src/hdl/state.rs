@@ -102,16 +102,28 @@ impl<'g> MemoryHandle<'g> {
     /// written gives the old word in simulation and must not be relied on.
     #[track_caller]
     pub fn read(self, address: Signal<'g>) -> Signal<'g> {
-        let place = Location::caller();
-        let Some(ids) = self.graph.own("memory read", &[address], place) else { return Signal::poison(self.graph) };
-        if address.width() != self.address_width {
-            let name = self.graph.inner.borrow().memories[self.index].name.clone();
-            let message =
-                format!("memory `{name}`: read address has {} bits, not {}", address.width(), self.address_width);
-            self.graph.error(message, place);
-            return Signal::poison(self.graph);
-        }
-        self.graph.shared(Op::MemoryRead { memory: self.index }, self.width, ids, place)
+        self.read_at(&[address], Location::caller())
+    }
+
+    /// As [`MemoryHandle::read`], at the clock edges at which `enable` is set; in between it stays.
+    #[track_caller]
+    pub fn read_if(self, enable: Signal<'g>, address: Signal<'g>) -> Signal<'g> {
+        self.read_at(&[address, enable], Location::caller())
+    }
+
+    fn read_at(self, inputs: &[Signal<'g>], place: &'static Location<'static>) -> Signal<'g> {
+        let Some(ids) = self.graph.own("memory read", inputs, place) else { return Signal::poison(self.graph) };
+        let name = || self.graph.inner.borrow().memories[self.index].name.clone();
+        let address = inputs[0].width();
+        let message = match inputs.get(1).map(|enable| enable.width()) {
+            _ if address != self.address_width => {
+                format!("memory `{}`: read address has {address} bits, not {}", name(), self.address_width)
+            }
+            Some(enable) if enable != 1 => format!("memory `{}`: read enable has {enable} bits, not 1", name()),
+            _ => return self.graph.shared(Op::MemoryRead { memory: self.index }, self.width, ids, place),
+        };
+        self.graph.error(message, place);
+        Signal::poison(self.graph)
     }
 }
 
@@ -173,7 +185,26 @@ impl Graph {
     /// same name, where there are such.
     #[track_caller]
     pub fn instance<'g>(&'g self, name: &str, module: &Arc<Module>, inputs: &[(&str, Signal<'g>)]) -> Instantiated<'g> {
+        self.refuse_top(name, module, Location::caller());
         self.instantiate(name, module, InstanceCount::One, inputs, Location::caller())
+    }
+
+    /// As [`Graph::instance`], of a module that may have a reset of its own: for a wrapper that is synthesised, which the
+    /// evaluator does not take.
+    #[track_caller]
+    pub fn instance_of_top<'g>(
+        &'g self,
+        name: &str,
+        module: &Arc<Module>,
+        inputs: &[(&str, Signal<'g>)],
+    ) -> Instantiated<'g> {
+        self.instantiate(name, module, InstanceCount::One, inputs, Location::caller())
+    }
+
+    fn refuse_top(&self, name: &str, module: &Module, place: &'static Location<'static>) {
+        if module.reset.is_some() {
+            self.error(format!("instance `{name}`: `{}` has a reset of its own, so it is a top", module.name), place);
+        }
     }
 
     /// As many instances of `module` as the [`Graph::parameter`] `count` says, sharing their inputs, their outputs
@@ -187,6 +218,7 @@ impl Graph {
         inputs: &[(&str, Signal<'g>)],
     ) -> Instantiated<'g> {
         let place = Location::caller();
+        self.refuse_top(name, module, place);
         let parameter = self.own("array", &[count], place).map(|ids| self.node(ids[0]).op);
         if let Some(Op::Parameter(index)) = parameter {
             return self.instantiate(name, module, InstanceCount::Parameter(index), inputs, place);
@@ -207,9 +239,6 @@ impl Graph {
         inputs: &[(&str, Signal<'g>)],
         place: &'static Location<'static>,
     ) -> Instantiated<'g> {
-        if module.reset.is_some() {
-            self.error(format!("instance `{name}`: `{}` has a reset of its own, so it is a top", module.name), place);
-        }
         let signals: Vec<_> = inputs.iter().map(|(_, signal)| *signal).collect();
         let ids = self.own("instance", &signals, place);
         let mut connected = vec![None; module.ports.len()];

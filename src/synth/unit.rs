@@ -85,7 +85,7 @@ impl Unit {
         Ok(Self { name: "scpu".to_owned(), latency, module, ..Self::of(config, &afu) })
     }
 
-    /// The whole AFU of a configuration, without its shell, which is a matter of its platform.
+    /// The whole AFU of a configuration, with its shell.
     ///
     /// # Errors
     /// A configuration that cannot be generated.
@@ -99,12 +99,12 @@ impl Unit {
 
     fn of(config: &Config, afu: &Afu) -> Self {
         Self {
-            name: format!("afu of {} SCPUs", config.scpus),
+            name: format!("afu of {} SCPUs, {}", config.scpus, config.shell),
             profile: config.profile.clone(),
             architecture: None,
             interval: Some(config.interval),
             clock_mhz: config.clock_mhz,
-            module: afu.core().clone(),
+            module: afu.top().clone(),
             latency: None,
         }
     }

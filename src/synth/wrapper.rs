@@ -37,7 +37,7 @@ pub fn wrap(unit: &Arc<Module>) -> Result<Arc<Module>, Errors> {
         taken -= port.width;
         inputs.extend(scanned.map(|operands| (port.name.as_str(), operands.slice(taken, port.width))));
     }
-    let instance = graph.instance(UNIT, unit, &inputs);
+    let instance = graph.instance_of_top(UNIT, unit, &inputs);
     let results: Vec<Signal<'_>> = ports(true).map(|port| instance.output(&port.name)).collect();
 
     let result = graph.data_register(RESULTS, bits(true));

@@ -27,7 +27,8 @@ pub fn account(afu: &Afu, link: &LinkModel, pairs: u32) -> Option<Vec<Part>> {
     let part = |name, cycles: u64| Part { name, cycles };
     let of = |name, cycles: u32| part(name, cycles.into());
     if pairs == 0 {
-        return Some(vec![of("control: start", timing.start), of("control: done", timing.done)]);
+        let nothing = of("packer: that there is nothing", timing.nothing);
+        return Some(vec![of("control: start", timing.start), nothing, of("control: done", timing.done)]);
     }
     let pairs = u64::from(pairs);
     let (sources, destinations) = (layout.source_lines(pairs), layout.destination_lines(pairs));

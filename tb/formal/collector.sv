@@ -36,14 +36,21 @@ module collector (
   );
   (* hierconn *) wire [2:0]  \dut.reserved ;
   (* hierconn *) wire [2:0]  \dut.outstanding ;
-  (* hierconn *) wire [3:0]  \dut.filled ;
+  (* hierconn *) wire [3:0]  \dut.came ;
+  (* hierconn *) wire [1:0]  \dut.oldest ;
+  (* hierconn *) wire        \dut.arrived ;
+  (* hierconn *) wire [1:0]  \dut.arrived_age ;
+  (* hierconn *) wire        \dut.two_valid ;
+  (* hierconn *) wire        \dut.taken ;
   (* hierconn *) wire [1:0]  \dut.head ;
   (* hierconn *) wire [1:0]  \dut.next_slot ;
+  (* hierconn *) wire        \dut.may_ask ;
   (* hierconn *) wire [31:0] \dut.lines_to_request ;
   (* hierconn *) wire [57:0] \dut.next_address ;
 
   reg        begun = 1'b0;
   reg        after_reset = 1'b0;
+  reg        ran = 1'b0;
   reg [57:0] job_source;
   reg [31:0] job_lines;
   reg [3:0]  job_epoch;
@@ -55,6 +62,7 @@ module collector (
   wire [3:0] on_port = rd_req_valid ? 4'd1 << rd_req_tag[1:0] : 4'd0;
   always @(posedge clk) begin
     after_reset <= after_reset | rst;
+    ran <= run;
     begun <= ~rst & (begun | start);
     if (start) begin
       job_source <= source;
@@ -68,25 +76,49 @@ module collector (
   always @* begin
     assume (after_reset | rst);
     assume (~run | (begun & ~start));
-    assume (~start | ~rd_req_valid);
+    assume (~start | ~(rd_req_valid | ran));
     assume (~take | line_valid);
     if (begun & ~start) assume (epoch == job_epoch);
     if (mine) assume ((waiting & answered) != 4'd0);
   end
 
-  // The slots from the head on that are not free.
-  wire [7:0] from_zero = (8'd1 << \dut.reserved ) - 8'd1;
-  wire [7:0] from_head = from_zero << \dut.head ;
-  wire [3:0] taken = from_head[3:0] | from_head[7:4];
+  // So many slots from one on.
+  function [3:0] slots(input [1:0] first, input [2:0] many);
+    reg [7:0] from_zero;
+    reg [7:0] from_first;
+    begin
+      from_zero = (8'd1 << many) - 8'd1;
+      from_first = from_zero << first;
+      slots = from_first[3:0] | from_first[7:4];
+    end
+  endfunction
+  function [3:0] aged(input [3:0] ages, input [1:0] first);
+    reg [7:0] from_first;
+    begin
+      from_first = {4'd0, ages} << first;
+      aged = from_first[3:0] | from_first[7:4];
+    end
+  endfunction
+
+  // Filled slots: offered, known to have come, about to be known.
+  wire [2:0] offers = {1'b0, \dut.two_valid , line_valid & ~\dut.two_valid };
+  wire [3:0] offered = slots(\dut.head , offers);
+  wire [3:0] come = aged(\dut.came , \dut.oldest );
+  wire [3:0] coming = aged(\dut.arrived ? 4'd1 << \dut.arrived_age : 4'd0, \dut.oldest );
+  wire [3:0] filled = offered | come | coming;
   always @* if (begun & ~start & ~rst & after_reset) begin
     never_more: assert (\dut.reserved <= 3'd4);
-    slots_in_order: assert (\dut.next_slot - \dut.head == \dut.reserved [1:0]);
-    one_of_three: assert ((on_port & waiting) == 4'd0 & (\dut.filled & (on_port | waiting)) == 4'd0);
-    none_lost: assert ((on_port | waiting | \dut.filled ) == taken);
+    slots_in_order: assert (\dut.next_slot - \dut.head + {1'b0, \dut.taken } == \dut.reserved [1:0]);
+    offered_in_order: assert (\dut.oldest - \dut.head == offers[1:0] & (line_valid | ~\dut.two_valid ));
+    one_of_three: assert ((on_port & waiting) == 4'd0 & (filled & (on_port | waiting)) == 4'd0);
+    come_once: assert ((offered & come) == 4'd0 & (offered & coming) == 4'd0 & (come & coming) == 4'd0);
+    none_lost: assert ((on_port | waiting | filled) == slots(\dut.head , \dut.reserved - {2'd0, \dut.taken }));
+    taken_is_reserved: assert (~\dut.taken | \dut.reserved != 3'd0);
+    asks_while_any: assert (~\dut.may_ask | (\dut.lines_to_request != 32'd0 & \dut.reserved != 3'd4));
     counted: assert (\dut.outstanding == {2'd0, on_port[0] | waiting[0]} + {2'd0, on_port[1] | waiting[1]}
       + {2'd0, on_port[2] | waiting[2]} + {2'd0, on_port[3] | waiting[3]});
-    idle_is_right: assert (idle == ((on_port | waiting) == 4'd0));
-    only_filled: assert (~line_valid | \dut.filled [\dut.head ]);
+    idle_is_right: assert (idle == ((on_port | waiting) == 4'd0 & ~\dut.may_ask ));
+    only_filled: assert (~line_valid | ~(on_port[\dut.head ] | waiting[\dut.head ]));
     of_this_job: assert (~rd_req_valid | rd_req_tag[5:2] == job_epoch);
     in_order: assert (\dut.next_address == job_source + {26'd0, accepted} + {57'd0, rd_req_valid});
     address: assert (~rd_req_valid | rd_req_address == job_source + {26'd0, accepted});

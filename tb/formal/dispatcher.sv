@@ -20,13 +20,12 @@ module dispatcher (
   input wire [5:0]  wr_rsp_tag,
   input wire        wr_rsp_error
 );
-  localparam [2:0] LINES = `LINES;
+  localparam [$clog2(`LINES):0] LINES = `LINES;
 
   wire        wr_req_valid;
   wire [57:0] wr_req_address;
   wire [5:0]  wr_req_tag;
   wire [31:0] wr_req_data;
-  wire        take;
   wire        idle;
   wire        empty;
   contact_afu_dispatcher dut (
@@ -34,19 +33,28 @@ module dispatcher (
     .line_valid(line_valid), .line(line),
     .wr_req_ready(wr_req_ready), .wr_rsp_valid(wr_rsp_valid), .wr_rsp_tag(wr_rsp_tag), .wr_rsp_error(wr_rsp_error),
     .wr_req_valid(wr_req_valid), .wr_req_address(wr_req_address), .wr_req_tag(wr_req_tag), .wr_req_data(wr_req_data),
-    .take(take), .response(), .failed(), .asking(), .idle(idle), .empty(empty)
+    .line_left(), .response(), .failed(), .asking(), .idle(idle), .empty(empty)
   );
-  (* hierconn *) wire [2:0]  \dut.stored ;
-  (* hierconn *) wire [1:0]  \dut.head ;
-  (* hierconn *) wire [1:0]  \dut.tail ;
+  (* hierconn *) wire [$clog2(`LINES):0]   \dut.stored ;
+  (* hierconn *) wire [$clog2(`LINES)-1:0] \dut.head ;
+  (* hierconn *) wire [$clog2(`LINES)-1:0] \dut.tail ;
   (* hierconn *) wire        \dut.ready ;
-  (* hierconn *) wire [3:0]  \dut.busy_slots ;
+  (* hierconn *) wire        \dut.take ;
+  (* hierconn *) wire        \dut.may_send ;
+  (* hierconn *) wire        \dut.read_valid ;
+  (* hierconn *) wire [2:0]  \dut.reserved ;
+  (* hierconn *) wire [3:0]  \dut.came ;
+  (* hierconn *) wire [1:0]  \dut.oldest ;
+  (* hierconn *) wire        \dut.arrived ;
+  (* hierconn *) wire [1:0]  \dut.arrived_age ;
+  (* hierconn *) wire [1:0]  \dut.next_slot ;
   (* hierconn *) wire [2:0]  \dut.outstanding ;
   (* hierconn *) wire [57:0] \dut.next_address ;
 
   // A job has begun since the last reset; its destination and epoch.
   reg        begun = 1'b0;
   reg        after_reset = 1'b0;
+  reg        ran = 1'b0;
   reg [57:0] job_destination;
   reg [3:0]  job_epoch;
   reg [57:0] accepted;
@@ -57,6 +65,7 @@ module dispatcher (
   wire [3:0] on_port = wr_req_valid ? 4'd1 << wr_req_tag[1:0] : 4'd0;
   always @(posedge clk) begin
     after_reset <= after_reset | rst;
+    ran <= run;
     begun <= ~rst & (begun | start);
     if (start) begin
       job_destination <= destination;
@@ -69,21 +78,45 @@ module dispatcher (
   always @* begin
     assume (after_reset | rst);
     assume (~run | (begun & ~start));
-    assume (~start | ~wr_req_valid);
+    assume (~start | ~(wr_req_valid | ran));
     if (begun & ~start) assume (epoch == job_epoch);
     if (mine) assume ((waiting & answered) != 4'd0);
-    assume (~line_valid | (begun & ~start & (\dut.stored != LINES | take)));
+    assume (~line_valid | (begun & ~start & (\dut.stored != LINES | \dut.take )));
   end
 
+  // So many slots from one on, and marks by age from one on.
+  function [3:0] slots(input [1:0] first, input [2:0] many);
+    reg [7:0] from_zero;
+    reg [7:0] from_first;
+    begin
+      from_zero = (8'd1 << many) - 8'd1;
+      from_first = from_zero << first;
+      slots = from_first[3:0] | from_first[7:4];
+    end
+  endfunction
+  function [3:0] aged(input [3:0] ages, input [1:0] first);
+    reg [7:0] from_first;
+    begin
+      from_first = {4'd0, ages} << first;
+      aged = from_first[3:0] | from_first[7:4];
+    end
+  endfunction
+  wire [3:0] come = aged(\dut.came , \dut.oldest );
+  wire [3:0] coming = aged(\dut.arrived ? 4'd1 << \dut.arrived_age : 4'd0, \dut.oldest );
+  wire [3:0] busy = on_port | waiting | come | coming;
   always @* if (begun & ~start & ~rst & after_reset) begin
     fifo_fits: assert (\dut.stored <= LINES);
-    fifo_counts: assert (\dut.tail - \dut.head == \dut.stored [1:0]);
-    ready_is_right: assert (~\dut.ready | \dut.stored != 3'd0);
+    fifo_counts: assert (\dut.tail - \dut.head == \dut.stored [$clog2(`LINES)-1:0]);
+    ready_is_right: assert (\dut.ready == (\dut.stored != 0));
     tag_free: assert ((on_port & waiting) == 4'd0 & (~wr_req_valid | wr_req_tag[5:2] == job_epoch));
-    slots_are_right: assert (\dut.busy_slots == (on_port | waiting));
-    none_lost: assert (\dut.outstanding == {2'd0, \dut.busy_slots [0]} + {2'd0, \dut.busy_slots [1]}
-      + {2'd0, \dut.busy_slots [2]} + {2'd0, \dut.busy_slots [3]});
-    idle_is_right: assert (idle == (\dut.busy_slots == 4'd0));
+    never_more: assert (\dut.reserved <= 3'd4);
+    slots_in_order: assert (\dut.next_slot - \dut.oldest == \dut.reserved [1:0]);
+    slots_are_right: assert (busy == slots(\dut.oldest , \dut.reserved ));
+    come_once: assert (((on_port | waiting) & (come | coming)) == 4'd0 & (come & coming) == 4'd0);
+    none_lost: assert (\dut.outstanding == {2'd0, on_port[0] | waiting[0]} + {2'd0, on_port[1] | waiting[1]}
+      + {2'd0, on_port[2] | waiting[2]} + {2'd0, on_port[3] | waiting[3]});
+    idle_is_right: assert (idle == ((on_port | waiting) == 4'd0 & ~(\dut.may_send & \dut.read_valid )));
+    sends_a_free_slot: assert (~\dut.may_send | \dut.reserved != 3'd4);
     in_order: assert (\dut.next_address == job_destination + accepted + {57'd0, wr_req_valid});
     address: assert (~wr_req_valid | wr_req_address == job_destination + accepted);
   end

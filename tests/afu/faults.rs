@@ -81,7 +81,7 @@ pub fn judge(case: &Case, outcome: Result<Outcome, DriveError>) -> Found {
 #[repr(u32)]
 enum Controller {
     Nothing,
-    /// The last pair is neither taken nor missed.
+    /// The last line is neither taken nor missed, and a pair of the one before it lost, as if that were it.
     LastPairDropped,
     /// Each of two neighbours gets the other's result.
     LanesSwapped,
@@ -99,18 +99,18 @@ enum Controller {
 pub type Planted = (&'static str, &'static str, u32, &'static str);
 
 const FAULTS: [Planted; 8] = [
+    ("contact_afu_control.v", "assign lines = ", Controller::LastPairDropped as u32, "job_lines - 32'd1"),
     (
-        "contact_afu_feeder.v",
-        "remaining <= start",
+        "contact_afu_packer.v",
+        "all_out <= ~start",
         Controller::LastPairDropped as u32,
-        "start ? (count - 32'd1) : (remaining - {30'd0, group})",
+        "~start & (emerged == (count - 32'd2))",
     ),
-    ("contact_afu_packer.v", "wire all_out = ", Controller::LastPairDropped as u32, "emerged == (count - 32'd1)"),
     ("contact_afu.v", "slots_record_0_d1 <= ", Controller::LanesSwapped as u32, "slots_record_1"),
     ("contact_afu.v", "slots_record_1_d1 <= ", Controller::LanesSwapped as u32, "slots_record_0"),
     ("contact_afu_dispatcher.v", "assign idle = ", Controller::DoneEarly as u32, "~wr_req_valid"),
     ("contact_afu_collector.v", "assign response = ", Controller::EpochIgnored as u32, "rd_rsp_valid"),
-    ("contact_afu_control.v", "room <= begin_job", Controller::CreditsIgnored as u32, "room"),
+    ("contact_afu_control.v", "may_enter <= run", Controller::CreditsIgnored as u32, "run"),
     (
         "contact_afu_packer.v",
         "invalid_count <= start",

@@ -147,7 +147,7 @@ const FAULTS: [Planted; 4] = [
     ("contact_afu_sieve.v", "number_1 = ", 1, "emerged"),
     ("contact_afu_sieve.v", "comes_to_0_in_0 = ", 2, "1'b0"),
     ("contact_afu_sieve.v", "hits_to_0 = ", 3, "2'd0"),
-    ("contact_afu_packer.v", "wire flush = ", 4, "1'b0"),
+    ("contact_afu_packer.v", "wire flushes = ", 4, "1'b0"),
 ];
 
 /// The comparison can fail.

@@ -6,6 +6,7 @@
 #![cfg(feature = "cosim")]
 
 mod bench;
+mod blocks;
 mod faults;
 mod hits;
 mod interval;

@@ -13,7 +13,7 @@ const SCPUS: u32 = 3;
 
 /// Early cycles one by one, later ones with growing distance: the whole life of a job of some hundred cycles.
 fn moments() -> impl Iterator<Item = u64> {
-    (0..12).chain((12..100).step_by(7)).chain((100..900).step_by(53))
+    (0..12).chain((12..100).step_by(7)).chain((100..1000).step_by(53))
 }
 
 fn afu(seed: u64) -> Instance {
@@ -186,7 +186,7 @@ fn the_watchdog_has_the_last_word() {
         let mut driver = driver(&afu, "late", 1);
         driver.link_mut().plan(&[Fault::ReadLost(90), second]);
         driver.start(&Job { watchdog: 300, ..spoilt.job() }).unwrap();
-        (0..150).for_each(|_| assert!(!driver.step().unwrap()));
+        (0..180).for_each(|_| assert!(!driver.step().unwrap()));
         if second == Fault::WriteError(50) {
             driver.abort();
         }

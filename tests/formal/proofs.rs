@@ -35,9 +35,9 @@ pub struct Proof {
 }
 
 impl Proof {
-    /// The macros of the harness. Four lines are what the dispatcher keeps around SCPUs of up to 2 cycles, else eight.
+    /// The macros of the harness. Eight lines are what the dispatcher keeps around SCPUs of up to 2 cycles, else sixteen.
     pub fn defines(&self) -> Vec<String> {
-        let lines = if self.latency <= 2 { 4 } else { 8 };
+        let lines = if self.latency <= 2 { 8 } else { 16 };
         let bound = self.bound.map(|cycles| format!("BOUND={cycles}"));
         let own = self.defines.iter().map(|define| (*define).to_owned()).chain(bound);
         [format!("LATENCY={}", self.latency), format!("LINES={lines}")].into_iter().chain(own).collect()
@@ -80,12 +80,12 @@ fn around(latency: u32) -> [Proof; 5] {
     let one_job = &["PAIRS=3", "ONE_JOB"];
     [
         of("credits", "credits", Inductive(5 + latency)),
-        of("any link, any host", "line_port", Bounded(8 + latency)).with(&["PAIRS=3"]),
-        of("one job", "line_port", Bounded(21 + latency)).with(one_job),
-        of("a job ends", "line_port", Bounded(26 + latency))
+        of("any link, any host", "line_port", Bounded(12 + latency)).with(&["PAIRS=3"]),
+        of("one job", "line_port", Bounded(28 + latency)).with(one_job),
+        of("a job ends", "line_port", Bounded(36 + latency))
             .with(&["PAIRS=2", "ONE_JOB", "PROMPT=1"])
-            .ends(21 + latency),
-        of("jobs are whole", "line_port", Reached(21 + latency)).with(one_job),
+            .ends(31 + latency),
+        of("jobs are whole", "line_port", Reached(28 + latency)).with(one_job),
     ]
 }
 

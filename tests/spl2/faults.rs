@@ -28,12 +28,12 @@ enum Planted {
 
 /// File, the assignment's left side, the fault, and what is assigned then.
 const FAULTS: [(&str, &str, Planted, &str); 7] = [
-    ("spl2_transmit.v", "assign core_rd_ready = ", Planted::AlmostFullIgnored, "~own_rd_valid"),
+    ("spl2_transmit.v", " core_rd_turn <= ", Planted::AlmostFullIgnored, "discards | ~own_rd_waits"),
     ("spl2_acknowledge.v", "wire core_s_1 = ", Planted::SecondChannelLost, "valid_1 & ~valid_0 & ~|mdata_1[13:12]"),
     ("spl2_sequence.v", "wire written = ", Planted::NoFence, "wr_granted | (to_dsm & ~dsm_valid) | at_fence"),
-    ("spl2_sequence.v", "assign wr_valid = ", Planted::NoFence, "(to_dsm & dsm_valid) | at_status"),
+    ("spl2_sequence.v", " writes <= ", Planted::NoFence, "((to_dsm & dsm_valid) | at_status) & ~written"),
     ("spl2_transmit.v", "wire [5:0] next_epoch = ", Planted::EpochStuck, "6'd0"),
-    ("spl2_sequence.v", "assign wr_virtual = ", Planted::VirtualDsm, "1'b1"),
+    ("spl2_sequence.v", " wr_virtual <= ", Planted::VirtualDsm, "1'b1"),
     ("spl2_sequence.v", "wire [57:0] first_pairs = ", Planted::SourceOff, "source_line"),
 ];
 

@@ -26,7 +26,8 @@ fn jobs_one_after_another_over_every_link() {
                 let seen = machine.spl().seen();
                 assert!(seen.on_both > 0, "{link}, {name}: acknowledgements came on both channels at once");
                 if name == "rough" {
-                    assert!(seen.after_almostfull > 0 && seen.most_after == 1, "{link}: {seen:?}");
+                    // SPL takes four.
+                    assert!(seen.after_almostfull > 0 && seen.most_after <= 2, "{link}: {seen:?}");
                 }
             }
         }

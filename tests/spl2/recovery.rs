@@ -12,7 +12,7 @@ const SCPUS: u32 = 3;
 
 /// Early cycles of a job closely, later ones with growing distance.
 fn moments() -> impl Iterator<Item = u64> {
-    (0..30).step_by(3).chain((30..200).step_by(17)).chain((200..1100).step_by(83))
+    (0..30).step_by(3).chain((30..200).step_by(17)).chain((200..1300).step_by(83))
 }
 
 fn two_cases() -> (Case, Case) {

@@ -21,26 +21,28 @@ pub(super) fn acknowledge(spec: &Spec) -> Result<Arc<Module>, Errors> {
         let valid = graph.input(&format!("valid_{channel}"), 1);
         let mdata = graph.input(&format!("mdata_{channel}"), MDATA_BITS);
         let mine = (valid & is_core_s(mdata, epoch, slot_bits)).named(&format!("core_s_{channel}"));
-        (mine, mdata.low(tag_bits))
+        let counts = graph.register(&format!("counts_{channel}"), 1, 0);
+        counts.next(mine & !start);
+        (counts.value(), mdata.low(tag_bits).delay(1))
     });
     let [(first, first_tag), (second, second_tag)] = channels;
 
-    // As in the dispatcher: the memory's registered read runs one ahead.
+    // What waits is read at the place of the oldest, whether or not it goes: its tag is there a cycle later.
     let store = graph.memory("waiting", slots, tag_bits);
     let tail = graph.register("tail", slot_bits, 0);
     let head = graph.register("head", slot_bits, 0);
     let stored = graph.register("stored", slot_bits + 1, 0);
-    let ready = graph.register("ready", 1, 0);
-    let take = (*ready & !first).named("take");
+    let take = (stored.any() & !first).named("take");
     store.write(second, tail.value(), second_tag);
     tail.next(start.select(tail.same(0), tail.value() + second.extend(slot_bits)));
-    let next_head = (head.value() + take.extend(slot_bits)).named("next_head");
-    head.next(start.select(head.same(0), next_head));
+    head.next(start.select(head.same(0), head.value() + take.extend(slot_bits)));
     let left = (stored.value() - take.extend(slot_bits + 1)).named("left");
     stored.next(start.select(stored.same(0), left + second.extend(slot_bits + 1)));
-    ready.next(!start & left.any());
+    let waited = store.read(head.value()).named("oldest");
 
-    graph.output("valid", first | take);
-    graph.output("tag", first.select(first_tag, store.read(next_head).named("oldest")));
+    let valid = graph.register("answered", 1, 0);
+    valid.next(!start & (first | take));
+    graph.output("valid", valid.value());
+    graph.output("tag", first.delay(1).named("from_first").select(first_tag.delay(1), waited));
     graph.finish()
 }

@@ -106,7 +106,9 @@ pub(super) fn afu_top(spec: &Spec, core: &Arc<Module>) -> Result<Arc<Module>, Er
             ("mdata_1", mdata1),
         ],
     );
-    let core_answered = (rd_valid & is_core_s(mdata0, epoch, slot_bits)).named("core_answered");
+    // What is received is compared with the epoch before the core hears of it.
+    let received = data.delay(1).named("received");
+    let core_answered = (rd_valid & is_core_s(mdata0, epoch, slot_bits)).delay(1).named("core_answered");
     let (rd_ready, wr_ready) = (wire("core_rd_ready", 1), wire("core_wr_ready", 1));
     let never = graph.constant(1, 0);
     let mut core_inputs = vec![
@@ -120,8 +122,8 @@ pub(super) fn afu_top(spec: &Spec, core: &Arc<Module>) -> Result<Arc<Module>, Er
         ("abort_job", sequence.output("abort_job")),
         ("rd_req_ready", rd_ready),
         ("rd_rsp_valid", core_answered),
-        ("rd_rsp_tag", mdata0.low(EPOCH_BITS + slot_bits)),
-        ("rd_rsp_data", data),
+        ("rd_rsp_tag", mdata0.low(EPOCH_BITS + slot_bits).delay(1)),
+        ("rd_rsp_data", received),
         ("rd_rsp_error", never),
         ("wr_req_ready", wr_ready),
         ("wr_rsp_valid", acknowledge.output("valid")),

@@ -19,10 +19,12 @@ pub(super) fn registers(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let graph = Graph::new("spl2_registers");
     graph.about("takes CSR writes, answers them in the DSM");
     let power_on = graph.input("power_on", 1);
-    let spl_reset = graph.input("spl_reset", 1);
-    let cfg_valid = graph.input("cfg_valid", 1);
-    let cfg_offset = graph.input("cfg_offset", MDATA_BITS);
-    let cfg_data = graph.input("cfg_data", 32);
+    // Heard a cycle later, all of it.
+    let heard = |name: &str, width: u32| graph.input(name, width).delay(1).named(&format!("{name}_heard"));
+    let spl_reset = heard("spl_reset", 1);
+    let cfg_valid = heard("cfg_valid", 1);
+    let cfg_offset = heard("cfg_offset", MDATA_BITS);
+    let cfg_data = heard("cfg_data", 32);
     let granted = graph.input("wr_granted", 1);
     let capability = graph.input("capability", 64);
 
@@ -52,9 +54,12 @@ pub(super) fn registers(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let take_scratch = graph.wire("scratch_granted", 1);
     let identity_due = flag(&graph, "identity_due", dsm_commit, clear | (take_identity & !dsm_commit));
     let scratch_due = flag(&graph, "scratch_due", scratch_written, clear | (take_scratch & !scratch_written));
-    let due = (dsm_valid & (identity_due | scratch_due)).named("due");
-    take_identity.drive(granted & identity_due);
-    take_scratch.drive(granted & !identity_due);
+    let due = graph.data_register("due", 1);
+    due.next(dsm_valid & (identity_due | scratch_due) & !granted & !power_on);
+    // What is granted was chosen a cycle before.
+    let was_identity = identity_due.delay(1).named("was_identity");
+    take_identity.drive(granted & was_identity);
+    take_scratch.drive(granted & !was_identity);
 
     let constant = |width: u32, value: u128| graph.constant(width, value);
     let identity = map::line(
@@ -72,7 +77,7 @@ pub(super) fn registers(spec: &Spec) -> Result<Arc<Module>, Errors> {
     graph.output("dsm_valid", dsm_valid);
     graph.output("context_line", context_line);
     graph.output("context_valid", context_valid);
-    graph.output("wr_valid", due);
+    graph.output("wr_valid", due.value());
     graph.output("wr_address", dsm_page_line(dsm_line, number));
     graph.output("wr_line", identity_due.select(identity, scratch).named("line"));
     graph.finish()

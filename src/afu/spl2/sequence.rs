@@ -12,32 +12,6 @@ use super::map::{self, control, latency, performance, pointers, status};
 use super::port::{MDATA_BITS, NUMBER_BITS, is_own};
 use super::registers::dsm_page_line;
 
-/// What the sequence is at.
-#[derive(Clone, Copy)]
-enum State {
-    /// No context is known.
-    Idle = 0,
-    /// Reads the context.
-    Context = 1,
-    /// Polls the control memory for a job.
-    Poll = 2,
-    /// Counts the job's lines.
-    Measure = 3,
-    /// Starts the job, if there are lines enough.
-    Start = 4,
-    /// The core is at work; polls for an abort.
-    Run = 5,
-    /// Writes DSM line 4.
-    Latency = 6,
-    /// Writes DSM line 5.
-    Performance = 7,
-    /// Sends the fence.
-    Fence = 8,
-    /// Writes the status.
-    Status = 9,
-}
-
-const STATE_BITS: u32 = 4;
 /// Bits of a byte address within a line.
 const BYTE_BITS: u32 = 6;
 /// Bits of a 32-bit cycle count.
@@ -57,7 +31,7 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let read_number = graph.input("read_number", NUMBER_BITS);
     let response_valid = graph.input("rsp_valid", 1);
     let response_mdata = graph.input("rsp_mdata", MDATA_BITS);
-    let response = graph.input("rsp_data", spec.line_bits);
+    let received = graph.input("rsp_data", spec.line_bits);
     let write_granted = graph.input("wr_granted", 1);
     let core_done = graph.input("core_done", 1);
     let core_error = graph.input("core_error", ERROR_BITS);
@@ -67,23 +41,27 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let core_cycles = ["cycles_busy", "cycles_input", "cycles_output"].map(|name| graph.input(name, 64));
     let capability = graph.input("capability", 64);
 
-    let state = graph.register("state", STATE_BITS, State::Idle as u128);
-    let at = |wanted: State, name: &str| state.is(wanted as u128).named(name);
-    let at_idle = at(State::Idle, "at_idle");
-    let at_context = at(State::Context, "at_context");
-    let at_poll = at(State::Poll, "at_poll");
-    let at_measure = at(State::Measure, "at_measure");
-    let at_start = at(State::Start, "at_start");
-    let at_run = at(State::Run, "at_run");
-    let at_latency = at(State::Latency, "at_latency");
-    let at_performance = at(State::Performance, "at_performance");
-    let at_fence = at(State::Fence, "at_fence");
-    let at_status = at(State::Status, "at_status");
+    // What the sequence is at, one of these: no context is known; reads the context; polls the control memory for a job;
+    // counts the job's lines; compares them with the buffers'; starts the job, if there are lines enough; the core is at
+    // work, and the control memory polled for an abort; writes DSM line 4, DSM line 5, the fence, the status.
+    let state = |name: &str| graph.register(name, 1, 0);
+    let idle = graph.register("at_idle", 1, 1);
+    let [context, poll, measure, compare, begin, run] =
+        ["at_context", "at_poll", "at_measure", "at_compare", "at_start", "at_run"].map(state);
+    let [latencies, counters, fence, report] = ["at_latency", "at_performance", "at_fence", "at_status"].map(state);
+    let (at_context, at_poll, at_start, at_run) = (*context, *poll, *begin, *run);
+    let (at_latency, at_performance, at_fence, at_status) = (*latencies, *counters, *fence, *report);
 
     // The shell's own reads, one at a time. A response that is overdue is given up and asked for again.
     let waiting = graph.register("waiting", 1, 0);
     let expected = graph.data_register("expected", NUMBER_BITS);
-    let answered = (response_valid & *waiting & is_own(response_mdata, expected.value())).named("answered");
+    // A line is compared with what is waited for before it counts.
+    let received = received.delay(1).named("received");
+    let response = received.delay(1).named("compared");
+    let own = (response_valid & is_own(response_mdata, expected.value())).delay(1).named("is_own");
+    let answered = graph.register("answered", 1, 0);
+    answered.next(own & *waiting & !*answered);
+    let answered = answered.value();
     let age = graph.data_register("age", map::RETRY_CYCLES.ilog2() + 1);
     age.next(read_granted.select(age.same(0), age.plus(1)));
     let overdue = (*waiting & age.msb()).named("overdue");
@@ -91,7 +69,8 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, Errors> {
     waiting.next(read_granted | (*waiting & !answered & !overdue));
     let pause_bits = map::RUNNING_POLL_CYCLES.max(map::IDLE_POLL_CYCLES).ilog2() + 1;
     let pause = graph.register("pause", pause_bits, 0);
-    let asks = ((at_context | at_poll | at_run) & !*waiting & !pause.any()).named("asks");
+    let asks = graph.register("asks", 1, 0);
+    asks.next((at_context | at_poll | at_run) & !*waiting & !read_granted & !pause.any());
 
     // The context.
     let got_context = (at_context & answered).named("got_context");
@@ -106,8 +85,9 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, Errors> {
     // The control memory: a job is new if its number is not the last one's.
     let some_job = graph.register("some_job", 1, 0);
     let job_sequence = graph.data_register("job_sequence", 32);
-    let starts = control::START.of(response).is(map::START_WORD.into()).named("has_start_word");
-    let is_new = (!*some_job | !control::SEQUENCE.of(response).equals(*job_sequence)).named("is_new");
+    let starts = control::START.of(received).is(map::START_WORD.into()).delay(1).named("has_start_word");
+    let is_other = (!control::SEQUENCE.of(received).equals(*job_sequence)).delay(1).named("is_other");
+    let is_new = (!*some_job | is_other).named("is_new");
     let got_job = (at_poll & answered & starts & is_new).named("got_job");
     some_job.next(*some_job | got_job);
     job_sequence.next_if(got_job, control::SEQUENCE.of(response));
@@ -120,7 +100,8 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let job_watchdog = graph.data_register("job_watchdog", COUNT_BITS);
     job_watchdog.next_if(got_job, control::WATCHDOG.of(response));
     let abort = graph.register("abort", 1, 0);
-    let aborts = (answered & control::ABORT.of(response).any() & (got_job | at_run)).named("aborts");
+    let aborts =
+        (answered & control::ABORT.of(received).any().delay(1).named("has_abort") & (got_job | at_run)).named("aborts");
     abort.next(aborts | (*abort & !got_job));
     let runs = (got_job | at_run).named("runs");
     let poll_pause = |cycles: u32| constant(pause_bits, cycles.into());
@@ -133,7 +114,7 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let fits = |per_line: u32, more: u32, name: &str| {
         let rounded = job_count.extend(COUNT_BITS + 1).plus(u128::from(per_line - 1));
         let needed = rounded.drop_low(per_line.ilog2()).extend(COUNT_BITS + 1).plus(more.into());
-        needed.delay(1).named(name).at_most(lines.extend(COUNT_BITS + 1))
+        needed.delay(1).named(name).at_most(lines.extend(COUNT_BITS + 1)).delay(1)
     };
     let source_fits = fits(layout.pairs_per_line(), map::DATA_LINE, "source_lines");
     let destination_fits = fits(layout.contacts_per_line(), 0, "destination_lines");
@@ -147,23 +128,23 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, Errors> {
     // Latencies, in cycles since the start.
     let since = graph.data_register("since_start", CYCLE_BITS);
     since.next(start.select(since.same(0), since.plus(1)));
-    let read_seen = graph.register("read_seen", 1, 0);
-    read_seen.next(!at_start & (*read_seen | (at_run & core_read)));
-    let first_read = graph.data_register("first_read", CYCLE_BITS);
-    let write_seen = graph.register("write_seen", 1, 0);
-    write_seen.next(!at_start & (*write_seen | (at_run & core_write)));
-    let first_write = graph.data_register("first_write", CYCLE_BITS);
-    let none = since.same(0);
-    first_read.next_if(at_start | !*read_seen, at_start.select(none, since.plus(1).gate(core_read)));
-    first_write.next_if(at_start | !*write_seen, at_start.select(none, since.plus(1).gate(core_write)));
+    let first = |happens: Signal<'_>, name: &str| {
+        let happened = happens.delay(1).named(&format!("{name}_now"));
+        let seen = graph.register(&format!("{name}_seen"), 1, 0);
+        seen.next(!at_start & (*seen | (at_run & happened)));
+        let cycles = graph.data_register(&format!("first_{name}"), CYCLE_BITS);
+        cycles.next_if(at_start | !*seen, since.gate(happened & !at_start));
+        cycles.value()
+    };
+    let (first_read, first_write) = (first(core_read, "read"), first(core_write, "write"));
 
     // What is written at the end.
     let latency_line = map::line(
         &graph,
         spec.line_bits,
         &[
-            (latency::FIRST_READ, first_read.value()),
-            (latency::FIRST_WRITE, first_write.value()),
+            (latency::FIRST_READ, first_read),
+            (latency::FIRST_WRITE, first_write),
             (latency::SEQUENCE, job_sequence.value()),
         ],
     );
@@ -205,25 +186,23 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let written = (write_granted | (to_dsm & !dsm_valid) | (at_fence & !fences)).named("written");
 
     // From state to state.
-    let beginning = [
-        (at_idle & context_valid, State::Context),
-        (got_context, State::Poll),
-        (got_job, State::Measure),
-        (at_measure, State::Start),
-        (start, State::Run),
-        (at_start & !fits, State::Latency),
-    ];
-    let end = [
-        (at_run & core_done, State::Latency),
-        (at_latency & written, State::Performance),
-        (at_performance & written, State::Fence),
-        (at_fence & written, State::Status),
-        (at_status & written, State::Poll),
-    ];
-    let begun = beginning.into_iter().fold(*state, step_to).named("next_of_beginning");
-    state.next(end.into_iter().fold(begun, step_to).named("next_state"));
+    idle.next(*idle & !context_valid);
+    context.next((*idle & context_valid) | (at_context & !answered));
+    poll.next(got_context | (at_status & written) | (at_poll & !got_job));
+    measure.next(got_job);
+    compare.next(*measure);
+    begin.next(*compare);
+    run.next(start | (at_run & !core_done));
+    latencies.next((at_start & !fits) | (at_run & core_done) | (at_latency & !written));
+    counters.next((at_latency & written) | (at_performance & !written));
+    fence.next((at_performance & written) | (at_fence & !written));
+    report.next((at_fence & written) | (at_status & !written));
 
-    graph.output("rd_valid", asks);
+    // A state's write stands at the port a cycle after the state is there.
+    let writes = graph.register("writes", 1, 0);
+    writes.next(((to_dsm & dsm_valid) | fences | at_status) & !written);
+
+    graph.output("rd_valid", asks.value());
     graph.output("rd_address", at_context.select(context_line, source.value()).named("address"));
     graph.output("start", start);
     graph.output("source", source.plus(map::DATA_LINE.into()).named("first_pairs"));
@@ -235,15 +214,10 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, Errors> {
     graph.output("mode", job_mode.value());
     graph.output("watchdog", job_watchdog.value());
     graph.output("abort_job", abort.value());
-    graph.output("wr_valid", (to_dsm & dsm_valid) | fences | at_status);
-    graph.output("wr_fence", at_fence);
-    graph.output("wr_virtual", !to_dsm);
-    graph.output("wr_address", to_dsm.select(dsm_address, status_address));
-    graph.output("wr_data", to_dsm.select(dsm_data, status_line));
+    graph.output("wr_valid", writes.value());
+    graph.output("wr_fence", at_fence.delay(1));
+    graph.output("wr_virtual", (!to_dsm).delay(1));
+    graph.output("wr_address", to_dsm.select(dsm_address, status_address).delay(1));
+    graph.output("wr_data", to_dsm.select(dsm_data, status_line).delay(1));
     graph.finish()
-}
-
-/// A state if its condition holds, else what was next before.
-fn step_to<'g>(next: Signal<'g>, (condition, to): (Signal<'g>, State)) -> Signal<'g> {
-    condition.select(next.same(to as u128), next)
 }

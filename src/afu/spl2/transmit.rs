@@ -6,7 +6,7 @@
 
 use std::sync::Arc;
 
-use crate::hdl::{Errors, Graph, Module, Signal};
+use crate::hdl::{Errors, Graph, Module, Register, Signal};
 
 use super::super::{ADDRESS_BITS, EPOCH_BITS, Spec};
 use super::port::{self, NUMBER_BITS, Request, SHELL_EPOCH_BITS, TX_HEADER_BITS};
@@ -21,7 +21,7 @@ pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let rd_almostfull = graph.input("rd_almostfull", 1);
     let wr_almostfull = graph.input("wr_almostfull", 1);
     // The core has given up: what it still asks is taken from it and dropped, since SPL may never have room again.
-    let discard = graph.input("discard", 1);
+    let discard = graph.input("discard", 1).delay(1).named("discards");
 
     let epoch = graph.data_register("epoch", SHELL_EPOCH_BITS);
     let next_epoch = (epoch.value() + start.extend(SHELL_EPOCH_BITS)).named("next_epoch");
@@ -33,16 +33,18 @@ pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let core_read_tag = graph.input("core_rd_tag", EPOCH_BITS + slot_bits);
     let own_read = graph.input("own_rd_valid", 1);
     let own_read_address = graph.input("own_rd_address", ADDRESS_BITS);
-    let own_read_granted = (own_read & !rd_almostfull).named("own_rd_granted");
-    let core_read_ready = (discard | (!own_read & !rd_almostfull)).named("core_rd_ready");
+    let reads = Turns::new(&graph, "rd", rd_almostfull);
+    let own_read_granted = (own_read & reads.own).named("own_rd_granted");
+    reads.connect((own_read & !own_read_granted).named("own_rd_waits"), discard, power_on);
+    let core_read_ready = reads.core;
     let read_number = number(&graph, "read_number", own_read_granted, power_on);
     let constant = |width: u32, value: u128| graph.constant(width, value);
     let read_header = port::header(
         &graph,
         port::kind(&graph, Request::Read),
         constant(1, 1),
-        own_read.select(own_read_address, core_read_address),
-        own_read.select(
+        own_read_granted.select(own_read_address, core_read_address),
+        own_read_granted.select(
             port::own_mdata(&graph, read_number),
             port::core_mdata(epoch.value(), core_read_tag.low(slot_bits)),
         ),
@@ -51,7 +53,7 @@ pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let reading = (own_read_granted | (core_read_ready & core_read & !discard)).named("reading");
     read_valid.next(reading & !power_on);
     let read_register = graph.data_register("tx_rd_hdr", TX_HEADER_BITS);
-    read_register.next_if(reading, read_header);
+    read_register.next(read_header);
 
     // Writes: DSM lines that answer registers, then those at the end of a job, then the core's.
     let core_write = graph.input("core_wr_valid", 1);
@@ -66,30 +68,37 @@ pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let end_write_virtual = graph.input("end_wr_virtual", 1);
     let end_write_address = graph.input("end_wr_address", ADDRESS_BITS);
     let end_write_data = graph.input("end_wr_data", spec.line_bits);
-    let register_granted = (register_write & !wr_almostfull).named("register_wr_granted");
-    let end_granted = (end_write & !register_write & !wr_almostfull).named("end_wr_granted");
-    let own_write = (register_write | end_write).named("own_write");
-    let core_write_ready = (discard | (!own_write & !wr_almostfull)).named("core_wr_ready");
-    let write_number = number(&graph, "write_number", register_granted | end_granted, power_on);
+    // A write of the shell's is chosen a cycle before its turn.
+    let writes = Turns::new(&graph, "wr", wr_almostfull);
+    let is_register = register_write.delay(1).named("is_register");
+    let register_granted = (writes.own & is_register & register_write).named("register_wr_granted");
+    let end_granted = (writes.own & !is_register & end_write).named("end_wr_granted");
+    let own_granted = (register_granted | end_granted).named("own_granted");
+    let own_waits = ((register_write | end_write) & !own_granted).named("own_wr_waits");
+    writes.connect(own_waits, discard, power_on);
+    let write_number = number(&graph, "write_number", own_granted, power_on);
     let is_fence = (end_write_fence & !register_write).named("is_fence");
-    let write_header = port::header(
+    let write_line = port::kind(&graph, Request::WriteLine);
+    let own_header = port::header(
         &graph,
-        is_fence.select(port::kind(&graph, Request::WriteFence), port::kind(&graph, Request::WriteLine)),
-        register_write.select(constant(1, 0), end_write.select(end_write_virtual, constant(1, 1))),
-        register_write.select(register_write_address, end_write.select(end_write_address, core_write_address)),
-        own_write.select(
-            port::own_mdata(&graph, write_number),
-            port::core_mdata(epoch.value(), core_write_tag.low(slot_bits)),
-        ),
+        is_fence.select(port::kind(&graph, Request::WriteFence), write_line),
+        register_write.select(constant(1, 0), end_write_virtual),
+        register_write.select(register_write_address, end_write_address),
+        port::own_mdata(&graph, write_number),
     );
+    let own_header = own_header.delay(1).named("own_header");
+    let own_data = register_write.select(register_write_data, end_write_data).delay(1).named("own_data");
+
+    let core_write_ready = writes.core;
+    let core_mdata = port::core_mdata(epoch.value(), core_write_tag.low(slot_bits));
+    let core_header = port::header(&graph, write_line, constant(1, 1), core_write_address, core_mdata);
     let write_valid = graph.data_register("tx_wr_valid", 1);
-    let writing = (register_granted | end_granted | (core_write_ready & core_write & !discard)).named("writing");
+    let writing = (own_granted | (core_write_ready & core_write & !discard)).named("writing");
     write_valid.next(writing & !power_on);
     let write_register = graph.data_register("tx_wr_hdr", TX_HEADER_BITS);
-    write_register.next_if(writing, write_header);
+    write_register.next(writes.own_turn.select(own_header, core_header));
     let data_register = graph.data_register("tx_data", spec.line_bits);
-    let data = register_write.select(register_write_data, end_write.select(end_write_data, core_write_data));
-    data_register.next_if(writing, data);
+    data_register.next(writes.own_turn.select(own_data, core_write_data));
 
     graph.output("epoch", epoch.value());
     graph.output("core_epoch", next_epoch.low(EPOCH_BITS));
@@ -107,9 +116,39 @@ pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, Errors> {
     graph.finish()
 }
 
+/// Whose turn a port is, known a cycle before: the shell's where it has a request, else the core's. SPL takes four requests
+/// more once it is almost full; two come.
+#[derive(Clone, Copy)]
+struct Turns<'g> {
+    turn: Register<'g>,
+    open: Register<'g>,
+    almost_full: Signal<'g>,
+    /// The shell's turn, whether or not SPL has room.
+    own_turn: Signal<'g>,
+    /// The shell's turn.
+    own: Signal<'g>,
+    /// The core's turn.
+    core: Signal<'g>,
+}
+
+impl<'g> Turns<'g> {
+    fn new(graph: &'g Graph, port: &str, almost_full: Signal<'g>) -> Self {
+        let turn = graph.data_register(&format!("own_{port}_turn"), 1);
+        let open = graph.data_register(&format!("core_{port}_turn"), 1);
+        let room = (!almost_full).delay(1).named(&format!("{port}_room"));
+        Self { turn, open, almost_full, own_turn: *turn, own: *turn & room, core: *open }
+    }
+
+    /// The next turn is the shell's if it `wants` it; the core's, whatever room there is, while what it asks is discarded.
+    fn connect(self, wants: Signal<'g>, discard: Signal<'g>, power_on: Signal<'g>) {
+        self.turn.next(wants & !power_on);
+        self.open.next(discard | (!wants & !self.almost_full));
+    }
+}
+
 /// The number of the shell's next request: counts those that were granted, since the system's reset.
 fn number<'g>(graph: &'g Graph, name: &str, granted: Signal<'g>, power_on: Signal<'g>) -> Signal<'g> {
     let number = graph.data_register(name, NUMBER_BITS);
-    number.next((number.value() + granted.extend(NUMBER_BITS)).gate(!power_on));
+    number.next_if(granted | power_on, number.plus(1).gate(!power_on));
     number.value()
 }

@@ -40,6 +40,7 @@ struct Memory {
 struct Read {
     memory: usize,
     address: u32,
+    enable: Option<u32>,
 }
 
 /// State elements of the whole hierarchy. Their present values lie together among the words, in this order:
@@ -136,7 +137,8 @@ impl Elements {
                 memories.push(Memory { words, words_each, depth: u64::from(memory.depth), write });
                 memories.len() - 1
             });
-            reads.push(Read { memory: index, address: operand(id, 0)[0] });
+            let enable = (flat.node(id).operands.len() > 1).then(|| operand(id, 1)[0]);
+            reads.push(Read { memory: index, address: operand(id, 0)[0], enable });
         }
 
         let mut resets = Vec::new();
@@ -162,6 +164,7 @@ impl State {
     /// A clock edge: `words` are settled, state begins at `first`.
     pub(super) fn clock(&mut self, words: &mut [u64], first: usize) {
         let at = |place: u32| words[place as usize];
+        let end = first + self.sampled.len();
         let (always, rest) = self.sampled.split_at_mut(self.always.len());
         for (sample, &next) in always.iter_mut().zip(&self.always) {
             *sample = at(next);
@@ -183,10 +186,13 @@ impl State {
         }
         for read in &self.reads {
             let memory = &self.memories[read.memory];
+            let present = end - rest.len();
             let (samples, behind) = rest.split_at_mut(memory.words_each);
             rest = behind;
             let address = at(read.address);
-            if address < memory.depth {
+            if read.enable.is_some_and(|enable| at(enable) == 0) {
+                samples.copy_from_slice(&words[present..][..memory.words_each]);
+            } else if address < memory.depth {
                 samples.copy_from_slice(&memory.words[address as usize * memory.words_each..][..memory.words_each]);
             } else {
                 samples.fill(0);

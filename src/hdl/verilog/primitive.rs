@@ -123,16 +123,20 @@ fn modes(bits: u32) -> [String; 2] {
         .map(|port| format!("    .DATA_WIDTH_{port}({bits}), .REGMODE_{port}(\"OUTREG\"), .CSDECODE_{port}(\"0b000\")"))
 }
 
-/// The connections of a port: its address from the lowest bit, what is written, and whether it writes. Of the words read
-/// port A has the low half, port B the high one.
-fn port(letter: &str, address: [String; 14], written: impl Fn(u32) -> String, writes: bool) -> Vec<String> {
+/// The connections of a port: its address from the lowest bit, what is written, when it writes and reads, and when its
+/// register takes a word. Of the words read port A has the low half, port B the high one.
+fn port(
+    letter: &str,
+    address: [String; 14],
+    written: impl Fn(u32) -> String,
+    [write, read, advance]: [&str; 3],
+) -> Vec<String> {
     let first = if letter == "A" { 0 } else { WORD };
     let mut ports: Vec<String> = (0..14).map(|bit| format!(".AD{letter}{bit}({})", address[bit])).collect();
     ports.extend((0..WORD).map(|bit| format!(".DI{letter}{bit}({})", written(first + bit))));
     ports.extend((0..WORD).map(|bit| format!(".DO{letter}{bit}(whole[{}])", first + bit)));
     ports.push(format!(".CLK{letter}(clk)"));
-    ports.push(format!(".WE{letter}(1'b{})", u32::from(writes)));
-    ports.extend(["CE", "OCE"].map(|name| format!(".{name}{letter}(1'b1)")));
+    ports.extend([format!(".WE{letter}({write})"), format!(".CE{letter}({read})"), format!(".OCE{letter}({advance})")]);
     ports.push(format!(".RST{letter}(1'b0)"));
     ports.extend((0..3).map(|bit| format!(".CS{letter}{bit}(1'b0)")));
     ports
@@ -159,12 +163,13 @@ fn table(module: &Module) -> Block {
             13 => format!("1'b{half}"),
             _ => bit(module, "index", place as u32 - 4),
         });
-        port(letter, address, |_| "1'b0".to_owned(), false)
+        port(letter, address, |_| "1'b0".to_owned(), ["1'b0", "1'b1", "1'b1"])
     };
     (width(module, "word"), parameters, [connected("A", 0), connected("B", 1)])
 }
 
-/// Ports `write_index`, `write_word`, `read_index` and `word`, of up to 36 bits: port A writes whole words, port B reads.
+/// Ports `write_index`, `write_word`, `read_index` and `word`, of up to 36 bits, and `write`, `read` and `advance` where
+/// there are such: port A writes whole words, port B reads. Of the words read either port has its half, in a register of its own.
 fn memory(module: &Module) -> Block {
     let address = |index: &str, low: &str| {
         std::array::from_fn(|place| match place {
@@ -175,7 +180,9 @@ fn memory(module: &Module) -> Block {
     };
     let written = |place: u32| bit(module, "write_word", place);
     // The lowest bits of the address that is written choose its bytes.
-    let a = port("A", address("write_index", "1'b1"), written, true);
-    let b = port("B", address("read_index", "1'b0"), written, false);
+    let given = |port: &str, text: &'static str, otherwise| if module.port(port).is_some() { text } else { otherwise };
+    let [write, read, advance] = ["write", "read", "advance"].map(|name| given(name, name, "1'b1"));
+    let a = port("A", address("write_index", "1'b1"), written, [write, "1'b1", advance]);
+    let b = port("B", address("read_index", "1'b0"), written, ["1'b0", read, advance]);
     (width(module, "word"), modes(2 * WORD).to_vec(), [a, b])
 }

@@ -13,6 +13,8 @@ use super::print::is_register;
 
 /// Up to this depth a memory goes to look-up tables, above it to block RAM.
 const DEEPEST_DISTRIBUTED: u32 = 64;
+/// But not with more bits than this, a quarter of a block RAM's.
+const LARGEST_DISTRIBUTED: u32 = 4096;
 /// A memory narrower than this would waste a block RAM.
 const NARROWEST_BLOCK: u32 = 8;
 
@@ -167,14 +169,18 @@ impl<'a> Sections<'a> {
             let node = self.module.node(*id);
             let Some(name) = &self.text.names.declared[id.index()] else { continue };
             let operand = |position: usize| self.text.value(node.operands[position]);
+            let enable = || match node.operands.get(1) {
+                Some(id) => format!("if ({}) ", self.text.value(*id)),
+                None => String::new(),
+            };
             match &node.op {
                 Op::Delay { .. } => data += &DelayKind::clocked(node, name, &operand(0)),
                 Op::MemoryRead { memory } => {
-                    data += &format!("    {name} <= {}[{}];\n", self.module.memories[*memory].name, operand(0));
+                    let memory = &self.module.memories[*memory].name;
+                    data += &format!("    {}{name} <= {memory}[{}];\n", enable(), operand(0));
                 }
                 Op::Register { reset: value } => {
-                    let enable = node.operands.get(1).map(|id| format!("if ({}) ", self.text.value(*id)));
-                    let line = format!("{}{name} <= {};\n", enable.unwrap_or_default(), operand(0));
+                    let line = format!("{}{name} <= {};\n", enable(), operand(0));
                     match value {
                         Some(value) => {
                             reset += &format!("      {name} <= {};\n", constant(node.width, *value));
@@ -243,11 +249,9 @@ fn memory_declaration(memory: &Memory) -> String {
 }
 
 fn ram(name: &str, depth: u32, width: u32) -> String {
-    let (vivado, quartus) = if depth <= DEEPEST_DISTRIBUTED || width < NARROWEST_BLOCK {
-        ("distributed", "MLAB")
-    } else {
-        ("block", "M20K")
-    };
+    let is_small = depth <= DEEPEST_DISTRIBUTED && depth.saturating_mul(width) <= LARGEST_DISTRIBUTED;
+    let (vivado, quartus) =
+        if is_small || width < NARROWEST_BLOCK { ("distributed", "MLAB") } else { ("block", "M20K") };
     format!(
         "  (* ram_style = \"{vivado}\", ramstyle = \"{quartus}, no_rw_check\" *)\n  reg {}{name} [0:{}];\n",
         range(width),

@@ -5,107 +5,113 @@ use super::Rows;
 const CONTROL: Rows = &[
     (
         "pairs that came out are still inside",
-        "(pairs_inside + entered_wide) - {2'd0, emerged};",
+        "(pairs_inside + entered_wide) - {3'd0, emerged};",
         "pairs_inside + entered_wide;",
-        11,
+        13,
         "inside_is_right",
     ),
-    ("goes on while it drains", "(running & ~complete & ~failing)", "(running & ~complete)", 3, "one_or_other"),
+    ("goes on while it drains", "(running & ~completes & ~failing)", "(running & ~completes)", 3, "one_or_other"),
+    ("begins while it runs", "wire accept = start & ~busy;", "wire accept = start & ~draining;", 3, "begins_rested"),
     ("a refused job does not begin", "begin_job <= accept;", "begin_job <= accept & ~failing;", 2, "begins_first"),
     ("a job begins again", "begin_job <= accept;", "begin_job <= accept | (start & running);", 6, "begins_empty"),
-    ("ends with pairs inside", "draining & ~|pairs_inside & ", "draining & ", 8, "idle_is_empty"),
-    ("room is never used up", "((room - entered_wide) + ", "(room + ", 7, "places_add_up"),
+    ("ends with pairs inside", "wire none_inside = ~|pairs_inside & ", "wire none_inside = ", 10, "idle_is_empty"),
+    (
+        "room is never used up",
+        "(line_left ? 5'd2 : 5'd0) - entered_wide",
+        "line_left ? 5'd2 : 5'd0",
+        9,
+        "places_add_up",
+    ),
+    ("enters while any room is left", "run & |next_room[4:3];", "run & |next_room;", 14, "room_is_seen"),
+    (
+        "half a line is none",
+        "rounded_count = {1'b0, count} + 33'd1;",
+        "rounded_count = {1'b0, count};",
+        3,
+        "lines_are_right",
+    ),
 ];
 
 const FEEDER: Rows = &[
-    ("pairs enter after an abort", "wire go_0 = run & present_0", "wire go_0 = present_0", 6, "only_in_a_job"),
-    ("takes a line that is not there", "assign take = line_valid & ", "assign take = ", 1, "takes_a_line"),
-    (
-        "a turn too many",
-        "wire turn_wraps = next_turn >= scpus_wide;",
-        "wire turn_wraps = next_turn > scpus_wide;",
-        7,
-        "turn_is_an_scpu",
-    ),
-    (
-        "two pairs count as one",
-        "remaining <= start ? count : (remaining - {30'd0, group});",
-        "remaining <= start ? count : (remaining - {31'd0, go_0});",
-        7,
-        "each_once",
-    ),
-    ("a pair enters without room", "wire roomy_0 = |room;", "wire roomy_0 = 1'b1;", 10, "never_negative"),
+    ("pairs enter after an abort", "wire go_0 = may_enter & ", "wire go_0 = ", 8, "only_in_a_job"),
+    ("takes a line that is not there", "wire line_comes = line_valid & ", "wire line_comes = ", 3, "takes_a_line"),
+    ("a turn too many", "(turn_wide_plus_2 >= scpus_wide)", "(turn_wide_plus_2 > scpus_wide)", 8, "turn_is_an_scpu"),
+    ("two pairs count as one", "go_1 ? 2'd2 : (go_0", "go_1 ? 2'd1 : (go_0", 8, "each_once"),
+    ("counts no line that it takes", "if (start | take) lines_left", "if (start) lines_left", 7, "flags_are_right"),
+    ("every line is short", "one_lines_left ? last_place : 1'b1", "last_place", 7, "only_last_is_short"),
 ];
 
-const PACKER: Rows =
-    &[("the last line goes out twice", "wire emptied = start | flush;", "wire emptied = start;", 12, "last_line_once")];
+const FEEDER_IN_CONTROL: Rows =
+    &[("a pair enters without room", "may_enter <= run & |next_room[4:3];", "may_enter <= run;", 16, "never_negative")];
+
+const PACKER: Rows = &[(
+    "the last line goes out twice",
+    "wire start_or_flushes = start | flushes;",
+    "wire start_or_flushes = start;",
+    15,
+    "last_line_once",
+)];
 
 const STORE: Rows = &[
     (
-        "a line counts as five",
-        "stored <= start ? 3'd0 : (left + {2'd0, line_valid});",
-        "stored <= start ? 3'd0 : (left + {line_valid, 1'b0, line_valid});",
-        12,
+        "a line counts as nine",
+        "(line_valid ? (stored + 4'd1) : (stored - 4'd1))",
+        "(line_valid ? (stored + 4'd9) : (stored - 4'd1))",
+        16,
         "fits",
     ),
-    ("sends a line that has left", "ready <= ~start & |left;", "ready <= ~start & |stored;", 14, "sends_a_line"),
+    ("sends a line that has left", "(stored[0] & ~take)", "stored[0]", 17, "sends_a_line"),
 ];
 
 const TOP: Rows =
-    &[("results are early", "group_answered <= group_out;", "group_answered <= feeder_issue_group;", 9, "comes_out")];
+    &[("results are early", "group_done <= group_out;", "group_done <= feeder_issue_group;", 11, "comes_out")];
 
 const PORT_CONTROL: Rows = &[
     (
         "ends with a request on the port",
-        "~|pairs_inside & (link_idle | (given_up & ~asking));",
-        "~|pairs_inside;",
-        5,
+        "none_inside & (link_idle_heard | (given_up & ~asking_heard));",
+        "none_inside;",
+        6,
         "rd_in_job",
     ),
     (
         "done with a write on the port",
         "packer_done & dispatched & link_idle;",
         "packer_done & dispatched;",
-        18,
+        23,
         "wr_in_job",
     ),
-    ("done and still running", "(running & ~complete & ~failing)", "(running & ~failing)", 4, "done_known"),
-    (
-        "done at once",
-        "wire complete = run & packer_done & dispatched & link_idle;",
-        "wire complete = run;",
-        4,
-        "done_all",
-    ),
+    ("done and still running", "(running & ~completes & ~failing)", "(running & ~failing)", 6, "done_known"),
+    ("done at once", "complete <= run & packer_done & dispatched & link_idle;", "complete <= run;", 5, "done_all"),
 ];
 
 const PORT_COLLECTOR: Rows = &[
-    ("every other line is read", "(next_address + 58'd1)", "(next_address + 58'd2)", 5, "rd_in_order"),
+    ("every other line is read", "(next_address + 58'd1)", "(next_address + 58'd2)", 6, "rd_in_order"),
     (
         "the first line is asked for again",
         "rd_req_tag <= {epoch, next_slot};",
         "rd_req_tag <= {epoch, 2'd0};",
-        5,
+        6,
         "rd_tag_free",
     ),
-    ("ends while a read is out", "assign idle = ~|outstanding & ", "assign idle = ", 6, "done_acknowledged"),
+    ("ends while a read is out", "assign idle = ~|outstanding & ", "assign idle = ", 8, "done_acknowledged"),
     (
         "read requests do not wait",
         "rd_req_valid <= issue | (rd_req_valid & ~rd_req_ready);",
         "rd_req_valid <= issue;",
-        5,
+        6,
         "rd_stable",
     ),
 ];
 
 const PORT_DISPATCHER: Rows = &[
-    ("every other line is written", "(next_address + 58'd1)", "(next_address + 58'd2)", 19, "wr_in_order"),
-    ("all writes have one tag", "wr_req_tag <= {epoch, next_slot};", "wr_req_tag <= {epoch, 2'd0};", 19, "wr_tag_free"),
+    ("every other line is written", "(next_address + 58'd1)", "(next_address + 58'd2)", 24, "wr_in_order"),
+    ("all writes have one tag", "wr_req_tag <= {epoch, next_slot};", "wr_req_tag <= {epoch, 2'd0};", 24, "wr_tag_free"),
     (
         "write requests do not wait",
-        "wr_req_valid <= take | (wr_req_valid & ~wr_req_ready);",
-        "wr_req_valid <= take;",
-        18,
+        "wr_req_valid <= goes | (wr_req_valid & ~wr_req_ready);",
+        "wr_req_valid <= goes;",
+        22,
         "wr_stable",
     ),
 ];
@@ -114,7 +120,7 @@ const PORT_TOP: Rows = &[(
     "each pair gets its neighbour's result",
     "slots_record_0_d1 <= slots_record_0;",
     "slots_record_0_d1 <= slots_record_1;",
-    17,
+    21,
     "wr_data",
 )];
 
@@ -123,24 +129,31 @@ const PORT_PACKER: Rows = &[
         "contacts in one lane only",
         "{30'd0, {1'b0, contact_0} + {1'b0, contact_1}}",
         "{31'd0, contact_1}",
-        20,
+        25,
         "done_counts",
     ),
     (
         "invalid pairs in one lane only",
         "{30'd0, {1'b0, invalid_0} + {1'b0, invalid_1}}",
         "{31'd0, invalid_1}",
-        20,
+        25,
         "done_invalid",
     ),
-    ("the wrong invalid pair", "(invalid_0 ? emerged : (emerged + 32'd1))", "emerged", 20, "done_first"),
+    (
+        "the wrong invalid pair",
+        "(invalid_0 ? emerged_before : (emerged_before + 32'd1))",
+        "emerged_before",
+        25,
+        "done_first",
+    ),
 ];
 
-const ENDS: Rows = &[("acknowledgements are not counted", " - {2'd0, response});", ");", 25, "ends")];
+const ENDS: Rows = &[("acknowledgements are not counted", "(goes ^ response)", "goes", 35, "ends")];
 
 pub const TABLES: &[(&str, &str, Rows)] = &[
     ("credits", "contact_afu_control.v", CONTROL),
     ("credits", "contact_afu_feeder.v", FEEDER),
+    ("credits", "contact_afu_control.v", FEEDER_IN_CONTROL),
     ("credits", "contact_afu_packer.v", PACKER),
     ("credits", "contact_afu_dispatcher.v", STORE),
     ("credits", "contact_afu.v", TOP),

@@ -1,0 +1,53 @@
+//! A block memory with registers of its own: a word comes two cycles after its address.
+
+use std::sync::Arc;
+
+use super::error::Errors;
+use super::graph::Graph;
+use super::module::{Module, Primitive};
+use super::state::address_width;
+
+/// Whether what is written and what is read can be left out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ports {
+    /// A word is written in every cycle, and the word that was read goes to its register in every cycle.
+    Free,
+    /// A word is written where the input `write` is set, another read where `read` is, and the one that was read before goes to
+    /// its register where `advance` is.
+    Gated,
+}
+
+/// The memory as a module with inputs `write_index`, `write_word`, `read_index` and those of `ports`, and an output `word`:
+/// what stood at `read_index` two cycles ago. A word must not be read in the cycle in which it is written. As `primitive`,
+/// if there is one.
+///
+/// # Errors
+/// What the graph recorded.
+pub fn block_memory(depth: u32, width: u32, ports: Ports, primitive: Option<Primitive>) -> Result<Arc<Module>, Errors> {
+    let kind = if ports == Ports::Gated { "line_memory" } else { "memory" };
+    let graph = Graph::new(format!("{kind}_{depth}x{width}{}", primitive.map_or("", Primitive::suffix)));
+    graph.about("a word is written, another is read two cycles later: one block memory with its registers");
+    let bits = address_width(depth);
+    let write = match ports {
+        Ports::Free => graph.constant(1, 1),
+        Ports::Gated => graph.input("write", 1),
+    };
+    let words = graph.memory("words", depth, width);
+    words.write(write, graph.input("write_index", bits), graph.input("write_word", width));
+    let index = graph.input("read_index", bits);
+    let word = match ports {
+        Ports::Free => words.read(index).named("word_read").delay(1).named("word_register"),
+        Ports::Gated => {
+            let read = words.read_if(graph.input("read", 1), index).named("word_read");
+            let register = graph.data_register("word_register", width);
+            register.next_if(graph.input("advance", 1), read);
+            register.value()
+        }
+    };
+    graph.output("word", word);
+    let mut module = graph.finish()?;
+    let memory = Arc::make_mut(&mut module);
+    memory.latency = 2;
+    memory.primitive = primitive;
+    Ok(module)
+}

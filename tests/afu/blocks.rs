@@ -1,0 +1,41 @@
+//! The whole AFU as synthesis for an ECP5 reads it: lines, tables, products and chains in that target's primitives, for
+//! which models in `tb/` stand here.
+
+use contact_afu::afu::{Afu, Spec};
+use contact_afu::config::{Config, Results};
+use contact_afu::cosim::{File, Job, Model, Source, Trace};
+use contact_afu::synth::Target;
+
+use crate::bench::{Case, config, driver};
+
+fn model_in_primitives(config: &Config) -> Model {
+    let models = concat!(
+        include_str!("../../tb/mult18x18d.v"),
+        include_str!("../../tb/ccu2c.v"),
+        include_str!("../../tb/dp16kd.v")
+    );
+    let first = File { name: "primitives.v".to_owned(), text: format!("`define SYNTHESIS\n{models}") };
+    let afu = Afu::generate(Spec { delays: Target::Ecp5.delays(), ..Spec::from(config.clone()) }).unwrap();
+    let own: Vec<File> = afu.verilog().into_iter().map(|(name, text)| File { name, text }).collect();
+    let lines = own.iter().filter(|file| file.name.starts_with("line_memory") && file.text.contains("DP16KD")).count();
+    assert_eq!(lines, 4, "the collector's lines and the dispatcher's, of 36 bits and the rest of 512");
+    let source = Source::new("contact_afu", std::iter::once(first).chain(own).collect());
+    Model::build(&source.parameter("SCPUS", config.scpus.into()), Trace::Off).unwrap()
+}
+
+/// Over links that keep lines waiting in the memories: reads that come in any order, writes that stall.
+#[test]
+fn lines_in_block_memories_come_back_whole() {
+    for results in [Results::All, Results::Hits] {
+        let config = Config { results, ..config(2, "e8f3z", "depth") };
+        let model = model_in_primitives(&config);
+        let case = Case::random(&config, 1_501, 3);
+        for (link, seed) in [("ideal", 1), ("shuffled", 2), ("hostile", 3)] {
+            let afu = model.instance(seed).unwrap();
+            let mut driver = driver(&afu, link, seed);
+            case.check(&driver.run(&case.job()).unwrap(), link);
+            let again = Job { destination_address: 1 << 41, ..case.job() };
+            case.check(&driver.run(&again).unwrap(), link);
+        }
+    }
+}
