@@ -8,6 +8,10 @@ use crate::hdl::{Errors, Graph, Instantiated, Module, Signal};
 use super::control::room_to_enter;
 use super::{Spec, backlog, feeder, packer, sieve};
 
+/// Half of the dispatcher's lines are kept for those on their way to it when it says stop, where only contacts come back: up
+/// to six.
+const LEAST_LINES_OF_HITS: u32 = 16;
+
 /// How much there is room for.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Room {
@@ -33,7 +37,8 @@ impl Room {
                 Self { results: lines * layout.contacts_per_line(), lines }
             }
             Results::Hits => {
-                Self { results: in_flight.max(room_to_enter(spec)).next_power_of_two(), lines: least_lines }
+                let results = in_flight.max(room_to_enter(spec)).next_power_of_two();
+                Self { results, lines: least_lines.max(LEAST_LINES_OF_HITS) }
             }
         }
     }

@@ -31,6 +31,22 @@ fn hits_come_back_in_order_and_dense() {
     }
 }
 
+/// However few lines the dispatcher is asked to keep: none is lost behind a link that takes one now and then.
+#[test]
+fn a_small_dispatcher_loses_no_hits() {
+    for dispatch_cycles in [1, 4, 8] {
+        for contact in ["position,normal,depth", "hit"] {
+            let spec = Spec { dispatch_cycles, ..only_hits(4, contact, 512) };
+            let mut bench = Bench::of(spec, 1, u64::from(dispatch_cycles));
+            bench.hits = |_| true;
+            bench.set("destination_lines", 300);
+            bench.start(300, 1);
+            bench.finish();
+            bench.check_hits(300, 300);
+        }
+    }
+}
+
 /// What there is no room for is not written, but counted; and the next job knows nothing of it.
 #[test]
 fn more_hits_than_there_is_room_for_end_in_an_error() {

@@ -5,6 +5,8 @@ mod bench;
 mod hits;
 
 use bench::Bench;
+use contact_afu::afu::Spec;
+use contact_afu::config::Config;
 
 #[test]
 fn every_pair_comes_back_once_and_in_order() {
@@ -17,6 +19,19 @@ fn every_pair_comes_back_once_and_in_order() {
                 bench.check(count);
             }
         }
+    }
+}
+
+/// A line that waits for more results than there is room for would wait for ever.
+#[test]
+fn a_small_dispatcher_keeps_no_pair_out() {
+    for (dispatch_cycles, contact) in [(1, "hit"), (1, "position,normal,depth"), (2, "hit")] {
+        let config = Config { contact: contact.parse().unwrap(), scpus: 2, ..Config::default() };
+        let mut bench = Bench::of(Spec { dispatch_cycles, ..Spec::from(config) }, 3, 1);
+        bench.start(1_203, 1);
+        bench.finish();
+        assert_eq!(bench.get("error"), 0);
+        assert_eq!(bench.written.len(), if contact == "hit" { 3 } else { 602 });
     }
 }
 
