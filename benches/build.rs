@@ -1,6 +1,6 @@
-//! What a cold build of a model takes, N = 16 against N = 1: `cargo bench --bench build`. Each build has a new cache, so
-//! Verilator's runtime and the SCPU are compiled too. With `--check` the program fails unless N = 16 takes at most three
-//! times as long as N = 1, in CPU seconds of Verilator and the compiler (other programs' share does not count).
+//! What a cold build of a model takes, N = 16 against N = 1: `cargo bench --bench build`. Each build has a new cache,
+//! so Verilator's runtime and the SCPU are compiled too. With `--check` the program fails unless N = 16 takes at most
+//! three times as long as N = 1, in CPU seconds of Verilator and the compiler (other programs' share does not count).
 
 use std::path::PathBuf;
 use std::process::ExitCode;

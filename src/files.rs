@@ -4,9 +4,10 @@ use std::fs::{self, File, OpenOptions, Permissions};
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-/// Writes a file's whole content. A file, old or new, is written aside and renamed into place, with the permissions that
-/// the old one had. Through a symbolic link the file that it names is replaced, not the link. A device, a pipe or a
-/// socket is written as it stands: renamed onto, `/dev/null` would be a file, and no reader of a pipe would get a byte.
+/// Writes a file's whole content. A file, old or new, is written aside and renamed into place, with the permissions
+/// that the old one had. Through a symbolic link the file that it names is replaced, not the link. A device, a pipe or
+/// a socket is written as it stands: renamed onto, `/dev/null` would be a file, and no reader of a pipe would get a
+/// byte.
 ///
 /// # Errors
 /// When the file system refuses, or `content` fails; an old file is then as it was.

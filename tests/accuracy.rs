@@ -44,9 +44,9 @@ fn errors_of_paper_are_those_of_f32() {
     assert!(depth.mean < depth.p999 && depth.p999 <= depth.largest);
 }
 
-/// Up to the 23 bits of the record every bit makes errors smaller. With one more they grow, and then fall again: a number
-/// of 24 bits lies in the middle of two records every second time, and what is rounded there is rounded a second time.
-/// In the end they are those of rounding the true number to the record, which no arithmetic escapes.
+/// Up to the 23 bits of the record every bit makes errors smaller. With one more they grow, and then fall again: a
+/// number of 24 bits lies in the middle of two records every second time, and what is rounded there is rounded a second
+/// time. In the end they are those of rounding the true number to the record, which no arithmetic escapes.
 #[test]
 fn more_fraction_bits_are_no_more_error_on_average_but_from_23_to_24() {
     let bits: Vec<u32> = (5..=32).collect();

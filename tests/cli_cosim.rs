@@ -137,7 +137,8 @@ fn pairs_come_back_as_contacts_and_figures() {
     assert_eq!(report["flows"], serde_json::json!({"fake": 1, "grazing": 1, "real": 1, "invalid": 1}));
     assert_eq!((&report["pairs"], &report["contacts"], &report["mismatches"]), (&4.into(), &2.into(), &0.into()));
     assert_eq!(report["config"]["scpus"], 2);
-    // Two lines of pairs and two of contacts; and the shell's own: control memory, found twice; latency, performance, status.
+    // Two lines of pairs and two of contacts; and the shell's own: control memory, found twice; latency, performance,
+    // status.
     let link = (&report["link"]["bytes_read"], &report["link"]["bytes_written"]);
     assert_eq!(link, (&(64 * 4).into(), &(64 * 5).into()));
 

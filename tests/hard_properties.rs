@@ -1,5 +1,5 @@
-//! What holds in each profile, shrunk to the smallest pair that breaks it: in `wide` and `exact` for every pair of finite
-//! spheres, in `paper` where binary32 neither overflows nor underflows.
+//! What holds in each profile, shrunk to the smallest pair that breaks it: in `wide` and `exact` for every pair of
+//! finite spheres, in `paper` where binary32 neither overflows nor underflows.
 
 mod support;
 

@@ -25,7 +25,8 @@ fn ninety_thousand_pairs_take_what_harp1_allows() {
     let outcome = &verdict.outcome;
     // 32 bytes in and 32 out for each pair, at 6.5 GB/s: 9.85 ns.
     let allowed = 64.0 * 90_000.0 / 6.5;
-    // The shell's own lines (polls, counters, status) are less than half a percent; what is reached is told of the pairs.
+    // The shell's own lines (polls, counters, status) are less than half a percent; what is reached is told of the
+    // pairs.
     let own = 5.0 * outcome.limit_cycles / allowed;
     assert!((1.0..1.005).contains(&own), "{own}");
     let reached = allowed / (5.0 * outcome.cycles as f64);

@@ -139,8 +139,8 @@ fn every_word_of_faithful_formats() {
     }
 }
 
-/// Correct roots by a table and a correcting step: every word of formats of every kind of table, and where there is none,
-/// digits.
+/// Correct roots by a table and a correcting step: every word of formats of every kind of table, and where there is
+/// none, digits.
 #[test]
 fn every_word_of_roots_by_table() {
     for operator in [Operator::Sqrt, Operator::Recip] {
@@ -303,8 +303,8 @@ fn the_excess_of_squares() {
 }
 
 /// Digit recurrences have no table whose entries could be sampled, and a table has as many places to be wrong as it has
-/// words: every significand of binary32 is tried, under an even and an odd exponent for the root, against the machine's own
-/// arithmetic.
+/// words: every significand of binary32 is tried, under an even and an odd exponent for the root, against the machine's
+/// own arithmetic.
 #[test]
 fn every_significand_of_root_and_reciprocal() {
     every_significand(Bench::new);

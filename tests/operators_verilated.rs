@@ -5,6 +5,8 @@
 //! and reciprocal; `cargo test --test operators_verilated -- --ignored` runs a hundred million each.
 #![cfg(feature = "cosim")]
 
+#[path = "support/primitives.rs"]
+mod primitives;
 mod support;
 
 use std::collections::VecDeque;
@@ -117,15 +119,13 @@ fn a_million_of_wide_without_its_ends() {
     }
 }
 
-/// What synthesis reads: primitives in the place of products and of chains that add or subtract, for which models in `tb/`
-/// stand here.
+/// What synthesis reads: primitives in the place of products and of chains that add or subtract, for which models in
+/// `tb/` stand here.
 #[test]
 fn primitives_compute_as_their_twins_do() {
-    let models =
-        concat!(include_str!("../tb/mult18x18d.v"), include_str!("../tb/ccu2c.v"), include_str!("../tb/dp16kd.v"));
     let delays = Target::Ecp5.delays();
     for synthesis in [true, false] {
-        let first = File { name: "primitives.v".to_owned(), text: format!("`define SYNTHESIS\n{models}") };
+        let first = File { name: "primitives.v".to_owned(), text: primitives::primitives() };
         let both = [Operator::Mul, Operator::Square, Operator::Add, Operator::Div, Operator::Sqrt, Operator::Recip];
         let paper = both.map(|operator| (operator, Domain::from(Format::BINARY32)));
         // Roots by table.

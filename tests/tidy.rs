@@ -151,6 +151,20 @@ fn a_file_is_one_thing() {
     assert!(long.is_empty(), "more than {LINES} lines: {long:?}");
 }
 
+/// What the formatter leaves alone.
+#[test]
+fn comments_keep_to_the_width_of_code() {
+    let is_wide = |line: &&str| line.trim_start().starts_with("//") && line.chars().count() > 120;
+    let sources = ["src", "tests", "examples", "benches"].map(|folder| files(folder, &["rs"])).concat();
+    let wide: Vec<_> = sources
+        .iter()
+        .flat_map(|path| {
+            text(path).lines().filter(is_wide).map(|line| format!("{}: {line}", short(path))).collect::<Vec<_>>()
+        })
+        .collect();
+    assert!(wide.is_empty(), "{wide:#?}");
+}
+
 #[test]
 fn no_file_names_a_registry_host_or_a_path_of_one_machine() {
     // In pieces, so that this file does not name them.

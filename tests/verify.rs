@@ -52,8 +52,8 @@ fn one_radius_is_in_no_record_and_changes_no_bit() {
     }
 }
 
-/// Records of 16 bits, four pairs a line: all of them and contacts alone, a radius of the hardware's, contacts of one bit,
-/// operators shared; bit for bit the reference that reads the same words.
+/// Records of 16 bits, four pairs a line: all of them and contacts alone, a radius of the hardware's, contacts of one
+/// bit, operators shared; bit for bit the reference that reads the same words.
 #[test]
 fn records_of_16_bits_come_back_as_the_reference_has_them() {
     let random = Set::Random(701).pairs(9);

@@ -17,8 +17,8 @@ pub trait Contender {
     fn answers(&mut self, pairs: &[PairRecord]) -> Result<Vec<Answer>, EngineError>;
 }
 
-/// A profile's reference kernel, which the hardware equals bit for bit. Over shorter records it answers the pair that was
-/// rounded to them, and is judged by the one that was given: that rounding is part of what they cost.
+/// A profile's reference kernel, which the hardware equals bit for bit. Over shorter records it answers the pair that
+/// was rounded to them, and is judged by the one that was given: that rounding is part of what they cost.
 #[derive(Clone, Debug)]
 pub struct Profiled {
     profile: Profile,

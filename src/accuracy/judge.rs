@@ -41,10 +41,11 @@ impl Standard {
 ///
 /// The limits: a wrong decision is gross where the distance is more than 2^−20 of its size from the sum of the radii
 /// (and wrong, but not gross, nearer by); a number that is none; a normal whose length differs from 1 by more than
-/// 10^−6, or whose direction by more than 10^−5; a depth wrong by more than 16·2^−24 of the sum of the radii; a position
-/// wrong by more than 16·2^−24 of the largest coordinate or radius. Each tolerance has 2^−149 added. A true value
-/// beyond the largest binary32 number that is given as infinity is right. Where the centres coincide any direction parts
-/// the spheres, and the place depends on it: of an engine that takes another than ODE's, neither is judged.
+/// 10^−6, or whose direction by more than 10^−5; a depth wrong by more than 16·2^−24 of the sum of the radii; a
+/// position wrong by more than 16·2^−24 of the largest coordinate or radius. Each tolerance has 2^−149 added. A true
+/// value beyond the largest binary32 number that is given as infinity is right. Where the centres coincide any
+/// direction parts the spheres, and the place depends on it: of an engine that takes another than ODE's, neither is
+/// judged.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Judgement {
     /// A contact that was not found.

@@ -51,9 +51,8 @@ pub(super) fn backlog(spec: &Spec, places: u32) -> Result<Arc<Module>, Errors> {
     }
     let leaves = rotate(read, head.value(), Turn::Down);
 
-    let group_out = graph.register("group_out", leaving_bits, 0);
-    group_out.next(group.gate(!start));
-    graph.output("group", group_out.value());
+    let group_out = group.gate(!start).registered("group_out");
+    graph.output("group", group_out);
     for (lane, entry) in leaves.into_iter().take(leaving as usize).enumerate() {
         // The packer hears of their number a cycle before, and merges what comes: a lane without a contact is zero.
         let taken = group.greater_than(group.same(lane as u128));

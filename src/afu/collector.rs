@@ -7,11 +7,11 @@
 
 use std::sync::Arc;
 
-use crate::hdl::{Errors, Graph, Module, Register, Signal};
+use crate::hdl::{Errors, Graph, Module};
 
-use super::countdown::Countdown;
+use super::counter::{Countdown, all_used, up_down};
 use super::in_order::{self, Arrival, goes_in_order};
-use super::lines::{Access, LineMemory};
+use super::lines::{Access, line_memory};
 use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, Spec};
 
 /// From the first cycle in which it runs to its first request.
@@ -58,10 +58,9 @@ pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, Errors> {
     next_address.next_if(start | issue, start.select(source, next_address.plus(1)));
     next_slot.next_if(start | issue, start.select(next_slot.same(0), next_slot.plus(1)));
     // A slot is free a cycle after its line was taken.
-    let taken = graph.register("taken", 1, 0);
-    taken.next(take & !start);
-    up_down(reserved, start, issue, *taken);
-    may_ask.next(run & some_left & !all_used(reserved, issue, *taken));
+    let taken = (take & !start).registered("taken");
+    up_down(reserved, start, issue, taken);
+    may_ask.next(run & some_left & !all_used(reserved, issue, taken));
 
     // Responses: into the slot the tag names.
     let response_epoch = response_tag.high(EPOCH_BITS).named("response_epoch");
@@ -70,8 +69,8 @@ pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let outstanding = graph.register("outstanding", slot_bits + 1, 0);
     up_down(outstanding, start, issue, response);
 
-    // Lines are offered in order, up to two ahead of the one that is taken: so whether there is one never waits for what
-    // is taken.
+    // Lines are offered in order, up to two ahead of the one that is taken: so whether there is one never waits for
+    // what is taken.
     let line_valid = graph.register("line_valid", 1, 0);
     let two_valid = graph.register("two_valid", 1, 0);
     let arrival = Arrival { valid: response, slot: response_slot };
@@ -89,7 +88,7 @@ pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, Errors> {
         read_index: head.value(),
         advance: always,
     };
-    let line = LineMemory::new(spec, slots)?.instance(&graph, "reorder", &access);
+    let line = line_memory(&graph, spec, "reorder", slots, &access)?;
 
     graph.output("rd_req_valid", request_valid.value());
     graph.output("rd_req_address", request_address.value());
@@ -101,16 +100,4 @@ pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, Errors> {
     graph.output("asking", *request_valid | *may_ask);
     graph.output("idle", !outstanding.any() & !*request_valid & !*may_ask);
     graph.finish()
-}
-
-/// Connects a counter, from 0 at `start`, that one event takes up and another down: which comes last.
-pub(super) fn up_down<'g>(count: Register<'g>, start: Signal<'g>, up: Signal<'g>, down: Signal<'g>) {
-    let moved = up.select(count.plus(1), count.minus(1));
-    count.next_if(start | (up ^ down), start.select(count.same(0), moved));
-}
-
-/// Whether all of a power of two slots are used after a cycle, of which `reserved` are at its beginning.
-pub(super) fn all_used<'g>(reserved: Register<'g>, takes: Signal<'g>, frees: Signal<'g>) -> Signal<'g> {
-    let slots = reserved.width() - 1;
-    !frees & (reserved.msb() | (reserved.low(slots).all() & takes))
 }

@@ -55,11 +55,7 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, Errors>
     let watchdog = graph.input("watchdog", COUNT_BITS);
     let abort = graph.input("abort_job", 1);
     // What comes from afar is heard a cycle later.
-    let heard = |name: &str| {
-        let register = graph.register(&format!("{name}_heard"), 1, 0);
-        register.next(graph.input(name, 1));
-        register.value()
-    };
+    let heard = |name: &str| graph.input(name, 1).registered(&format!("{name}_heard"));
     let [read_failed, write_failed] = ["read_failed", "write_failed"].map(heard);
     let response = heard("response");
     let link_idle_now = graph.input("link_idle", 1);
@@ -113,29 +109,26 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, Errors>
         Results::All => graph.constant(room_bits, u128::from(layout.contacts_per_line())).gate(freed),
         Results::Hits => freed.extend(room_bits),
     };
-    let change = graph.register("room_change", room_bits, 0);
-    change.next((returned - entered.extend(room_bits)).gate(!*begin));
-    let next_room = (room.value() + change.value()).named("next_room");
+    let change = (returned - entered.extend(room_bits)).gate(!*begin).registered("room_change");
+    let next_room = (room.value() + change).named("next_room");
     room.next(begin.select(room.same(u128::from(capacity)), next_room));
     // Whether a group may enter, whatever those before it were that do not show yet.
     let may_enter = graph.register("may_enter", 1, 0);
-    may_enter.next(run & next_room.drop_low(room_to_enter(spec).ilog2()).any());
+    may_enter.next(run & next_room.drop_low(feeder::room_to_enter(spec).ilog2()).any());
     let inside = graph.register("pairs_inside", room_bits, 0);
     inside.next(inside.value() + entered.extend(room_bits) - emerged.extend(room_bits));
 
     // Watchdog: cycles since the last response while one is owed.
     let silence = graph.register("silence", COUNT_BITS, 0);
-    let link_idle = graph.register("link_idle_heard", 1, 0);
-    link_idle.next(link_idle_now);
-    let quiet = (response | *link_idle).named("not_waiting");
+    let link_idle = link_idle_now.registered("link_idle_heard");
+    let quiet = (response | link_idle).named("not_waiting");
     silence.next((quiet | !busy).select(silence.same(0), silence.plus(1)));
     let expired = graph.register("expired", 1, 0);
     expired.next(busy & job_watchdog.any() & silence.at_least(*job_watchdog));
 
     // The end.
-    let complete = graph.register("complete", 1, 0);
-    complete.next(run & packed & dispatched & link_idle_now);
-    let complete = (run & *complete).named("completes");
+    let complete = (run & packed & dispatched & link_idle_now).registered("complete");
+    let complete = (run & complete).named("completes");
     let causes = [
         (mode.any() & accept, JobError::Mode),
         (*running & abort, JobError::Aborted),
@@ -153,12 +146,11 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, Errors>
     let gives_up = (busy & *expired).named("gives_up");
     let given_up = graph.register("given_up", 1, 0);
     given_up.next(!accept & (*given_up | gives_up));
-    // What runs hears a cycle later that it should not; a request on the port stays until it is accepted, even if nobody
-    // waits for its response any more.
-    let stopped = graph.register("stopped", 1, 0);
-    stopped.next(*draining);
+    // What runs hears a cycle later that it should not; a request on the port stays until it is accepted, even if
+    // nobody waits for its response any more.
+    let stopped = draining.registered("stopped");
     let empty = (!inside.any() & !entered.any()).named("none_inside");
-    let drained = (*draining & *stopped & empty & (*link_idle | (*given_up & !asking))).named("drained");
+    let drained = (*draining & stopped & empty & (link_idle | (*given_up & !asking))).named("drained");
     running.next((accept & !failing) | (*running & !complete & !failing));
     draining.next(failing | (*draining & !drained));
     done.next(!accept & (*done | complete | drained));
@@ -197,12 +189,6 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, Errors>
     graph.output("last_place", last_place.value());
     graph.output("may_enter", may_enter.value());
     graph.finish()
-}
-
-/// Results that there must be room for when a group enters, a power of two: its own, and those of the groups before it that
-/// do not show yet.
-pub(super) fn room_to_enter(spec: &Spec) -> u32 {
-    spec.lanes() * feeder::UNSEEN_GROUPS.next_power_of_two()
 }
 
 /// Bits that hold a number of results up to `capacity`.

@@ -10,10 +10,9 @@ use std::sync::Arc;
 use crate::config::Results;
 use crate::hdl::{Errors, Graph, Module};
 
-use super::collector::{all_used, up_down};
-use super::countdown::Countdown;
+use super::counter::{Countdown, all_used, up_down};
 use super::in_order::{Arrival, goes_in_order};
-use super::lines::{Access, LineMemory};
+use super::lines::{Access, line_memory};
 use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, Spec};
 
 /// From a line to its write request: stored, at the head, registered.
@@ -41,8 +40,8 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, Errors>
     let response_error = graph.input("wr_rsp_error", 1);
     let bounded = spec.config.results == Results::Hits;
 
-    // Finished lines wait in a memory, the oldest of them read already. It cannot overflow: a pair enters an SCPU only when
-    // its result has a place here.
+    // Finished lines wait in a memory, the oldest of them read already. It cannot overflow: a pair enters an SCPU only
+    // when its result has a place here.
     let tail = graph.register("tail", place_bits, 0);
     let head = graph.register("head", place_bits, 0);
     let stored = graph.register("stored", place_bits + 1, 0);
@@ -79,9 +78,7 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, Errors>
         overflowed.next(!start & (*overflowed | goes & !fits));
         graph.output("overflowed", overflowed.value());
         // The packer hears a few cycles before the memory is full: lines are still on their way then.
-        let accepts = graph.register("accepts", 1, 0);
-        accepts.next(!stored.high(2).any());
-        graph.output("accepts", accepts.value());
+        graph.output("accepts", (!stored.high(2).any()).registered("accepts"));
         send
     } else {
         goes
@@ -92,7 +89,7 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, Errors>
     // The memory's own register is the port's.
     let access =
         Access { write: line_valid, write_index: tail.value(), line, read, read_index: head.value(), advance: send };
-    let request_data = LineMemory::new(spec, depth)?.instance(&graph, "finished", &access);
+    let request_data = line_memory(&graph, spec, "finished", depth, &access)?;
     next_address.next_if(start | send, start.select(destination, next_address.plus(1)));
     next_slot.next_if(start | send, start.select(next_slot.same(0), next_slot.plus(1)));
 
@@ -111,9 +108,7 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, Errors>
     graph.output("wr_req_tag", request_tag.value());
     graph.output("wr_req_data", request_data);
     if !bounded {
-        let line_left = graph.register("line_left", 1, 0);
-        line_left.next(take & !start);
-        graph.output("line_left", line_left.value());
+        graph.output("line_left", (take & !start).registered("line_left"));
     }
     graph.output("response", response);
     graph.output("failed", response & response_error);

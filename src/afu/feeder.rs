@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use crate::hdl::{Errors, Graph, Module, Signal};
 
-use super::countdown::Countdown;
+use super::counter::Countdown;
 use super::lines::CYCLES_TO_WORD;
 use super::rounds::Rounds;
 use super::{COUNT_BITS, SCPU_BITS, Spec};
@@ -17,7 +17,13 @@ const RANKS: u32 = CYCLES_TO_WORD + 1;
 /// From a line offered to a group of its pairs on their way to the slots: the line in hand, and the decision's ranks.
 pub(super) const CYCLES_TO_ISSUE: u32 = 1 + RANKS;
 /// Groups that do not show yet in whether there is room when one is decided, that one among them.
-pub(super) const UNSEEN_GROUPS: u32 = 3;
+const UNSEEN_GROUPS: u32 = 3;
+
+/// Results that there must be room for when a group enters, a power of two: its own, and those of the groups before it
+/// that do not show yet.
+pub(super) fn room_to_enter(spec: &Spec) -> u32 {
+    spec.lanes() * UNSEEN_GROUPS.next_power_of_two()
+}
 
 /// Builds the module `contact_afu_feeder`.
 pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, Errors> {
@@ -36,8 +42,8 @@ pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let line = graph.input("line", spec.line_bits);
     let may_enter = graph.input("may_enter", 1);
 
-    // A window of two lines: the one in hand, and the one the collector offers. What they hold comes later; here are the
-    // places in the one in hand of the next pair and of the last.
+    // A window of two lines: the one in hand, and the one the collector offers. What they hold comes later; here are
+    // the places in the one in hand of the next pair and of the last.
     let in_hand = graph.register("in_hand", 1, 0);
     let place = graph.register("place", place_bits, 0);
     let last = graph.data_register("last", place_bits);
@@ -115,9 +121,7 @@ pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let ranks = (0..RANKS).scan(group, |before, rank| {
         let last = rank + 1 == RANKS;
         let name = if last { "issue_group".to_owned() } else { format!("group_rank_{rank}") };
-        let register = graph.register(&name, group_bits, 0);
-        register.next(*before);
-        *before = register.value();
+        *before = before.registered(&name);
         Some(*before)
     });
     let ranks: Vec<_> = ranks.collect();
@@ -132,8 +136,8 @@ pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, Errors> {
     graph.finish()
 }
 
-/// What `of` the number of pairs comes to that go. What each number would come to is known beforehand; which it is comes
-/// last.
+/// What `of` the number of pairs comes to that go. What each number would come to is known beforehand; which it is
+/// comes last.
 fn by_group<'g>(go: &[Signal<'g>], of: impl Fn(u32) -> Signal<'g>) -> Signal<'g> {
     (1..).zip(go).fold(of(0), |fewer, (pairs, go)| go.select(of(pairs), fewer))
 }

@@ -79,10 +79,10 @@ impl Afu {
         Ok(Self { spec, top, core, kernel })
     }
 
-    /// The accelerator of a specification around an SCPU of the caller's, which is its own kernel then: a module with the
-    /// input `pair` and the outputs `record`, `contact` and `invalid_pair`, which follow it by its `latency`, at least 1;
-    /// and at an interval above 1 the input `take`, set in the cycle before a pair comes to stay for the interval.
-    /// This is what the controller is proven with; there is no shell around it.
+    /// The accelerator of a specification around an SCPU of the caller's, which is its own kernel then: a module with
+    /// the input `pair` and the outputs `record`, `contact` and `invalid_pair`, which follow it by its `latency`, at
+    /// least 1; and at an interval above 1 the input `take`, set in the cycle before a pair comes to stay for the
+    /// interval. This is what the controller is proven with; there is no shell around it.
     ///
     /// # Errors
     /// What is out of range in `spec`; ports that do not fit.

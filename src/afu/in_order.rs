@@ -29,11 +29,10 @@ pub(super) fn goes_in_order<'g>(
     oldest.next(start.select(oldest.same(0), next_oldest));
 
     // An arrival's age is counted first, and marked a cycle later.
-    let arrived = graph.register("arrived", 1, 0);
-    arrived.next(arrival.valid & !start);
+    let arrived = (arrival.valid & !start).registered("arrived");
     let age = graph.data_register("arrived_age", arrival.slot.width());
     age.next(arrival.slot - next_oldest);
-    let marked = (*came | age.one_hot().gate(*arrived)).named("marked");
+    let marked = (*came | age.one_hot().gate(arrived)).named("marked");
     let moved = marked.drop_low(1).extend(slots);
     came.next(start.select(came.same(0), goes.select(moved, marked)));
     goes

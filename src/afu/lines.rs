@@ -1,9 +1,7 @@
 //! A memory of lines, whose word comes two cycles after its address: a block memory, or several side by side where the
 //! target's are written as primitives.
 
-use std::sync::Arc;
-
-use crate::hdl::{Errors, Graph, Module, Ports, Signal, block_memory};
+use crate::hdl::{Errors, Graph, Ports, Signal, block_memory};
 
 use super::Spec;
 
@@ -25,40 +23,32 @@ pub(super) struct Access<'g> {
     pub(super) advance: Signal<'g>,
 }
 
-/// The modules of a memory of `depth` lines.
-pub(super) struct LineMemory {
-    /// Each with its bits of the line, from the lowest on.
-    slices: Vec<(Arc<Module>, u32)>,
-}
-
-impl LineMemory {
-    pub(super) fn new(spec: &Spec, depth: u32) -> Result<Self, Errors> {
-        let primitive = spec.delays.memory_primitive.filter(|_| depth <= PRIMITIVE_DEPTH);
-        let widest = primitive.map_or(spec.line_bits, |_| PRIMITIVE_WIDTH);
-        let whole = (0..spec.line_bits / widest).map(|_| widest);
-        let rest = Some(spec.line_bits % widest).filter(|rest| *rest > 0);
-        let slice = |width| Ok((block_memory(depth, width, Ports::Gated, primitive)?, width));
-        Ok(Self { slices: whole.chain(rest).map(slice).collect::<Result<_, _>>()? })
+/// A memory of `depth` lines under that name; gives the line. Its instances are one, or as many as primitives hold it,
+/// each named after the first of its bits.
+pub(super) fn line_memory<'g>(
+    graph: &'g Graph,
+    spec: &Spec,
+    name: &str,
+    depth: u32,
+    access: &Access<'g>,
+) -> Result<Signal<'g>, Errors> {
+    let primitive = spec.delays.memory_primitive.filter(|_| depth <= PRIMITIVE_DEPTH);
+    let widest = primitive.map_or(spec.line_bits, |_| PRIMITIVE_WIDTH);
+    let mut words = Vec::new();
+    for first in (0..spec.line_bits).step_by(widest as usize) {
+        let width = widest.min(spec.line_bits - first);
+        let name = if width == spec.line_bits { name.to_owned() } else { format!("{name}_{first}") };
+        let inputs = [
+            ("write", access.write),
+            ("write_index", access.write_index),
+            ("write_word", access.line.slice(first, width)),
+            ("read", access.read),
+            ("read_index", access.read_index),
+            ("advance", access.advance),
+        ];
+        let memory = block_memory(depth, width, Ports::Gated, primitive)?;
+        words.push(graph.instance(&name, &memory, &inputs).output("word"));
     }
-
-    /// Its instances under a name, and the line.
-    pub(super) fn instance<'g>(&self, graph: &'g Graph, name: &str, access: &Access<'g>) -> Signal<'g> {
-        let mut first = 0;
-        let mut words = Vec::new();
-        for (module, width) in &self.slices {
-            let name = if self.slices.len() == 1 { name.to_owned() } else { format!("{name}_{first}") };
-            let inputs = [
-                ("write", access.write),
-                ("write_index", access.write_index),
-                ("write_word", access.line.slice(first, *width)),
-                ("read", access.read),
-                ("read_index", access.read_index),
-                ("advance", access.advance),
-            ];
-            words.push(graph.instance(&name, module, &inputs).output("word"));
-            first += width;
-        }
-        words.reverse();
-        Signal::join(&words)
-    }
+    words.reverse();
+    Ok(Signal::join(&words))
 }

@@ -6,7 +6,7 @@
 mod backlog;
 mod collector;
 mod control;
-mod countdown;
+mod counter;
 mod dispatcher;
 mod feeder;
 mod files;

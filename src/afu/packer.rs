@@ -42,15 +42,14 @@ fn of_all(spec: &Spec) -> Result<Arc<Module>, Errors> {
     }
     let emerged = graph.register("emerged", COUNT_BITS, 0);
     emerged.next(start.select(emerged.same(0), emerged.value() + group.extend(COUNT_BITS)));
-    let all_out = graph.register("all_out", 1, 0);
-    all_out.next(!start & emerged.equals(count));
-    fill(&graph, spec, start, group, records, *all_out);
+    let all_out = (!start & emerged.equals(count)).registered("all_out");
+    fill(&graph, spec, start, group, records, all_out);
     status::count(&graph, start, emerged.delay(1).named("emerged_before"), &contacts, &invalids);
     graph.finish()
 }
 
-/// Contacts of a cycle in order of pairs, each a record with its number, a cycle after how many they are; `all_out` when no
-/// more will come.
+/// Contacts of a cycle in order of pairs, each a record with its number, a cycle after how many they are; `all_out`
+/// when no more will come.
 fn of_hits(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let graph = Graph::new("contact_afu_packer");
     graph.about("packs contacts into destination lines");
@@ -65,22 +64,20 @@ fn of_hits(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let all_out = graph.input("all_out", 1);
     if layout.contacts_per_line() == 1 {
         // A record is a line: there is nothing to gather.
-        let line_valid = graph.register("line_valid", 1, 0);
-        let comes = graph.register("line_comes", 1, 0);
-        comes.next(!start & group);
-        line_valid.next(!start & *comes);
-        graph.output("line_valid", line_valid.value());
+        let comes = (!start & group).registered("line_comes");
+        let line_valid = (!start & comes).registered("line_valid");
+        graph.output("line_valid", line_valid);
         graph.output("line", records[0].delay(1).named("line"));
-        graph.output("done", all_out & !*comes & !*line_valid);
+        graph.output("done", all_out & !comes & !line_valid);
     } else {
         fill(&graph, spec, start, group, records, all_out);
     }
     graph.finish()
 }
 
-/// Packs the first `group` of `records` (as wide as in a line), which come a cycle after their number, behind those before
-/// them, as the outputs `line_valid`, `line` and `done`. At most as many as share a line come in one cycle. Once `all_out`,
-/// the line in hand goes out.
+/// Packs the first `group` of `records` (as wide as in a line), which come a cycle after their number, behind those
+/// before them, as the outputs `line_valid`, `line` and `done`. At most as many as share a line come in one cycle. Once
+/// `all_out`, the line in hand goes out.
 fn fill<'g>(
     graph: &'g Graph,
     spec: &Spec,
@@ -102,13 +99,8 @@ fn fill<'g>(
     let flushes = (all_out & place.any() & !group.any()).named("flushes");
     let wrapped = fills.select(next_place.minus(u128::from(per_line)), next_place).named("wrapped_place");
     place.next((start | flushes).select(place.same(0), wrapped.low(place_bits)));
-    let flag = |name: &str, next: Signal<'g>| {
-        let register = graph.register(name, 1, 0);
-        register.next(next);
-        register.value()
-    };
-    let went = flag("went", !start & (fills | flushes));
-    let goes = flag("goes", !start & went);
+    let went = (!start & (fills | flushes)).registered("went");
+    let goes = (!start & went).registered("goes");
     let full = fills.delay(2).named("full");
     let emptied = (start | flushes).delay(2).named("emptied");
     let first_place = place.delay(1).named("first_place");
@@ -128,7 +120,7 @@ fn fill<'g>(
     let over = if lanes == 1 { filling.same(0) } else { merged.drop_low(spec.line_bits).extend(spec.line_bits) };
     let kept = full.select(over, merged.low(spec.line_bits));
     filling.next(emptied.select(filling.same(0), kept));
-    let line_valid = flag("line_valid", !start & goes);
+    let line_valid = (!start & goes).registered("line_valid");
     graph.output("line_valid", line_valid);
     graph.output("line", merged.low(spec.line_bits).delay(1).named("line"));
     graph.output("done", all_out & !place.any() & !went & !goes & !line_valid);

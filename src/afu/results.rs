@@ -5,11 +5,11 @@ use std::sync::Arc;
 use crate::config::Results;
 use crate::hdl::{Errors, Graph, Instantiated, Module, Signal};
 
-use super::control::room_to_enter;
+use super::feeder::room_to_enter;
 use super::{Spec, backlog, feeder, packer, sieve};
 
-/// Half of the dispatcher's lines are kept for those on their way to it when it says stop, where only contacts come back: up
-/// to six.
+/// Half of the dispatcher's lines are kept for those on their way to it when it says stop, where only contacts come
+/// back: up to six.
 const LEAST_LINES_OF_HITS: u32 = 16;
 
 /// How much there is room for.
@@ -69,7 +69,8 @@ impl Parts {
         Ok(Self { packer: packer::packer(spec)?, before })
     }
 
-    /// The instances. `lanes` has the slots' outputs by name, which come a cycle after their number, `group`; `accepts` is high while the dispatcher has room for more.
+    /// The instances. `lanes` has the slots' outputs by name, which come a cycle after their number, `group`; `accepts`
+    /// is high while the dispatcher has room for more.
     pub(super) fn instances<'g>(
         &self,
         graph: &'g Graph,

@@ -62,7 +62,8 @@ impl<'g> Rounds<'g> {
         }
     }
 
-    /// Takes the next turn's phase along: `wraps` when turns begin anew with this group, `ends_block` when its block ends.
+    /// Takes the next turn's phase along: `wraps` when turns begin anew with this group, `ends_block` when its block
+    /// ends.
     pub fn advance(&self, start: Signal<'g>, ends_block: Signal<'g>, wraps: Signal<'g>) {
         let moved = ends_block.named("ends_block").select(following(*self.turn_phase, self.interval), *self.turn_phase);
         let first = self.graph.constant(moved.width(), 0);

@@ -31,8 +31,8 @@ pub(super) fn scpu(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>, Err
     let words: Vec<Signal<'_>> =
         names.iter().zip(0..).map(|(name, index)| pair.slice(bits * index, bits).named(name)).collect();
 
-    // A NaN, an infinity or a negative radius (a negative zero is a radius) makes a pair invalid. A register between what is
-    // seen in a word and what follows for the pair: the kernel asks for that a cycle later.
+    // A NaN, an infinity or a negative radius (a negative zero is a radius) makes a pair invalid. A register between
+    // what is seen in a word and what follows for the pair: the kernel asks for that a cycle later.
     let is_late = take.is_none();
     let mut invalid = graph.constant(1, 0);
     for (word, name) in words.iter().zip(&names) {

@@ -30,11 +30,7 @@ pub(super) fn sieve(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let start = graph.input("start", 1);
     let count = graph.input("count", COUNT_BITS);
     // It comes a cycle before what it counts.
-    let group = {
-        let register = graph.register("group_here", group_bits, 0);
-        register.next(graph.input("group", group_bits));
-        register.value()
-    };
+    let group = graph.input("group", group_bits).registered("group_here");
     let mut records = Vec::new();
     let mut contacts = Vec::new();
     let mut invalids = Vec::new();
@@ -74,27 +70,23 @@ pub(super) fn sieve(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let mut put = hits;
     let mut on_its_way = graph.constant(1, 0);
     for rank in 0..ranks(lanes) {
-        let register = graph.register(&format!("hits_rank_{rank}"), group_bits, 0);
-        register.next(put.gate(!start));
-        put = register.value();
+        put = put.gate(!start).registered(&format!("hits_rank_{rank}"));
         on_its_way = on_its_way | put.any();
     }
-    let dropped = graph.register("dropped_pairs", group_bits, 0);
-    dropped.next((group - hits).gate(!start));
+    let dropped = (group - hits).gate(!start).registered("dropped_pairs");
     graph.output("put", put);
     for (lane, contact) in row.iter().enumerate() {
         graph.output(&format!("entry_{lane}"), contact.entry);
     }
-    graph.output("dropped", dropped.value());
-    let all_seen = graph.register("all_seen", 1, 0);
-    all_seen.next(!start & emerged.equals(count));
-    graph.output("all_out", *all_seen & !on_its_way);
+    graph.output("dropped", dropped);
+    let all_seen = (!start & emerged.equals(count)).registered("all_seen");
+    graph.output("all_out", all_seen & !on_its_way);
     status::count(&graph, start, *emerged, &contacts, &invalids);
     graph.finish()
 }
 
-/// What is in a lane after a step of the compaction: the contact `2^step` lanes on if it moves that far, else the lane's
-/// own if it stays.
+/// What is in a lane after a step of the compaction: the contact `2^step` lanes on if it moves that far, else the
+/// lane's own if it stays.
 fn moved<'g>(row: &[Lane<'g>], lane: usize, step: u32) -> Lane<'g> {
     let own = row[lane];
     let stays = own.valid & !own.distance.bit(step);

@@ -14,7 +14,8 @@ pub struct Spec {
     pub reset: Reset,
     /// Bits of a line: 512; less for proofs.
     pub line_bits: u32,
-    /// Bits of a record's word: those of the configuration's records; less for proofs, whose SCPUs are not the kernel's.
+    /// Bits of a record's word: those of the configuration's records; less for proofs, whose SCPUs are not the
+    /// kernel's.
     pub word_bits: u32,
     /// Reads, and writes, outstanding at most: 64; less for proofs.
     pub max_outstanding: u32,
@@ -84,8 +85,8 @@ impl Spec {
         }
     }
 
-    /// The longest interval at which the SCPUs take `pairs_a_cycle`, or what a line has of them if that is less; 1 where
-    /// they do not at any.
+    /// The longest interval at which the SCPUs take `pairs_a_cycle`, or what a line has of them if that is less; 1
+    /// where they do not at any.
     pub fn longest_interval(&self, pairs_a_cycle: f64) -> u32 {
         let wanted = pairs_a_cycle.min(f64::from(self.lanes())) * (1.0 - 1e-9);
         let takes = |interval: u32| f64::from(self.scpus_in_turn(interval)) / f64::from(interval);

@@ -4,8 +4,8 @@ use crate::hdl::{Graph, Signal};
 
 use super::COUNT_BITS;
 
-/// Counts contacts and invalid pairs, as the outputs `contacts`, `invalid` and `first_invalid`. `emerged` is the number of
-/// the pair in lane 0; the two lists have a bit a lane.
+/// Counts contacts and invalid pairs, as the outputs `contacts`, `invalid` and `first_invalid`. `emerged` is the number
+/// of the pair in lane 0; the two lists have a bit a lane.
 pub(super) fn count<'g>(
     graph: &'g Graph,
     start: Signal<'g>,

@@ -45,7 +45,8 @@ pub(super) fn record_code(record: Record) -> u64 {
 impl Afu {
     /// What the AFU says of itself in its capability word: bits 7:0 SCPUs, 15:8 interval, 19:16 contact fields (hit,
     /// depth, normal, position from bit 16 up), 24 whether contacts alone come back, 25 whether all
-    /// spheres have one radius, 27:26 the numbers of records (0 f32, 1 f16, 2 bf16), 43:32 latency of an SCPU in cycles.
+    /// spheres have one radius, 27:26 the numbers of records (0 f32, 1 f16, 2 bf16), 43:32 latency of an SCPU in
+    /// cycles.
     pub fn capability(&self) -> u64 {
         let config = &self.spec().config;
         let fields = [config.contact.position, config.contact.normal, config.contact.depth, true];

@@ -147,9 +147,9 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, E
         slot_inputs.push(("in_group", group));
     }
     let slots = graph.array("slots", &slot, scpus, &slot_inputs);
-    // The slots' answers come a cycle after `group_out`, and are registered once more after the or: so it is known a cycle
-    // before they are there how many there will be.
-    let group_done = register(&graph, "group_done", group_out);
+    // The slots' answers come a cycle after `group_out`, and are registered once more after the or: so it is known a
+    // cycle before they are there how many there will be.
+    let group_done = group_out.registered("group_done");
     let kinds = ["record", "contact", "invalid"].into_iter().filter(|kind| has_records || *kind != "record");
     let lane_outputs: Vec<(String, Signal<'_>)> = (0..lanes)
         .flat_map(|lane| kinds.clone().map(move |what| format!("{what}_{lane}")))
@@ -204,13 +204,6 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, E
     graph.finish()
 }
 
-/// A register that is clear after reset.
-fn register<'g>(graph: &'g Graph, name: &str, next: Signal<'g>) -> Signal<'g> {
-    let register = graph.register(name, next.width(), 0);
-    register.next(next);
-    register.value()
-}
-
 /// Group size and turn as they were `latency` − 1 cycles ago. What a delay line holds is not reset, so group sizes
 /// count only once the line has been filled since reset.
 fn alongside<'g>(graph: &'g Graph, group: Signal<'g>, turn: Signal<'g>, latency: u32) -> (Signal<'g>, Signal<'g>) {
@@ -226,8 +219,8 @@ fn alongside<'g>(graph: &'g Graph, group: Signal<'g>, turn: Signal<'g>, latency:
 
 /// What the host may rely on: bits 7:0 SCPUs, 15:8 interval, 19:16 contact fields (hit, depth, normal, position from
 /// bit 16 up), 24 set where only contacts come back, 25 where
-/// every sphere has the one radius that is part of the hardware, 27:26 the numbers of records (0 f32, 1 f16, 2 bf16), 43:32
-/// latency of an SCPU in cycles; the others are zero.
+/// every sphere has the one radius that is part of the hardware, 27:26 the numbers of records (0 f32, 1 f16, 2 bf16),
+/// 43:32 latency of an SCPU in cycles; the others are zero.
 fn capability<'g>(graph: &'g Graph, spec: &Spec, scpus: Signal<'g>, latency: u32) -> Signal<'g> {
     let fields = spec.config.contact;
     let asked = [fields.position, fields.normal, fields.depth, true];

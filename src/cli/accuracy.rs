@@ -12,13 +12,13 @@ use super::{link, origin, output, progress};
 
 /// Show what accuracy costs in time: errors against the truth beside latency, throughput and area
 ///
-/// For each arithmetic: wrong decisions and errors on the diamond, crowded scenes and the hard pairs; the time of a lone
-/// pair and of many over a link, from the simulated Verilog; area and clock of an SCPU, from synthesis. Models and
+/// For each arithmetic: wrong decisions and errors on the diamond, crowded scenes and the hard pairs; the time of a
+/// lone pair and of many over a link, from the simulated Verilog; area and clock of an SCPU, from synthesis. Models and
 /// netlists are kept, so only a first run builds them.
 #[derive(Args, Debug)]
 pub struct Accuracy {
-    /// Folder to write: report.html, front.svg, throughput.svg, link.svg, results.csv, results.json, and manifest.json, from
-    /// which the same command goes on where it was stopped. Without it, a row a profile
+    /// Folder to write: report.html, front.svg, throughput.svg, link.svg, results.csv, results.json, and manifest.json,
+    /// from which the same command goes on where it was stopped. Without it, a row a profile
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Some ten configurations and fewer pairs; no areas unless --synth asks for them, no routes unless --seeds does
@@ -33,8 +33,8 @@ pub struct Accuracy {
     /// Place and route nothing: the fronts are then those of the delay model
     #[arg(long)]
     no_route: bool,
-    /// Place and route the points on the fronts with each of these seeds of the placer, a list, of whose clocks the median
-    /// counts; nextpnr must then be there [default: 1 in the full study, where nextpnr is there]
+    /// Place and route the points on the fronts with each of these seeds of the placer, a list, of whose clocks the
+    /// median counts; nextpnr must then be there [default: 1 in the full study, where nextpnr is there]
     #[arg(long, value_name = "LIST", value_delimiter = ',', requires = "out", conflicts_with_all = ["no_route", "no_synth"])]
     seeds: Vec<u32>,
     /// Link between AFU and memory: a name or file as in `afu cosim`

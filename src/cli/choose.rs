@@ -13,8 +13,8 @@ use super::output;
 
 /// Name the cheapest configuration that meets bounds, from the results of `afu accuracy --out`
 ///
-/// The cheapest has the fewest LUTs, of those that were placed and routed where any was; where no cells were counted, it
-/// has the least time. Where nothing meets the bounds, it
+/// The cheapest has the fewest LUTs, of those that were placed and routed where any was; where no cells were counted,
+/// it has the least time. Where nothing meets the bounds, it
 /// says what it would take, bound by bound, and ends with status 1.
 #[derive(Args, Debug)]
 pub struct Choose {

@@ -32,8 +32,8 @@ pub struct Cosim {
     /// Pairs: diamond:H, random:N, dense:N, hard:N, or a .csv or .npy file; given several times, several jobs
     #[arg(long, value_name = "SET|FILE", default_value = "diamond:10")]
     pairs: Vec<String>,
-    /// Write the contacts of the only job, as they lie in destination memory: .csv or .npy; with --results hits, only those
-    /// of pairs that touch, each with its pair's number
+    /// Write the contacts of the only job, as they lie in destination memory: .csv or .npy; with --results hits, only
+    /// those of pairs that touch, each with its pair's number
     #[arg(long, value_name = "FILE")]
     contacts: Option<PathBuf>,
     /// Link between AFU and memory: ideal, late, shuffled, hostile, harp1, harp2, pcie3x8, or a .toml file of a link
@@ -56,8 +56,8 @@ pub struct Cosim {
     rtl: Option<PathBuf>,
     /// Corpus, a .csv of pairs that once mismatched: a job that runs first; pairs that mismatch now join it
     ///
-    /// A corpus that does not exist yet is empty, and made by the first mismatch. Without this option, mismatching pairs
-    /// join afu-corpus.csv in the current folder.
+    /// A corpus that does not exist yet is empty, and made by the first mismatch. Without this option, mismatching
+    /// pairs join afu-corpus.csv in the current folder.
     #[arg(long, value_name = "FILE")]
     replay: Option<PathBuf>,
     #[command(flatten)]

@@ -16,7 +16,8 @@ use super::link;
 #[derive(Args, Debug)]
 #[command(next_help_heading = "The AFU")]
 pub struct Machine {
-    /// Arithmetic: paper (IEEE binary32), wide, exact, half, bfloat or eXfY (exponent and fraction bits) [default: wide]
+    /// Arithmetic: paper (IEEE binary32), wide, exact, half, bfloat or eXfY (exponent and fraction bits) [default:
+    /// wide]
     #[arg(long, value_name = "NAME|eXfY")]
     pub profile: Option<Profile>,
     /// Rounding: nearest (ties to even) or zero (toward it) [default: nearest]
@@ -54,7 +55,8 @@ pub struct Machine {
     /// Clock that pipelines are cut for and time is told in, MHz [default: 200]
     #[arg(long, value_name = "MHZ")]
     pub clock: Option<f64>,
-    /// FPGA family whose blocks are used by name: ecp5, ice40, cyclonev, xilinx; of rtl and synth [default: none; of synth ecp5]
+    /// FPGA family whose blocks are used by name: ecp5, ice40, cyclonev, xilinx; of rtl and synth [default: none; of
+    /// synth ecp5]
     #[arg(long, value_name = "NAME")]
     pub target: Option<String>,
     /// Take the configuration from a manifest.json (or a folder with one); options given beside it win
@@ -120,8 +122,8 @@ pub struct One {
     /// Sphere Collision Processing Units, 1 to 64 [default: 10]
     #[arg(long, value_name = "N", help_heading = "The AFU")]
     pub scpus: Option<u32>,
-    /// Cycles from one pair to the next in one SCPU, 1 to 64: above 1 it has fewer operators. auto: the most at which the
-    /// link is still what limits [default: auto; of synth and paper 1]
+    /// Cycles from one pair to the next in one SCPU, 1 to 64: above 1 it has fewer operators. auto: the most at which
+    /// the link is still what limits [default: auto; of synth and paper 1]
     #[arg(long, value_name = "II", help_heading = "The AFU")]
     pub interval: Option<String>,
     #[command(flatten)]
@@ -129,8 +131,8 @@ pub struct One {
 }
 
 impl One {
-    /// The configuration, known to be one that can be generated. The interval, where neither option nor file says it, is
-    /// `auto`: for that link, a name or file.
+    /// The configuration, known to be one that can be generated. The interval, where neither option nor file says it,
+    /// is `auto`: for that link, a name or file.
     #[cfg(feature = "cosim")]
     pub fn config_over(&self, link: &str) -> Result<Config, Failure> {
         self.with(self.machine.config()?, link, AUTO)
@@ -141,8 +143,8 @@ impl One {
         self.with(self.machine.config_for_any_target()?, link, AUTO)
     }
 
-    /// The same from the machine's configuration, with interval 1 where none is said: for what measures an SCPU by itself,
-    /// or by the number of SCPUs.
+    /// The same from the machine's configuration, with interval 1 where none is said: for what measures an SCPU by
+    /// itself, or by the number of SCPUs.
     pub fn at_full_rate(&self, config: Config, link: &str) -> Result<Config, Failure> {
         self.with(config, link, "1")
     }

@@ -13,8 +13,8 @@ use super::machine::One;
 /// simulated AFU, and writes figure6.svg, figure7.svg, per-collision.svg, CSVs, results.json and report.html. What was
 /// simulated is kept: the same command again goes on where it was stopped.
 ///
-/// Measuring ODE needs the feature `ode`: ./scripts/setup --ode && cargo run --release --features ode -- paper --out DIR
-/// (./scripts/paper does both). Without it this command ends with status 3.
+/// Measuring ODE needs the feature `ode`: ./scripts/setup --ode && cargo run --release --features ode -- paper --out
+/// DIR (./scripts/paper does both). Without it this command ends with status 3.
 #[derive(Args, Debug)]
 #[cfg_attr(not(feature = "ode"), allow(dead_code, reason = "only the program with ODE reads them"))]
 pub struct Paper {

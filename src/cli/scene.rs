@@ -13,8 +13,9 @@ use super::{output, progress};
 
 /// Run a scene with only the effects it calls for, or say what it calls for
 ///
-/// FILE is TOML (see docs/scene.md; examples/scenes has five). Every effect and every field of a contact is off unless a
-/// line of the scene calls for it: it is then not in the Verilog, not in a record, and its part of ODE is never called.
+/// FILE is TOML (see docs/scene.md; examples/scenes has five). Every effect and every field of a contact is off unless
+/// a line of the scene calls for it: it is then not in the Verilog, not in a record, and its part of ODE is never
+/// called.
 #[derive(Args, Debug)]
 pub struct Scene {
     /// The scene

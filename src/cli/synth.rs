@@ -21,8 +21,8 @@ use super::{output, progress};
 
 #[derive(Args, Debug)]
 pub struct Synth {
-    /// Operators, a list: add, sub, add_magnitudes, mul, square, div, recip, sqrt, halve, greater, at_most, root_exceeds, from_record, to_record,
-    /// or all
+    /// Operators, a list: add, sub, add_magnitudes, mul, square, div, recip, sqrt, halve, greater, at_most,
+    /// root_exceeds, from_record, to_record, or all
     #[arg(long, value_name = "NAMES", value_delimiter = ',', conflicts_with = "kernel")]
     operator: Vec<String>,
     /// One SCPU: the kernel with detection of invalid pairs. With neither this nor --operator: the whole AFU

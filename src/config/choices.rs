@@ -83,7 +83,8 @@ choice!(
 );
 
 choice!(
-    /// The numbers of records in memory: pairs are rounded to them when they are written, and contacts come back in them.
+    /// The numbers of records in memory: pairs are rounded to them when they are written, and contacts come back in
+    /// them.
     Record, "record", default F32,
     /// IEEE binary32: a pair is 32 bytes, two a line.
     F32 = "f32",

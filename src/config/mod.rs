@@ -26,9 +26,9 @@ pub const INTERVALS: std::ops::RangeInclusive<u32> = 1..=64;
 pub struct Config {
     /// Sphere Collision Processing Units. A Verilog parameter: it changes no other file than the top's default.
     pub scpus: u32,
-    /// Initiation interval: cycles from one pair to the next in one SCPU, which has as few operators as that allows. SCPUs
-    /// beyond a full line of pairs a cycle (at two pairs a line, beyond the largest multiple of twice the interval) get
-    /// none.
+    /// Initiation interval: cycles from one pair to the next in one SCPU, which has as few operators as that allows.
+    /// SCPUs beyond a full line of pairs a cycle (at two pairs a line, beyond the largest multiple of twice the
+    /// interval) get none.
     pub interval: u32,
     /// The arithmetic.
     pub profile: Profile,
@@ -174,14 +174,15 @@ impl Config {
         1000.0 / self.clock_mhz
     }
 
-    /// The AFU whose Verilog lies in `rtl/`, and whose model is built in: the default, but for an interval at which its ten
-    /// SCPUs still take a full line of pairs a cycle and none waits for work. It is what `afu rtl` writes without options.
+    /// The AFU whose Verilog lies in `rtl/`, and whose model is built in: the default, but for an interval at which its
+    /// ten SCPUs still take a full line of pairs a cycle and none waits for work. It is what `afu rtl` writes without
+    /// options.
     pub fn shipped() -> Self {
         Self { interval: 5, ..Self::default() }
     }
 
-    /// The options that give this configuration, those of the default left out. The interval is always among them: on the
-    /// command line its default depends on SCPUs and link.
+    /// The options that give this configuration, those of the default left out. The interval is always among them: on
+    /// the command line its default depends on SCPUs and link.
     pub fn flags(&self) -> Vec<String> {
         let default = Self::default();
         let radius = |config: &Self| config.radius.map_or(String::new(), |radius| radius.to_string());

@@ -12,14 +12,14 @@ use super::state::address_width;
 pub enum Ports {
     /// A word is written in every cycle, and the word that was read goes to its register in every cycle.
     Free,
-    /// A word is written where the input `write` is set, another read where `read` is, and the one that was read before goes to
-    /// its register where `advance` is.
+    /// A word is written where the input `write` is set, another read where `read` is, and the one that was read before
+    /// goes to its register where `advance` is.
     Gated,
 }
 
-/// The memory as a module with inputs `write_index`, `write_word`, `read_index` and those of `ports`, and an output `word`:
-/// what stood at `read_index` two cycles ago. A word must not be read in the cycle in which it is written. As `primitive`,
-/// if there is one.
+/// The memory as a module with inputs `write_index`, `write_word`, `read_index` and those of `ports`, and an output
+/// `word`: what stood at `read_index` two cycles ago. A word must not be read in the cycle in which it is written. As
+/// `primitive`, if there is one.
 ///
 /// # Errors
 /// What the graph recorded.

@@ -14,8 +14,8 @@ const CYCLES: RangeInclusive<u32> = 18..=514;
 /// The widths of a delay in a block: a narrower one wastes it, a wider one does not fit.
 const WIDTH: RangeInclusive<u32> = 24..=36;
 
-/// The delay as a module with an input `value` and an output `delayed`, for a target whose block memories are written as
-/// primitives and where one fits; nothing elsewhere.
+/// The delay as a module with an input `value` and an output `delayed`, for a target whose block memories are written
+/// as primitives and where one fits; nothing elsewhere.
 ///
 /// # Errors
 /// What the graph recorded.
@@ -29,8 +29,8 @@ pub fn delay_block(cycles: u32, width: u32, model: &DelayModel) -> Result<Option
 }
 
 fn line(cycles: u32, width: u32, primitive: Primitive) -> Result<Arc<Module>, Errors> {
-    // A word is read into one register of the block and waits in another. Of that it comes late, and from afar: a register
-    // in the fabric takes it.
+    // A word is read into one register of the block and waits in another. Of that it comes late, and from afar: a
+    // register in the fabric takes it.
     let depth = cycles - 2;
     let graph = Graph::new(format!("delay_{cycles}x{width}{}", primitive.suffix()));
     graph.about(format!("value, {cycles} cycles ago: a block memory with registers of its own"));

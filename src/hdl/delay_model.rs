@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 use super::loads::{chooser, loads};
 use super::module::{Module, Node, NodeId, Op, Primitive};
 
-/// Tables with so many bits of index go into a block memory, where the target has such: shorter ones are a look-up table or
-/// two a bit, longer ones take several blocks.
+/// Tables with so many bits of index go into a block memory, where the target has such: shorter ones are a look-up
+/// table or two a bit, longer ones take several blocks.
 const TABLE_INDEX: RangeInclusive<u32> = 6..=9;
 /// The widest word of a block memory.
 const TABLE_BITS: u32 = 36;
@@ -44,8 +44,8 @@ pub struct DelayModel {
     pub carry: f64,
     /// One bit of a carry chain.
     pub carry_bit: f64,
-    /// From logic to the carry at the beginning of a chain, where it is not a constant. Not fitted: read off routed roots
-    /// and quotients.
+    /// From logic to the carry at the beginning of a chain, where it is not a constant. Not fitted: read off routed
+    /// roots and quotients.
     #[serde(default)]
     pub carry_in: f64,
     /// Out of a carry chain at its end, as a comparison does, beyond what a sum needs.
@@ -58,8 +58,8 @@ pub struct DelayModel {
     /// without.
     #[serde(default)]
     pub multiplier_registers: u32,
-    /// From logic into a multiplier block's first register, beyond what a register between stages takes: blocks stand in a
-    /// few columns, and the way there is long. Like the next one not fitted: read off routed SCPUs.
+    /// From logic into a multiplier block's first register, beyond what a register between stages takes: blocks stand
+    /// in a few columns, and the way there is long. Like the next one not fitted: read off routed SCPUs.
     #[serde(default)]
     pub multiplier_input: f64,
     /// Out of a multiplier block's last register, beyond what a register between stages takes.
@@ -68,7 +68,8 @@ pub struct DelayModel {
     /// Register ranks of a block memory that holds a table: 2, of its index and its word, or 0 where tables are logic.
     #[serde(default)]
     pub table_registers: u32,
-    /// Out of such a memory's last register, beyond what a register between stages takes: it is slower, and farther off.
+    /// Out of such a memory's last register, beyond what a register between stages takes: it is slower, and farther
+    /// off.
     #[serde(default)]
     pub table_output: f64,
     /// The primitive such a memory is written as; without one synthesis has to find it.
@@ -87,9 +88,9 @@ pub struct DelayModel {
 }
 
 impl Default for DelayModel {
-    /// What `rtl/` is cut with, for any family: fitted to the one router there is, without a vendor's primitives. Synthesis
-    /// has to find the registers of multiplier blocks and block memories; Yosys leaves those of an ECP5's blocks in the
-    /// fabric, so for it there are [`Primitive`]s.
+    /// What `rtl/` is cut with, for any family: fitted to the one router there is, without a vendor's primitives.
+    /// Synthesis has to find the registers of multiplier blocks and block memories; Yosys leaves those of an ECP5's
+    /// blocks in the fabric, so for it there are [`Primitive`]s.
     fn default() -> Self {
         Self::ecp5().with_registered_multipliers(None).with_registered_tables(None)
     }
@@ -113,9 +114,9 @@ impl DelayModel {
         }
     }
 
-    /// Where a fit begins: read off a dozen figures by hand, of adders of 12, 16, 24, 32 and 48 bits (453, 431, 385, 356
-    /// and 306 MHz), a 31-bit comparison (304), a 28-bit shifter of two, three and five levels (447, 306 and 234), an
-    /// 18 × 18 product (182) and a 24 × 24 one (111).
+    /// Where a fit begins: read off a dozen figures by hand, of adders of 12, 16, 24, 32 and 48 bits (453, 431, 385,
+    /// 356 and 306 MHz), a 31-bit comparison (304), a 28-bit shifter of two, three and five levels (447, 306 and 234),
+    /// an 18 × 18 product (182) and a 24 × 24 one (111).
     pub fn guess() -> Self {
         Self {
             name: "ecp5".to_owned(),
@@ -192,8 +193,8 @@ impl DelayModel {
         Self { multiplier_registers: 2, multiplier_primitive: primitive, ..far }
     }
 
-    /// The same target with longer tables in block memories whose registers are used, written as `primitive` where there is
-    /// one.
+    /// The same target with longer tables in block memories whose registers are used, written as `primitive` where
+    /// there is one.
     #[must_use]
     pub fn with_registered_tables(self, primitive: Option<Primitive>) -> Self {
         // Read off routed reciprocals.

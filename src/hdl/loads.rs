@@ -2,8 +2,8 @@
 
 use super::module::{Module, NodeId, Op};
 
-/// How many places each value chooses in, by node: bits of the choices, of the gates and of the differences or sums that
-/// it is the condition of.
+/// How many places each value chooses in, by node: bits of the choices, of the gates and of the differences or sums
+/// that it is the condition of.
 pub(super) fn loads(module: &Module) -> Vec<u32> {
     let mut loads = vec![0; module.nodes.len()];
     for node in &module.nodes {
@@ -50,7 +50,8 @@ mod tests {
     use crate::hdl::module::Op;
     use crate::hdl::{DelayModel, Graph};
 
-    /// A comparison of a line that chooses takes as long whichever side of the inverter it reads, alone or beside others.
+    /// A comparison of a line that chooses takes as long whichever side of the inverter it reads, alone or beside
+    /// others.
     #[test]
     fn a_complement_is_as_busy_as_its_line() {
         let model = DelayModel::ecp5();

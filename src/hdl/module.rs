@@ -71,8 +71,8 @@ pub enum Op {
         /// The value on reset; without one it is not reset.
         reset: Option<u128>,
     },
-    /// The word read from a memory at the last clock edge, or the last at which the enable was set. Operands: address, then
-    /// an enable (1 bit) if it has one.
+    /// The word read from a memory at the last clock edge, or the last at which the enable was set. Operands: address,
+    /// then an enable (1 bit) if it has one.
     MemoryRead {
         /// Index into [`Module::memories`].
         memory: usize,
@@ -237,19 +237,19 @@ pub struct Module {
 
 /// A longer delay than this many cycles is not a row of registers with names of their own.
 pub const LONGEST_REGISTER_DELAY: u32 = 3;
-/// A delay of so many cycles or more is a memory, if it is wide: two registers cost no more than a memory and what it is
-/// read into.
+/// A delay of so many cycles or more is a memory, if it is wide: two registers cost no more than a memory and what it
+/// is read into.
 const SHORTEST_MEMORY_DELAY: u32 = 3;
 /// A longer delay of fewer bits than this is a shift register: a memory is never narrower than a few bits, and its
 /// pointer costs more than it saves.
 const NARROWEST_MEMORY_DELAY: u32 = 12;
 /// But a shift register never has more bits than this.
 const MOST_SHIFT_REGISTER_BITS: u32 = 64;
-/// One primitive of distributed memory is so deep on every family (ECP5 16, 7 series and Cyclone V 32). A longer delay in
-/// distributed memory is several, one behind the other: so no choice of primitives lies before the register.
+/// One primitive of distributed memory is so deep on every family (ECP5 16, 7 series and Cyclone V 32). A longer delay
+/// in distributed memory is several, one behind the other: so no choice of primitives lies before the register.
 pub(super) const DISTRIBUTED_DEPTH: u32 = 16;
-/// A longer delay is one memory, a block RAM. Not sooner: on ECP5 a word takes 5.2 ns out of a block RAM without its own
-/// output register, which synthesis does not find, and what follows a delay would have to be as slow.
+/// A longer delay is one memory, a block RAM. Not sooner: on ECP5 a word takes 5.2 ns out of a block RAM without its
+/// own output register, which synthesis does not find, and what follows a delay would have to be as slow.
 pub(super) const LONGEST_DISTRIBUTED_DELAY: u32 = 256;
 
 /// Whether a delay of a value of `width` bits is a memory with a pointer.

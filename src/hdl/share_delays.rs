@@ -80,8 +80,8 @@ pub(super) fn chain(inner: &mut Inner, live: &[NodeId]) {
 }
 
 /// How much of a delay stands apart before the rest of it: a few cycles are as many registers, each with a name of its
-/// own; many are several memories, each of one primitive's depth. What `is_late` passes a register before it goes into a
-/// memory: a register stands beside the logic that it takes its value from, and the way into a memory is a long one.
+/// own; many are several memories, each of one primitive's depth. What `is_late` passes a register before it goes into
+/// a memory: a register stands beside the logic that it takes its value from, and the way into a memory is a long one.
 fn step(cycles: u32, width: u32, is_late: bool) -> Option<u32> {
     match (cycles, is_memory_delay(cycles, width)) {
         (0 | 1, _) => None,

@@ -63,6 +63,16 @@ impl<'g> Register<'g> {
     }
 }
 
+impl<'g> Signal<'g> {
+    /// A register of that name, clear after reset, which takes this value at every clock edge.
+    #[track_caller]
+    pub fn registered(self, name: &str) -> Signal<'g> {
+        let register = self.graph().register(name, self.width(), 0);
+        register.next(self);
+        register.value()
+    }
+}
+
 /// A memory under construction.
 #[derive(Clone, Copy)]
 pub struct MemoryHandle<'g> {
@@ -189,8 +199,8 @@ impl Graph {
         self.instantiate(name, module, InstanceCount::One, inputs, Location::caller())
     }
 
-    /// As [`Graph::instance`], of a module that may have a reset of its own: for a wrapper that is synthesised, which the
-    /// evaluator does not take.
+    /// As [`Graph::instance`], of a module that may have a reset of its own: for a wrapper that is synthesised, which
+    /// the evaluator does not take.
     #[track_caller]
     pub fn instance_of_top<'g>(
         &'g self,

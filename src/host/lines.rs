@@ -92,14 +92,15 @@ impl<'a> Contacts<'a> {
         (index / per_line, index % per_line)
     }
 
-    /// The line of the record with this index: a pair's number, or, where only contacts come back, how many come before.
+    /// The line of the record with this index: a pair's number, or, where only contacts come back, how many come
+    /// before.
     #[cfg_attr(not(feature = "cosim"), allow(dead_code))] // for `verify` alone
     pub(crate) fn line(&self, index: usize) -> usize {
         self.place(index).0
     }
 
-    /// The contact with this index; nothing if its line was never written. Words that are not in the record are zero. Of
-    /// records without words of the contact only the contact is known: it reads as real or fake.
+    /// The contact with this index; nothing if its line was never written. Words that are not in the record are zero.
+    /// Of records without words of the contact only the contact is known: it reads as real or fake.
     pub(crate) fn get(&self, index: usize) -> Option<ContactRecord> {
         self.record(index).map(|(_, contact)| contact)
     }

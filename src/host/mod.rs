@@ -1,9 +1,9 @@
 //! The host's side of an AFU below SPL2: memory that both see, and transactions whose steps cannot be confused.
 //!
-//! A [`Session`] has a device, by its [`Transport`], and a [`Workspace`]. It gives [`Transaction`]s, whose types are the
-//! paper's seven steps. A device is the Verilated AFU ([`Machine`](crate::cosim::spl2::Machine)) or a model of it in
-//! software ([`Software`]), which answer alike, byte for byte. A session is also an [`Engine`](crate::kernel::Engine): a
-//! batch is one transaction, or several where the buffers hold fewer pairs.
+//! A [`Session`] has a device, by its [`Transport`], and a [`Workspace`]. It gives [`Transaction`]s, whose types are
+//! the paper's seven steps. A device is the Verilated AFU ([`Machine`](crate::cosim::spl2::Machine)) or a model of it
+//! in software ([`Software`]), which answer alike, byte for byte. A session is also an
+//! [`Engine`](crate::kernel::Engine): a batch is one transaction, or several where the buffers hold fewer pairs.
 
 mod engine;
 mod error;

@@ -1,7 +1,7 @@
 //! The same formula in binary64 over many pairs at once: what software does that wants more than binary32.
 //!
-//! For comparison only: its decision is that of the rounded root, its input and output are `f64`, and no hardware is held
-//! against it.
+//! For comparison only: its decision is that of the rounded root, its input and output are `f64`, and no hardware is
+//! held against it.
 
 use super::PairRecord;
 

@@ -11,8 +11,8 @@ const fn is_binary32(record: Format) -> bool {
 }
 
 /// The word of `record` for a binary32 word: rounded to the nearest, ties to even, whatever the format's own rounding
-/// (IEEE 754-2019, clause 5.4.2). What is too large becomes infinite; a NaN becomes the canonical one. Words of binary32
-/// are left as they are.
+/// (IEEE 754-2019, clause 5.4.2). What is too large becomes infinite; a NaN becomes the canonical one. Words of
+/// binary32 are left as they are.
 pub fn narrow(word: u32, record: Format) -> u32 {
     if is_binary32(record) {
         return word;

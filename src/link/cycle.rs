@@ -175,8 +175,8 @@ impl Link {
         self.now += 1;
         self.read_bucket.drip();
         self.joint_bucket.drip();
-        // Of the bandwidth they share, each direction has the first word every other cycle. A read uses it when its data
-        // comes, a write when its data goes.
+        // Of the bandwidth they share, each direction has the first word every other cycle. A read uses it when its
+        // data comes, a write when its data goes.
         let (read, write_ready) = if self.now.is_multiple_of(2) {
             let read = self.answer_read();
             (read, self.offer_write(requests))

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Something a link must not do, done once. Requests are counted from 0 in each direction, from the start of the link or
-/// the last [`Link::plan`](super::Link::plan).
+/// Something a link must not do, done once. Requests are counted from 0 in each direction, from the start of the link
+/// or the last [`Link::plan`](super::Link::plan).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Fault {

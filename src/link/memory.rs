@@ -113,8 +113,8 @@ impl Memory {
         self.get(address).copied().unwrap_or(UNWRITTEN)
     }
 
-    /// A write by the AFU is accepted: its job, or nothing where it must not write. (What lies there may be the source or
-    /// another job's result, so it is not done.)
+    /// A write by the AFU is accepted: its job, or nothing where it must not write. (What lies there may be the source
+    /// or another job's result, so it is not done.)
     pub(super) fn accept_write(&mut self, address: u64) -> Option<u64> {
         let Some(guard) = &mut self.guard else { return Some(self.job) };
         let Some(index) = guard.index(address) else {

@@ -1,8 +1,8 @@
 //! A simulated link between an AFU's line port and memory: how late, in what order, how fast, with which faults.
 //!
-//! [`LinkModel`] is data, in cycles; [`Physical`] is data in nanoseconds, each figure with its source, which a clock turns
-//! into the former. [`Link`] is a model at work on a [`Memory`], one function call a clock cycle, the same for the same
-//! seed. Nothing here knows Verilator: a test can drive a link by hand. Imports nothing of ours.
+//! [`LinkModel`] is data, in cycles; [`Physical`] is data in nanoseconds, each figure with its source, which a clock
+//! turns into the former. [`Link`] is a model at work on a [`Memory`], one function call a clock cycle, the same for
+//! the same seed. Nothing here knows Verilator: a test can drive a link by hand. Imports nothing of ours.
 
 mod cycle;
 mod description;

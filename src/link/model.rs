@@ -94,8 +94,8 @@ impl LinkModel {
         Self::new("ideal", Direction::steady(1, 0), Order::InOrder)
     }
 
-    /// Reads of 71 to 118 cycles, the latency and tail recalled for HARP v1 at 200 MHz (Choi et al., DAC 2016), in order
-    /// and without a bandwidth limit; writes alike.
+    /// Reads of 71 to 118 cycles, the latency and tail recalled for HARP v1 at 200 MHz (Choi et al., DAC 2016), in
+    /// order and without a bandwidth limit; writes alike.
     pub fn late() -> Self {
         Self::new("late", Direction::steady(71, 47), Order::InOrder)
     }
@@ -144,9 +144,9 @@ impl LinkModel {
         Ok(())
     }
 
-    /// The cycles that so many lines read and written take at least over this link, on average over its randomness: what
-    /// its bandwidths, its stalls and (by Little's law) its latency under its requests in flight allow. An AFU that has
-    /// fewer in flight than the link takes reaches less.
+    /// The cycles that so many lines read and written take at least over this link, on average over its randomness:
+    /// what its bandwidths, its stalls and (by Little's law) its latency under its requests in flight allow. An AFU
+    /// that has fewer in flight than the link takes reaches less.
     pub fn limit_cycles(&self, lines_read: u64, lines_written: u64) -> f64 {
         let (read, written) = (lines_read as f64, lines_written as f64);
         let alone = (read * self.read.cycles_per_read()).max(written * self.write.cycles_per_write());

@@ -133,8 +133,8 @@ impl Physical {
         None
     }
 
-    /// The link at a clock of `mhz`. Times are rounded to the nearest cycle; a direction carries at most a line a cycle,
-    /// which is what the AFU's port has.
+    /// The link at a clock of `mhz`. Times are rounded to the nearest cycle; a direction carries at most a line a
+    /// cycle, which is what the AFU's port has.
     ///
     /// # Errors
     /// When at that clock a value is outside what a model can hold.

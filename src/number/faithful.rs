@@ -64,7 +64,8 @@ const LONGEST_WHOLE: u32 = 6;
 const SAMPLES: u64 = 512;
 
 impl Faithful {
-    /// The table for fractions of `fraction_bits`, 1 to [`FAITHFUL_FRACTION_BITS`]; longer ones have that of the longest.
+    /// The table for fractions of `fraction_bits`, 1 to [`FAITHFUL_FRACTION_BITS`]; longer ones have that of the
+    /// longest.
     pub fn of(function: Function, fraction_bits: u32) -> &'static Self {
         static TABLES: [[OnceLock<Faithful>; FAITHFUL_FRACTION_BITS as usize + 1]; 2] =
             [const { [const { OnceLock::new() }; FAITHFUL_FRACTION_BITS as usize + 1] }; 2];
@@ -93,8 +94,8 @@ impl Faithful {
         (self.before_cut(odd, fraction) - HALF) >> GUARD_BITS
     }
 
-    /// The value rounded to nearest, by the low bits of one product alone as hardware has them. With the lower number y,
-    /// 2y + 1 is twice the middle, which no exact value is; what it leaves is small, so its sign is the top one of
+    /// The value rounded to nearest, by the low bits of one product alone as hardware has them. With the lower number
+    /// y, 2y + 1 is twice the middle, which no exact value is; what it leaves is small, so its sign is the top one of
     /// the low F + 3 bits of m · (2y + 1), or is found from the low F + 5 of (2y + 1)².
     #[inline]
     pub fn nearest(&self, odd: u32, fraction: u64) -> u64 {
@@ -159,7 +160,8 @@ impl Faithful {
     }
 
     fn make(function: Function, fraction_bits: u32) -> Self {
-        // A parabola in a piece of width h is wrong by h³/16 (reciprocal) or h³/360 (root): a quarter of a unit or less.
+        // A parabola in a piece of width h is wrong by h³/16 (reciprocal) or h³/360 (root): a quarter of a unit or
+        // less.
         let index_bits = match function {
             _ if fraction_bits <= LONGEST_WHOLE => fraction_bits,
             Function::Reciprocal => (fraction_bits - 2).div_ceil(3),
@@ -202,7 +204,8 @@ impl Faithful {
         let sign = if self.function == Function::Reciprocal { -1.0 } else { 1.0 };
         let (mut c1, mut c2) = (0, 0);
         if self.t_bits() > 0 {
-            // The parabola through three Chebyshev points. Where its second degree is rounded, the slope makes up for it.
+            // The parabola through three Chebyshev points. Where its second degree is rounded, the slope makes up for
+            // it.
             let [a, b, c] = [-0.75_f64.sqrt(), 0.0, 0.75_f64.sqrt()].map(|x| 0.5 * width * (1.0 + x));
             let slope = (f(b) - f(a)) / (b - a);
             let curve = ((f(c) - f(b)) / (c - b) - slope) / (c - a);

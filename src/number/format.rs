@@ -12,8 +12,9 @@ pub const FRACTION_BITS: std::ops::RangeInclusive<u32> = 2..=52;
 
 /// A binary floating-point format in the layout of IEEE 754-2019, clause 3.4: sign, biased exponent, fraction.
 ///
-/// With it go the ways of its arithmetic: rounding, subnormals, and how exact roots are. The largest biased exponent encodes infinities and NaN; the only NaN
-/// ever produced is the canonical quiet one (sign 0, leading fraction bit 1, all others 0).
+/// With it go the ways of its arithmetic: rounding, subnormals, and how exact roots are. The largest biased exponent
+/// encodes infinities and NaN; the only NaN ever produced is the canonical quiet one (sign 0, leading fraction bit 1,
+/// all others 0).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Format {
     exponent_bits: u8,

@@ -27,8 +27,8 @@ impl Truth for bool {}
 /// A number that carries its own context (format, graph), so that one kernel serves software and hardware.
 ///
 /// There is no Zero and no One: a constant is made from a neighbour. Every operation rounds once, as its format says
-/// (IEEE 754-2019, clause 4.3); only roots and reciprocals may be faithful instead. Mixing formats is a mistake of the kernel's author: `Soft` panics
-/// with both formats' names, a wire records an error in its graph.
+/// (IEEE 754-2019, clause 4.3); only roots and reciprocals may be faithful instead. Mixing formats is a mistake of the
+/// kernel's author: `Soft` panics with both formats' names, a wire records an error in its graph.
 pub trait Number:
     Copy
     + Debug

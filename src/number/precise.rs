@@ -21,8 +21,8 @@ const SNAP: u32 = 1100;
 /// of 2^−298 below 2^260. Depth, normal and position have the form a + b/x or a + bx with dyadic a and b, so a
 /// difference from a binary32 number or the middle of two, unless it is zero, is at least 2^−991 (multiply by its
 /// conjugate: a multiple of 2^−598 remains, over at most 2^393). The error of what the kernel computes is below
-/// 2^−1160: 1/x, of at most 2^149, loses 2^−1472 · 2^298, and is multiplied by numbers of which one is at most x and the
-/// other below 2^129. Rounding to multiples of 2^−1100 first therefore finds every tie, and crosses none.
+/// 2^−1160: 1/x, of at most 2^149, loses 2^−1472 · 2^298, and is multiplied by numbers of which one is at most x and
+/// the other below 2^129. Rounding to multiples of 2^−1100 first therefore finds every tie, and crosses none.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Precise([u64; DIGITS]);
 

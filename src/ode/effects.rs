@@ -137,8 +137,8 @@ impl World {
         unsafe { *sys::dBodyGetLinearVel(self.spheres[sphere.index()].body).cast() }
     }
 
-    /// Adds a wall: spheres stay where `normal` · position ≥ `offset`. The normal is an axis or its opposite, or any unit
-    /// vector.
+    /// Adds a wall: spheres stay where `normal` · position ≥ `offset`. The normal is an axis or its opposite, or any
+    /// unit vector.
     ///
     /// # Errors
     /// When a number is out of range, or ODE has no memory.
@@ -155,8 +155,8 @@ impl World {
         Ok(())
     }
 
-    /// Every contact of a sphere with a wall, by ODE's own collider of sphere and plane, spheres in their order. None of
-    /// spheres that sleep.
+    /// Every contact of a sphere with a wall, by ODE's own collider of sphere and plane, spheres in their order. None
+    /// of spheres that sleep.
     pub fn wall_contacts(&self) -> Vec<WallTouch> {
         let mut touches = Vec::new();
         if self.walls.is_empty() {

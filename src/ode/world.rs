@@ -215,7 +215,8 @@ impl World {
     /// Makes the next step part two spheres that touch: ODE's contact joint.
     ///
     /// # Errors
-    /// When the contact has a number that no contact here can have, or is of a sphere with itself, or a number of the surface is out of range.
+    /// When the contact has a number that no contact here can have, or is of a sphere with itself, or a number of the
+    /// surface is out of range.
     pub fn join(&self, touch: &Touch, surface: &Surface) -> Result<(), Error> {
         let Touch { first, second, contact } = touch;
         let [one, other] = [first, second].map(|sphere| &self.spheres[sphere.0]);

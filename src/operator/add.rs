@@ -66,15 +66,16 @@ pub fn add_to<'g>(
     let special = Special {
         nan: a.is_nan() | b.is_nan() | (both_infinite & effective_subtraction),
         infinity: a.is_infinity() | b.is_infinity(),
-        // A sum that is zero has an empty fraction; the exponent has seen to itself, but for results that may underflow.
+        // A sum that is zero has an empty fraction; the exponent has seen to itself, but for results that may
+        // underflow.
         zero: if is_gradual || to.is_normal() { both_zero } else { is_exact_zero },
     };
     let sign = large_sign & !(is_exact_zero & effective_subtraction);
     pack(to, sign, fields, special)
 }
 
-/// How far the smaller number is moved: the right one of both differences of the exponents, in as many bits as a value of
-/// `moved_bits` needs. Of each it is known before whether it is too far for them.
+/// How far the smaller number is moved: the right one of both differences of the exponents, in as many bits as a value
+/// of `moved_bits` needs. Of each it is known before whether it is too far for them.
 fn align_distance<'g>(differences: [Signal<'g>; 2], b_is_larger: Signal<'g>, moved_bits: u32) -> Signal<'g> {
     let [a_minus_b, b_minus_a] = differences;
     let (a_minus_b, b_minus_a) = (a_minus_b.named("a_exponent_minus_b"), b_minus_a.named("b_exponent_minus_a"));
@@ -128,8 +129,8 @@ fn gradual<'g>(
     (fields, sum_is_zero)
 }
 
-/// The same without subnormals: the exponent may go below its end; rounding then flushes. The exponent of `from` goes into
-/// that of `domain`.
+/// The same without subnormals: the exponent may go below its end; rounding then flushes. The exponent of `from` goes
+/// into that of `domain`.
 fn flushed<'g>(
     from: Domain,
     domain: Domain,

@@ -1,8 +1,8 @@
-//! Reciprocal and square root rounded correctly from a table: its value, cut off, is the result or one unit below it, and
-//! the sign of what the middle between the two leaves tells which.
+//! Reciprocal and square root rounded correctly from a table: its value, cut off, is the result or one unit below it,
+//! and the sign of what the middle between the two leaves tells which.
 //!
-//! [`Faithful::nearest`] is the same in integers. What is left is small, so that only the low bits of one product are made:
-//! a multiplier block or two beside the table's, in place of a carry chain a digit.
+//! [`Faithful::nearest`] is the same in integers. What is left is small, so that only the low bits of one product are
+//! made: a multiplier block or two beside the table's, in place of a carry chain a digit.
 
 use super::faithful::{Cut, value};
 use super::parts::{Operand, Rounding, Signed, Unrounded, product_low, square_low};

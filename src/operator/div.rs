@@ -54,8 +54,8 @@ pub fn div<'g>(a: Signal<'g>, b: Signal<'g>, domain: Domain) -> Signal<'g> {
 }
 
 /// One digit of a quotient, without restoring: what subtracting the divisor leaves stays as it is, negative or not, and
-/// after a negative one the divisor is added instead. The signs are those that restoring would see, so the digits are the
-/// quotient's own, complemented; a digit costs one carry chain and nothing else.
+/// after a negative one the divisor is added instead. The signs are those that restoring would see, so the digits are
+/// the quotient's own, complemented; a digit costs one carry chain and nothing else.
 #[derive(Clone, Copy)]
 pub struct Step<'g> {
     /// What is left: at least −divisor and less than it, in two's complement with one bit more than it.

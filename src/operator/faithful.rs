@@ -1,7 +1,7 @@
 //! Reciprocal and square root within one unit of the last place: a table of parabolas, two products and two sums.
 //!
-//! [`Faithful`] has the table and the integers that the hardware computes. A result that is a number of the format comes
-//! out exact.
+//! [`Faithful`] has the table and the integers that the hardware computes. A result that is a number of the format
+//! comes out exact.
 
 use super::parts::{Operand, Signed, Unrounded, product_of};
 use super::{Domain, recip, sqrt};

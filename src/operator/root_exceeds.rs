@@ -52,7 +52,8 @@ fn subnormal_squares_vanish(domain: Domain) -> bool {
     !domain.keeps_subnormals() || domain.min_exponent() <= -(domain.fraction_bits() as i32)
 }
 
-/// The middle between a number and the next one up, or the next one: biased exponent, and significand with its leading bit set.
+/// The middle between a number and the next one up, or the next one: biased exponent, and significand with its leading
+/// bit set.
 struct Middle<'g> {
     exponent: Signed<'g>,
     significand: Signal<'g>,

@@ -70,9 +70,9 @@ pub fn finish<'g>(domain: Domain, a: Operand<'g>, unrounded: Unrounded<'g>) -> S
 /// whether anything is left.
 ///
 /// With the root so far r and m left, a digit 1 takes 4r + 1 from 4m + the next two bits, n. Where that is negative, it
-/// stays as it is, t: the digit is 0, and the next trial is 4t + n + (4r + 3), r with that 0 behind it. So a digit costs one
-/// carry chain, and its sign is the one that restoring would see. In the lowest three places either is a sum with 3, since
-/// −5 and 3 are one there; so the last digit, which has only just come, is wanted as a sign alone.
+/// stays as it is, t: the digit is 0, and the next trial is 4t + n + (4r + 3), r with that 0 behind it. So a digit
+/// costs one carry chain, and its sign is the one that restoring would see. In the lowest three places either is a sum
+/// with 3, since −5 and 3 are one there; so the last digit, which has only just come, is wanted as a sign alone.
 fn root(radicand: Signal<'_>, count: u32) -> (Signal<'_>, Signal<'_>) {
     const PLACES: u32 = 3;
     let graph = radicand.graph();

@@ -1,5 +1,5 @@
-//! Sum and difference in a wider format, straight from narrower words: subnormal operands need no normalising before it,
-//! since a sum is normalised behind it anyway.
+//! Sum and difference in a wider format, straight from narrower words: subnormal operands need no normalising before
+//! it, since a sum is normalised behind it anyway.
 
 use super::{Domain, Values, add, convert};
 use crate::hdl::Signal;

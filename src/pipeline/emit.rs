@@ -66,8 +66,8 @@ impl<'g> Emitter<'_, 'g> {
         Ok(())
     }
 
-    /// The value as of `cycle`, at or after the one it comes to be in. The graph makes one chain of a value's delays, but
-    /// for those that fill a block memory.
+    /// The value as of `cycle`, at or after the one it comes to be in. The graph makes one chain of a value's delays,
+    /// but for those that fill a block memory.
     fn at(&mut self, id: ValueId, cycle: u32) -> Result<Option<Signal<'g>>, Errors> {
         let Some(signal) = self.signals[id.index()] else { return Ok(None) };
         if let Some(known) = self.waiting.get(&(id, cycle)) {

@@ -25,7 +25,8 @@ pub struct Settings {
     pub clock_mhz: f64,
     /// Cycles from one pair to the next: 1, or more with fewer operators.
     pub interval: u32,
-    /// Whether `valid` comes a cycle after the pair, from logic that has to look at all of it. Not at an interval above 1.
+    /// Whether `valid` comes a cycle after the pair, from logic that has to look at all of it. Not at an interval above
+    /// 1.
     pub valid_is_late: bool,
     /// How long the target takes for each operation.
     pub model: DelayModel,
@@ -34,8 +35,8 @@ pub struct Settings {
 /// The module `sphere_kernel`: a pair on inputs `x1 y1 z1 r1 x2 y2 z2 r2` with `valid`; `hit`, `grazing` and the
 /// fields asked for (`pos_x pos_y pos_z`, `normal_x normal_y normal_z`, `depth`), [`Module::latency`] cycles later.
 ///
-/// `valid` is a truth value of the kernel like any other, and not reset; where [`Settings::valid_is_late`] it comes a cycle
-/// after the pair. It may be set only if the pair's words are
+/// `valid` is a truth value of the kernel like any other, and not reset; where [`Settings::valid_is_late`] it comes a
+/// cycle after the pair. It may be set only if the pair's words are
 /// finite and its radii not below zero. Without it, or without a hit, all outputs are zero. The kernel of exact squares
 /// has an output `unsettled` too, which may be set without a hit.
 ///

@@ -1,7 +1,7 @@
 //! Plots as SVG: axes, ticks, series of lines and points, marks, and a legend below, where it covers nothing.
 //!
-//! [`Plot::svg`] is a file of its own; [`Plot::figure`] goes into a page that has [`STYLE`] in its head. Colours are CSS
-//! variables, so both follow a reader's light or dark scheme. Imports nothing of ours.
+//! [`Plot::svg`] is a file of its own; [`Plot::figure`] goes into a page that has [`STYLE`] in its head. Colours are
+//! CSS variables, so both follow a reader's light or dark scheme. Imports nothing of ours.
 
 mod axis;
 mod draw;

@@ -61,8 +61,8 @@ impl Series {
         Self { marker: Some((marker, false)), ..self }
     }
 
-    /// With a name for each point, in their order: beside it where there is room, and as `data-point` of its sign, which a
-    /// reader can point at.
+    /// With a name for each point, in their order: beside it where there is room, and as `data-point` of its sign,
+    /// which a reader can point at.
     #[must_use]
     pub fn named(self, names: impl IntoIterator<Item = String>) -> Self {
         Self { names: names.into_iter().collect(), ..self }

@@ -1,5 +1,5 @@
-//! Pages of HTML that need nothing but themselves: no network, light or dark as the reader has it, and no script but one
-//! of the page's own.
+//! Pages of HTML that need nothing but themselves: no network, light or dark as the reader has it, and no script but
+//! one of the page's own.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 

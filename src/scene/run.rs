@@ -181,8 +181,8 @@ impl Engine for Timed<'_> {
         self.spent += begun.elapsed();
         self.pairs += pairs.len() as u64;
         if !self.fields.position {
-            // A force along the normal goes through both centres, so it has no lever arm there, and the position changes
-            // nothing.
+            // A force along the normal goes through both centres, so it has no lever arm there, and the position
+            // changes nothing.
             for (contact, pair) in contacts.iter_mut().zip(pairs).filter(|(contact, _)| contact.is_contact()) {
                 contact.0[..3].copy_from_slice(&pair.0[..3]);
             }

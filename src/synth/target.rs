@@ -70,8 +70,8 @@ impl Target {
         }
     }
 
-    /// How long it takes for each operation, and what its multiplier blocks are written as. That of the ECP5 is fitted to
-    /// its router; it serves the others too, whose synthesis finds the multiplier blocks' registers.
+    /// How long it takes for each operation, and what its multiplier blocks are written as. That of the ECP5 is fitted
+    /// to its router; it serves the others too, whose synthesis finds the multiplier blocks' registers.
     pub fn delays(self) -> DelayModel {
         match self {
             Self::Ecp5 => DelayModel::ecp5()

@@ -67,7 +67,8 @@ impl Bench {
         Self::of(config, generated(config)?, |source| Model::build_in(source, Trace::Off, cache), false)
     }
 
-    /// The Verilog that lies in `folder`, which `afu rtl` wrote, edited or not; `scpus` overrides its manifest's number.
+    /// The Verilog that lies in `folder`, which `afu rtl` wrote, edited or not; `scpus` overrides its manifest's
+    /// number.
     ///
     /// # Errors
     /// As `new`, and when the folder's manifest or file list cannot be read.

@@ -27,8 +27,8 @@ pub struct Mismatch {
 pub struct Verdict {
     /// Pairs of the job.
     pub pairs: usize,
-    /// What came back, from destination memory, the unsettled settled: for each pair, or only for those that touch. Zero
-    /// words where nothing was written, and for what is not asked for.
+    /// What came back, from destination memory, the unsettled settled: for each pair, or only for those that touch.
+    /// Zero words where nothing was written, and for what is not asked for.
     pub contacts: Vec<ContactRecord>,
     /// For each of `contacts` its pair's number in the job, from 0.
     pub numbers: Vec<u32>,
@@ -147,7 +147,8 @@ impl Job<'_> {
         came
     }
 
-    /// A record for each pair that touches: as many as the AFU counted, in the order of their numbers, and nothing behind.
+    /// A record for each pair that touches: as many as the AFU counted, in the order of their numbers, and nothing
+    /// behind.
     fn hits(&self, unmet: &mut Vec<String>) -> Came {
         let mut came = Came { records: self.outcome.contacts as usize, ..Came::default() };
         // Where the pairs' records lie.

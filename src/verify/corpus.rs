@@ -17,8 +17,8 @@ pub fn read(file: &Path) -> Result<Vec<PairRecord>, FileError> {
     }
 }
 
-/// Adds to `file` those of `pairs` that are not in it yet, each once, and says how many that were. Without any, the file
-/// is left alone.
+/// Adds to `file` those of `pairs` that are not in it yet, each once, and says how many that were. Without any, the
+/// file is left alone.
 ///
 /// # Errors
 /// As [`read`], and when it cannot be written.

@@ -82,23 +82,7 @@ module collector (
     if (mine) assume ((waiting & answered) != 4'd0);
   end
 
-  // So many slots from one on.
-  function [3:0] slots(input [1:0] first, input [2:0] many);
-    reg [7:0] from_zero;
-    reg [7:0] from_first;
-    begin
-      from_zero = (8'd1 << many) - 8'd1;
-      from_first = from_zero << first;
-      slots = from_first[3:0] | from_first[7:4];
-    end
-  endfunction
-  function [3:0] aged(input [3:0] ages, input [1:0] first);
-    reg [7:0] from_first;
-    begin
-      from_first = {4'd0, ages} << first;
-      aged = from_first[3:0] | from_first[7:4];
-    end
-  endfunction
+  `include "slots.svh"
 
   // Filled slots: offered, known to have come, about to be known.
   wire [2:0] offers = {1'b0, \dut.two_valid , line_valid & ~\dut.two_valid };

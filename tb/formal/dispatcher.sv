@@ -84,23 +84,7 @@ module dispatcher (
     assume (~line_valid | (begun & ~start & (\dut.stored != LINES | \dut.take )));
   end
 
-  // So many slots from one on, and marks by age from one on.
-  function [3:0] slots(input [1:0] first, input [2:0] many);
-    reg [7:0] from_zero;
-    reg [7:0] from_first;
-    begin
-      from_zero = (8'd1 << many) - 8'd1;
-      from_first = from_zero << first;
-      slots = from_first[3:0] | from_first[7:4];
-    end
-  endfunction
-  function [3:0] aged(input [3:0] ages, input [1:0] first);
-    reg [7:0] from_first;
-    begin
-      from_first = {4'd0, ages} << first;
-      aged = from_first[3:0] | from_first[7:4];
-    end
-  endfunction
+  `include "slots.svh"
   wire [3:0] come = aged(\dut.came , \dut.oldest );
   wire [3:0] coming = aged(\dut.arrived ? 4'd1 << \dut.arrived_age : 4'd0, \dut.oldest );
   wire [3:0] busy = on_port | waiting | come | coming;

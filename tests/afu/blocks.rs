@@ -7,14 +7,10 @@ use contact_afu::cosim::{File, Job, Model, Source, Trace};
 use contact_afu::synth::Target;
 
 use crate::bench::{Case, config, driver};
+use crate::primitives::primitives;
 
 fn model_in_primitives(config: &Config) -> Model {
-    let models = concat!(
-        include_str!("../../tb/mult18x18d.v"),
-        include_str!("../../tb/ccu2c.v"),
-        include_str!("../../tb/dp16kd.v")
-    );
-    let first = File { name: "primitives.v".to_owned(), text: format!("`define SYNTHESIS\n{models}") };
+    let first = File { name: "primitives.v".to_owned(), text: primitives() };
     let afu = Afu::generate(Spec { delays: Target::Ecp5.delays(), ..Spec::from(config.clone()) }).unwrap();
     let own: Vec<File> = afu.verilog().into_iter().map(|(name, text)| File { name, text }).collect();
     let lines = own.iter().filter(|file| file.name.starts_with("line_memory") && file.text.contains("DP16KD")).count();

@@ -142,7 +142,8 @@ fn a_job_that_expects_all_results_is_refused() {
     assert_eq!(error, DriveError::Results { expected: Results::All, found: Results::Hits });
 }
 
-/// File, the assignment's line, what is assigned instead: a number, the order of two neighbours, a count, the last line.
+/// File, the assignment's line, what is assigned instead: a number, the order of two neighbours, a count, the last
+/// line.
 const FAULTS: [Planted; 4] = [
     ("contact_afu_sieve.v", "number_1 = ", 1, "emerged"),
     ("contact_afu_sieve.v", "comes_to_0_in_0 = ", 2, "1'b0"),

@@ -1,4 +1,5 @@
-//! Intervals above 1: every word over every link, after aborts too, and as many pairs as there are SCPUs in an interval.
+//! Intervals above 1: every word over every link, after aborts too, and as many pairs as there are SCPUs in an
+//! interval.
 
 use contact_afu::config::{Config, Profile, Results};
 use contact_afu::link::LinkModel;

@@ -12,6 +12,8 @@ mod hits;
 mod interval;
 mod matrix;
 mod ports;
+#[path = "../support/primitives.rs"]
+mod primitives;
 mod records;
 mod recovery;
 mod speed;

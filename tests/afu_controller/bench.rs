@@ -1,5 +1,5 @@
-//! The controller around a kernel of fixed delay, in the evaluator, at one end of a small link of its own; and what must
-//! come back.
+//! The controller around a kernel of fixed delay, in the evaluator, at one end of a small link of its own; and what
+//! must come back.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -80,6 +80,8 @@ pub struct Bench {
     random: Xoshiro256PlusPlus,
     /// Chance in 8 that the link is ready or answers in a cycle; 8 is an ideal link.
     eagerness: u32,
+    /// The same of what is written.
+    pub write_eagerness: u32,
     pub reads: Vec<(u64, u64)>,
     pub writes: VecDeque<u64>,
     pub written: Vec<(u64, Vec<u64>)>,
@@ -106,6 +108,7 @@ impl Bench {
             ports: Ports { pins },
             random: Xoshiro256PlusPlus::seed_from_u64(seed),
             eagerness,
+            write_eagerness: eagerness,
             reads: Vec::new(),
             writes: VecDeque::new(),
             written: Vec::new(),
@@ -122,16 +125,16 @@ impl Bench {
         self.run.read(pin)
     }
 
-    fn eager(&mut self) -> bool {
-        self.random.random_range(0..8) < self.eagerness
+    fn eager(&mut self, eagerness: u32) -> bool {
+        self.random.random_range(0..8) < eagerness
     }
 
     /// One cycle of a link that answers in random order, at random times.
     pub fn cycle(&mut self) {
-        let (read_ready, write_ready) = (self.eager(), self.eager());
+        let (read_ready, write_ready) = (self.eager(self.eagerness), self.eager(self.write_eagerness));
         self.set("rd_req_ready", u64::from(read_ready));
         self.set("wr_req_ready", u64::from(write_ready));
-        let answer_read = self.eager() && !self.reads.is_empty();
+        let answer_read = self.eager(self.eagerness) && !self.reads.is_empty();
         self.set("rd_rsp_valid", u64::from(answer_read));
         if answer_read {
             let index = if self.eagerness == 8 { 0 } else { self.random.random_range(0..self.reads.len()) };
@@ -141,10 +144,10 @@ impl Bench {
             let line = self.line(address);
             self.run.write_words(pin, &line);
         }
-        let answer_write = self.eager() && !self.writes.is_empty();
+        let answer_write = self.eager(self.write_eagerness) && !self.writes.is_empty();
         self.set("wr_rsp_valid", u64::from(answer_write));
         if answer_write {
-            let index = if self.eagerness == 8 { 0 } else { self.random.random_range(0..self.writes.len()) };
+            let index = if self.write_eagerness == 8 { 0 } else { self.random.random_range(0..self.writes.len()) };
             let tag = self.writes.remove(index).unwrap();
             self.set("wr_rsp_tag", tag);
         }

@@ -1,5 +1,5 @@
-//! The accelerator as it is proven: the controller that the generator writes for users, with short lines, few tags, small
-//! buffers, and an SCPU that is a delay.
+//! The accelerator as it is proven: the controller that the generator writes for users, with short lines, few tags,
+//! small buffers, and an SCPU that is a delay.
 
 use std::sync::Arc;
 

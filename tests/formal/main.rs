@@ -1,5 +1,5 @@
-//! The controller, proven: properties of `tb/formal`, held by Yosys and Yices for the accelerator that `design` generates,
-//! and for mutants of it, each of which breaks one.
+//! The controller, proven: properties of `tb/formal`, held by Yosys and Yices for the accelerator that `design`
+//! generates, and for mutants of it, each of which breaks one.
 //!
 //! The test command runs a share. `scripts/prove` runs all; `docs/verification.md` says what is proven and what is not.
 

@@ -35,7 +35,8 @@ pub struct Proof {
 }
 
 impl Proof {
-    /// The macros of the harness. Eight lines are what the dispatcher keeps around SCPUs of up to 2 cycles, else sixteen.
+    /// The macros of the harness. Eight lines are what the dispatcher keeps around SCPUs of up to 2 cycles, else
+    /// sixteen.
     pub fn defines(&self) -> Vec<String> {
         let lines = if self.latency <= 2 { 8 } else { 16 };
         let bound = self.bound.map(|cycles| format!("BOUND={cycles}"));
@@ -89,8 +90,8 @@ fn around(latency: u32) -> [Proof; 5] {
     ]
 }
 
-/// All of them. The collector and the dispatcher alone know nothing of SCPUs but how many lines are kept for them: twice
-/// as many from a delay of 3 on.
+/// All of them. The collector and the dispatcher alone know nothing of SCPUs but how many lines are kept for them:
+/// twice as many from a delay of 3 on.
 pub fn proofs() -> Vec<Proof> {
     let alone = [("collector", 1), ("dispatcher", 1), ("dispatcher", 3)]
         .map(|(name, latency)| Proof::new(name, name, latency, Inductive(2)).short());

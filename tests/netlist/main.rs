@@ -1,8 +1,10 @@
-//! The same bits from a second simulator, with four states, and from the netlist after synthesis: operators and SCPUs as
-//! they are printed, as Yosys makes gates of them, and as cells of an ECP5, all in Icarus, against the twins and the
+//! The same bits from a second simulator, with four states, and from the netlist after synthesis: operators and SCPUs
+//! as they are printed, as Yosys makes gates of them, and as cells of an ECP5, all in Icarus, against the twins and the
 //! reference kernel. An unknown bit in an output is a difference. SCPUs of full width after synthesis run in Verilator,
 //! since Icarus takes hours to compile them.
 
+#[path = "../support/primitives.rs"]
+mod primitives;
 mod simulate;
 mod synthesise;
 mod verilated;

@@ -81,10 +81,8 @@ pub fn verilog(module: &Arc<Module>, form: As) -> Files {
     let synth = match form {
         As::Printed => return Files { _folder: folder, files, language: "-g2005" },
         As::Blocks => {
-            let models = ["mult18x18d", "ccu2c", "dp16kd"].map(|name| root().join(format!("tb/{name}.v")));
-            let models = models.map(|path| fs::read_to_string(path).expect("a model")).concat();
             let path = folder.path().join("blocks.v");
-            fs::write(&path, format!("`define SYNTHESIS\n{models}")).expect("written");
+            fs::write(&path, crate::primitives::primitives()).expect("written");
             files.insert(0, path);
             return Files { _folder: folder, files, language: "-g2012" };
         }

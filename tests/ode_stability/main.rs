@@ -105,8 +105,8 @@ fn a_coarser_kernel_is_found_out() {
     }
 }
 
-/// The Verilated AFU computes every contact of every step, and the spheres go where they go with the kernel in software,
-/// bit for bit.
+/// The Verilated AFU computes every contact of every step, and the spheres go where they go with the kernel in
+/// software, bit for bit.
 #[cfg(feature = "cosim")]
 #[test]
 fn the_afu_in_the_loop_moves_the_spheres_as_its_kernel_does() {

@@ -125,7 +125,8 @@ pub fn pressed(ode: &Ode) -> Result<Scene, Error> {
     pairs(ode, 0.1)
 }
 
-/// Four spheres in the hollows of nine, and one on top, each with its weight. The nine are so heavy that they lie still.
+/// Four spheres in the hollows of nine, and one on top, each with its weight. The nine are so heavy that they lie
+/// still.
 pub fn stack(ode: &Ode) -> Result<Scene, Error> {
     const RADIUS: f64 = 0.5;
     let mut scene = Scene::new(ode)?;

@@ -1,5 +1,5 @@
-//! The Verilated AFU in each profile, through its shell and a link: what an invalid pair does to its neighbours, and what
-//! a hostile link does to a job. Nothing.
+//! The Verilated AFU in each profile, through its shell and a link: what an invalid pair does to its neighbours, and
+//! what a hostile link does to a job. Nothing.
 #![cfg(feature = "cosim")]
 
 mod hostile;

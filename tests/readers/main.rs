@@ -1,6 +1,6 @@
-//! Everything that reads a file, given files that are nearly right: an error or a value, never a panic, a hang or memory
-//! beyond what the file bears out. The mutations are seeded; `READERS_SEED` and `READERS_COUNT` (of each kind) give other
-//! and more.
+//! Everything that reads a file, given files that are nearly right: an error or a value, never a panic, a hang or
+//! memory beyond what the file bears out. The mutations are seeded; `READERS_SEED` and `READERS_COUNT` (of each kind)
+//! give other and more.
 #![cfg(feature = "cosim")]
 
 mod kinds;

@@ -24,8 +24,8 @@ fn operator(name: &str) -> &str {
     format.map_or(name, |(at, _)| &name[..at])
 }
 
-/// The operators that the kernel's Verilog instantiates, as `name × count`, without their formats; each operation has its
-/// own.
+/// The operators that the kernel's Verilog instantiates, as `name × count`, without their formats; each operation has
+/// its own.
 fn instances(example: &str) -> Vec<String> {
     instances_of(Config { interval: 1, ..Plan::of(&scene(example)).unwrap().config })
 }
@@ -96,8 +96,8 @@ fn each_example_s_hardware_is_what_its_plan_calls_for() {
     assert_eq!(names("touching"), touching);
 }
 
-/// As planned, operations take turns in operators while a full line of pairs a cycle still goes through: fewer of them, and
-/// none that is not called for.
+/// As planned, operations take turns in operators while a full line of pairs a cycle still goes through: fewer of them,
+/// and none that is not called for.
 #[test]
 fn operators_are_shared_as_far_as_the_link_lets_them() {
     for (example, absent) in
@@ -180,7 +180,8 @@ fn what_both_compute_is_the_same_bits() {
 }
 
 /// Each example's AFU, simulated: it finds what the reference with everything finds, and the bytes over the link are
-/// those of the plan. Bytes do not depend on the arithmetic, so it is a small one where the scene is not of touching alone.
+/// those of the plan. Bytes do not depend on the arithmetic, so it is a small one where the scene is not of touching
+/// alone.
 #[cfg(feature = "cosim")]
 #[test]
 fn the_bytes_over_the_link_are_the_plan_s() {

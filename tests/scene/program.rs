@@ -106,7 +106,8 @@ fn the_simulated_afu_moves_bodies_as_software_does() {
     assert!(opened.dom.contains("data-frame=\""), "the canvas was never drawn");
     assert!(opened.dom.contains("id=\"play\"") && opened.dom.matches("<svg class=\"plot\"").count() == 2);
 
-    // A reader's hand: it scrubs to step 17, which stops the play, and plays again. Its script needs a policy without hash.
+    // A reader's hand: it scrubs to step 17, which stops the play, and plays again. Its script needs a policy without
+    // hash.
     let made = fs::read_to_string(simulated.join("report.html")).unwrap();
     let (before, rest) = made.split_once("script-src 'sha256-").expect("a policy");
     let (_, after) = rest.split_once('\'').expect("the hash's end");

@@ -150,7 +150,8 @@ fn reset_and_abort_at_every_cycle_of_a_short_job() {
 }
 
 /// Without a watchdog the status never comes, with one it says so; nothing wrong is written, and after a reset all is
-/// well. The first reads are the shell's own: its polls are asked again, but behind a lost read SPL2 holds them all back.
+/// well. The first reads are the shell's own: its polls are asked again, but behind a lost read SPL2 holds them all
+/// back.
 #[test]
 fn a_lost_response_is_an_error_and_never_wrong_data() {
     let (spoilt, next) = two_cases();

@@ -85,8 +85,8 @@ pub(super) fn each_alone() -> Vec<Choice> {
     .concat()
 }
 
-/// Configurations one step from `config`: a fraction or exponent bit more or less, roots of the other kind, the next clock
-/// up or down, records of other numbers.
+/// Configurations one step from `config`: a fraction or exponent bit more or less, roots of the other kind, the next
+/// clock up or down, records of other numbers.
 pub(super) fn neighbours(config: &Config) -> Vec<Choice> {
     let format = config.profile.format();
     let (exponent, fraction) = (format.exponent_bits(), format.fraction_bits());

@@ -72,9 +72,9 @@ pub struct Instead<'a> {
     pub point: &'a Point,
 }
 
-/// The point with the fewest LUTs of the [comparable](Results::comparable) ones that meet `bounds` (then the one with the
-/// least time); where none does, for each bound what it would take if it alone gave way. That is empty where even then
-/// nothing meets the others.
+/// The point with the fewest LUTs of the [comparable](Results::comparable) ones that meet `bounds` (then the one with
+/// the least time); where none does, for each bound what it would take if it alone gave way. That is empty where even
+/// then nothing meets the others.
 pub fn choose<'a>(results: &'a Results, bounds: &Bounds, time: Time) -> Result<&'a Point, Vec<Instead<'a>>> {
     let figure = |bound: Bound, point: &Point| bound.figure(results, point, time);
     let meets = |bound: Bound, point: &Point| {
@@ -101,8 +101,8 @@ pub fn choose<'a>(results: &'a Results, bounds: &Bounds, time: Time) -> Result<&
     })
 }
 
-/// The configuration to build of a point: its arithmetic and clock, with the default shell; one SCPU, or, where the time
-/// is a full device's, as many as it holds.
+/// The configuration to build of a point: its arithmetic and clock, with the default shell; one SCPU, or, where the
+/// time is a full device's, as many as it holds.
 pub fn to_build(results: &Results, point: &Point, time: Time) -> Config {
     let default = Config::default();
     let full = point.on_device(results.target).unwrap_or(1).clamp((*SCPUS.start()).into(), (*SCPUS.end()).into());

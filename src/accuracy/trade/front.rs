@@ -134,7 +134,8 @@ mod tests {
         assert_eq!(best(&[(7, 1.0, 1.0), (8, 1.0, 1.0)]), [7], "equal points: the first");
     }
 
-    /// Where all lose alike by place and route, the first choice is the last; where another may still be better, it is not.
+    /// Where all lose alike by place and route, the first choice is the last; where another may still be better, it is
+    /// not.
     #[test]
     fn what_is_routed_is_what_a_front_may_need() {
         let mut results = committed().expect("results");

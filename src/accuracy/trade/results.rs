@@ -169,8 +169,8 @@ impl Results {
         self.sets.iter().fold(0, |sum, set| sum.saturating_add(set.pairs))
     }
 
-    /// Whether a point may be compared with others: it was placed and routed, or none was. A clock of the delay model's is
-    /// one that no router gave.
+    /// Whether a point may be compared with others: it was placed and routed, or none was. A clock of the delay model's
+    /// is one that no router gave.
     pub fn is_comparable(&self, point: &Point) -> bool {
         let is_routed = |point: &Point| point.routed_mhz().is_some();
         is_routed(point) || !self.points.iter().any(is_routed)

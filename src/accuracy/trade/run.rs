@@ -143,7 +143,8 @@ fn beside_the_front(plan: &Plan, results: &Results) -> Vec<Choice> {
     more
 }
 
-/// How often it is looked anew which points are worth it: a clock that place and route lowers may bring another one there.
+/// How often it is looked anew which points are worth it: a clock that place and route lowers may bring another one
+/// there.
 const ROUNDS: usize = 4;
 
 /// Places and routes the points that fronts may be drawn through.

@@ -9,8 +9,8 @@ pub const LAYERS: u32 = 3;
 /// The gap between its spheres, the paper's dSph. Without one they stay where every number is exact.
 pub const GAP: f64 = 0.05;
 
-/// How far the spheres of the diamond are, after [`STEPS`] steps, from where ODE with its own collider in `f64` has them;
-/// in radii. The scene is chaotic: errors grow, and from some time on two paths have nothing in common.
+/// How far the spheres of the diamond are, after [`STEPS`] steps, from where ODE with its own collider in `f64` has
+/// them; in radii. The scene is chaotic: errors grow, and from some time on two paths have nothing in common.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Drift {

@@ -5,7 +5,8 @@ use crate::report::table::{grouped, table as drawn};
 
 /// What times are compared with.
 pub(super) const BASE: &str = "paper";
-/// Times over a link that differ by less than this share are the same: it stalls at random, and at another clock otherwise.
+/// Times over a link that differ by less than this share are the same: it stalls at random, and at another clock
+/// otherwise.
 const SAME: f64 = 0.05;
 /// The link is what limits where a pair takes no more than this share longer than it allows.
 const LIMITED: f64 = 0.09;

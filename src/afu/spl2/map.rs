@@ -1,5 +1,5 @@
-//! The register map of the `spl2` shell: one table, read by the hardware, the host, the generated `REGISTERS.md` and the
-//! documentation.
+//! The register map of the `spl2` shell: one table, read by the hardware, the host, the generated `REGISTERS.md` and
+//! the documentation.
 //!
 //! Lines are 64 bytes, sixteen little-endian dwords. Addresses in registers and lines are in bytes and must be those of
 //! whole lines; their low six bits are ignored.

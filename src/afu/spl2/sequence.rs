@@ -41,9 +41,9 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let core_cycles = ["cycles_busy", "cycles_input", "cycles_output"].map(|name| graph.input(name, 64));
     let capability = graph.input("capability", 64);
 
-    // What the sequence is at, one of these: no context is known; reads the context; polls the control memory for a job;
-    // counts the job's lines; compares them with the buffers'; starts the job, if there are lines enough; the core is at
-    // work, and the control memory polled for an abort; writes DSM line 4, DSM line 5, the fence, the status.
+    // What the sequence is at, one of these: no context is known; reads the context; polls the control memory for a
+    // job; counts the job's lines; compares them with the buffers'; starts the job, if there are lines enough; the core
+    // is at work, and the control memory polled for an abort; writes DSM line 4, DSM line 5, the fence, the status.
     let state = |name: &str| graph.register(name, 1, 0);
     let idle = graph.register("at_idle", 1, 1);
     let [context, poll, measure, compare, begin, run] =

@@ -2,7 +2,8 @@
 //! known.
 //!
 //! A request stands in the port's register for one cycle and is taken there and then; none is put there while SPL's
-//! queue is almost full. What must not be confused over a reset of SPL's is not reset by it: numbers and epoch count on.
+//! queue is almost full. What must not be confused over a reset of SPL's is not reset by it: numbers and epoch count
+//! on.
 
 use std::sync::Arc;
 
@@ -116,8 +117,8 @@ pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, Errors> {
     graph.finish()
 }
 
-/// Whose turn a port is, known a cycle before: the shell's where it has a request, else the core's. SPL takes four requests
-/// more once it is almost full; two come.
+/// Whose turn a port is, known a cycle before: the shell's where it has a request, else the core's. SPL takes four
+/// requests more once it is almost full; two come.
 #[derive(Clone, Copy)]
 struct Turns<'g> {
     turn: Register<'g>,
@@ -139,7 +140,8 @@ impl<'g> Turns<'g> {
         Self { turn, open, almost_full, own_turn: *turn, own: *turn & room, core: *open }
     }
 
-    /// The next turn is the shell's if it `wants` it; the core's, whatever room there is, while what it asks is discarded.
+    /// The next turn is the shell's if it `wants` it; the core's, whatever room there is, while what it asks is
+    /// discarded.
     fn connect(self, wants: Signal<'g>, discard: Signal<'g>, power_on: Signal<'g>) {
         self.turn.next(wants & !power_on);
         self.open.next(discard | (!wants & !self.almost_full));

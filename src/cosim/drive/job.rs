@@ -40,8 +40,8 @@ pub struct Job<'a> {
     pub pairs: u32,
     /// Lines that the results take; where only contacts come back, lines there is room for.
     pub destination_lines: u64,
-    /// Contacts a destination line, where only contacts come back: the AFU must then write as many lines as its contacts
-    /// take. Without it, it must write every destination line.
+    /// Contacts a destination line, where only contacts come back: the AFU must then write as many lines as its
+    /// contacts take. Without it, it must write every destination line.
     pub hits_per_line: Option<u32>,
     /// Line address of the first source line.
     pub source_address: u64,

@@ -94,8 +94,8 @@ impl<'a> Driver<'a> {
     /// Runs a job to its end.
     ///
     /// # Errors
-    /// When the AFU breaks the protocol, gives no sign of life, or ends itself. A job that ends with an error code is an
-    /// [`Outcome`].
+    /// When the AFU breaks the protocol, gives no sign of life, or ends itself. A job that ends with an error code is
+    /// an [`Outcome`].
     pub fn run(&mut self, job: &Job) -> Result<Outcome, DriveError> {
         self.start(job)?;
         while !self.step()? {}

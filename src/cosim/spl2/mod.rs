@@ -1,6 +1,7 @@
 //! The simulated HARP v1: a Verilated `afu_top` below SPL2 over a link to memory, with the host's side of both.
 //!
-//! [`Machine`] is what a host has: CSR writes, memory, time. [`Session`] is a small host of its own, enough to run jobs.
+//! [`Machine`] is what a host has: CSR writes, memory, time. [`Session`] is a small host of its own, enough to run
+//! jobs.
 
 mod error;
 mod ports;
@@ -55,7 +56,8 @@ impl<'a> Machine<'a> {
         Ok(())
     }
 
-    /// The host writes a 32-bit CSR, which takes as long as [`Spl2Model::csr_cycles`](crate::link::spl2::Spl2Model) say.
+    /// The host writes a 32-bit CSR, which takes as long as [`Spl2Model::csr_cycles`](crate::link::spl2::Spl2Model)
+    /// say.
     ///
     /// # Errors
     /// As [`Machine::advance`].

@@ -78,8 +78,8 @@ pub(super) fn config() -> String {
     format!("`verilator_config\nno_inline -module \"{SHARED}\"\n")
 }
 
-/// Arguments that let the instances of [`SHARED`] share their code in a traced design. The data-flow optimiser, which -O3
-/// turns on, would name intermediate values after the instance.
+/// Arguments that let the instances of [`SHARED`] share their code in a traced design. The data-flow optimiser, which
+/// -O3 turns on, would name intermediate values after the instance.
 pub(super) fn shared_arguments(design: &Design) -> Vec<String> {
     let has = design.files.iter().any(|file| file.name == format!("{SHARED}.v"));
     if !has || design.trace == Trace::Off {

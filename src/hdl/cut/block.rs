@@ -1,6 +1,6 @@
-//! What a target has blocks for: each is an instance of a module of its own. A multiplier block with registers inside is
-//! one that synthesis maps to, or the target's primitive by name, and so is a block memory with a table; differences that
-//! may be sums are only ever the latter.
+//! What a target has blocks for: each is an instance of a module of its own. A multiplier block with registers inside
+//! is one that synthesis maps to, or the target's primitive by name, and so is a block memory with a table; differences
+//! that may be sums are only ever the latter.
 
 use std::sync::Arc;
 
@@ -21,8 +21,8 @@ pub(super) fn instantiate_multiplier(inner: &mut Inner, id: NodeId, model: &Dela
     Ok(())
 }
 
-/// Puts an instance of a block memory in the place of the table `id`, whose operand is that of its first rank. Its module
-/// belongs to that table alone, in the module of this name.
+/// Puts an instance of a block memory in the place of the table `id`, whose operand is that of its first rank. Its
+/// module belongs to that table alone, in the module of this name.
 pub(super) fn instantiate_table(inner: &mut Inner, id: NodeId, owner: &str, model: &DelayModel) -> Result<(), Errors> {
     let node = &inner.nodes[id.index()];
     let Op::Lookup(table) = node.op.clone() else { return Ok(()) };

@@ -50,9 +50,9 @@ fn mult18x18d(module: &Module) -> String {
     out
 }
 
-/// Ports `a`, `b`, `add` and `result`. A CCU2C has two bits of the chain, each with a table whose upper half is what passes
-/// the carry on, here a ^ b ^ ~add, and whose lowest bits make it where nothing passes it on, here a. The lowest bit of
-/// all only makes the first carry, which is ~add.
+/// Ports `a`, `b`, `add` and `result`. A CCU2C has two bits of the chain, each with a table whose upper half is what
+/// passes the carry on, here a ^ b ^ ~add, and whose lowest bits make it where nothing passes it on, here a. The lowest
+/// bit of all only makes the first carry, which is ~add.
 fn ccu2c(module: &Module) -> String {
     let width = module.port("result").map_or(1, |(_, port)| port.width);
     let cells = (width + 1).div_ceil(2);
@@ -142,8 +142,8 @@ fn port(
     ports
 }
 
-/// Ports `index` and `word`: both ports of the memory read, one the low 18 bits of the word in the lower half, the other
-/// one the rest in the upper half.
+/// Ports `index` and `word`: both ports of the memory read, one the low 18 bits of the word in the lower half, the
+/// other one the rest in the upper half.
 fn table(module: &Module) -> Block {
     let table = module.nodes.iter().find_map(|node| if let Op::Lookup(table) = &node.op { Some(table) } else { None });
     let part = |address: usize| {
@@ -168,8 +168,9 @@ fn table(module: &Module) -> Block {
     (width(module, "word"), parameters, [connected("A", 0), connected("B", 1)])
 }
 
-/// Ports `write_index`, `write_word`, `read_index` and `word`, of up to 36 bits, and `write`, `read` and `advance` where
-/// there are such: port A writes whole words, port B reads. Of the words read either port has its half, in a register of its own.
+/// Ports `write_index`, `write_word`, `read_index` and `word`, of up to 36 bits, and `write`, `read` and `advance`
+/// where there are such: port A writes whole words, port B reads. Of the words read either port has its half, in a
+/// register of its own.
 fn memory(module: &Module) -> Block {
     let address = |index: &str, low: &str| {
         std::array::from_fn(|place| match place {

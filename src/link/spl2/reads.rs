@@ -81,7 +81,8 @@ impl Reads {
         Some((read.mdata, read.data?))
     }
 
-    /// SPL is reset or disabled: what is queued is gone (its mdata are given), what is on its way comes back all the same.
+    /// SPL is reset or disabled: what is queued is gone (its mdata are given), what is on its way comes back all the
+    /// same.
     pub(super) fn reset(&mut self) -> Vec<u16> {
         self.stale.append(&mut self.window);
         self.queue.drain(..).map(|header| header.mdata).collect()

@@ -1,5 +1,5 @@
-//! Roots for numbers that come a few cycles apart: a digit recurrence of which one rank of registers does several steps,
-//! a step or a few a cycle, in place of a rank for each.
+//! Roots for numbers that come a few cycles apart: a digit recurrence of which one rank of registers does several
+//! steps, a step or a few a cycle, in place of a rank for each.
 
 mod rank;
 mod recip;
@@ -19,9 +19,10 @@ use crate::number::Roots;
 /// A correctly rounded root, [`Operator::Recip`] or [`Operator::Sqrt`], for one number every `interval` cycles at most;
 /// nothing for other operators.
 ///
-/// Beside `a` and `result` it has an input `phase` of `interval` bits: bit k is set k cycles after a number has come, and
-/// every `interval` cycles from then on. The result is there [`Module::latency`] cycles after the number, for one cycle;
-/// it is the [`pipelined`](super::pipelined) operator's, bit for bit. `area` says which of several is the smallest.
+/// Beside `a` and `result` it has an input `phase` of `interval` bits: bit k is set k cycles after a number has come,
+/// and every `interval` cycles from then on. The result is there [`Module::latency`] cycles after the number, for one
+/// cycle; it is the [`pipelined`](super::pipelined) operator's, bit for bit. `area` says which of several is the
+/// smallest.
 ///
 /// # Errors
 /// What a graph recorded, or a clock it cannot be cut for.

@@ -113,8 +113,8 @@ impl<'g> Operand<'g> {
         self.normalised_for(self.domain.bias())
     }
 
-    /// The same with the exponent for another bias. That of zero is then the smallest there is, if subnormals count, and its
-    /// significand is zero.
+    /// The same with the exponent for another bias. That of zero is then the smallest there is, if subnormals count,
+    /// and its significand is zero.
     #[track_caller]
     pub fn normalised_for(&self, bias: i32) -> (Signed<'g>, Signal<'g>) {
         let largest = i64::from(self.domain.special_exponent()) - 1;

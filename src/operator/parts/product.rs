@@ -34,8 +34,8 @@ pub fn square(a: Signal<'_>) -> Signal<'_> {
     total(rows, 2 * width)
 }
 
-/// How many of the low bits of a [`product`] of factors that wide, or of a [`square`], are one tile's own: they are there
-/// before the rows are summed.
+/// How many of the low bits of a [`product`] of factors that wide, or of a [`square`], are one tile's own: they are
+/// there before the rows are summed.
 pub fn settled_bits(width: u32) -> u32 {
     if width > digit_width(width) { digit_width(width) } else { 0 }
 }

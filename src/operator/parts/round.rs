@@ -88,8 +88,8 @@ impl<'g> Fields<'g> {
         Self { fraction, guard: self.guard & condition, sticky, ..self }
     }
 
-    /// {exponent, fraction}, rounded. A carry out of the fraction makes the exponent one more, which is right; out of the
-    /// largest finite number it makes infinity.
+    /// {exponent, fraction}, rounded. A carry out of the fraction makes the exponent one more, which is right; out of
+    /// the largest finite number it makes infinity.
     #[track_caller]
     pub fn rounded(self) -> Signal<'g> {
         let Self { exponent, fraction, guard, sticky, .. } = self;
@@ -162,8 +162,8 @@ pub fn overflow<'g>(domain: Domain, value: Unrounded<'g>) -> Signal<'g> {
     value.exponent.at_least(i64::from(domain.special_exponent())).named("overflow")
 }
 
-/// Moves a significand whose exponent is below the smallest normal one to the right, and one that is `gone` out of sight.
-/// Gives exponent field, fraction, guard and sticky.
+/// Moves a significand whose exponent is below the smallest normal one to the right, and one that is `gone` out of
+/// sight. Gives exponent field, fraction, guard and sticky.
 pub fn denormalise<'g>(
     domain: Domain,
     value: Unrounded<'g>,

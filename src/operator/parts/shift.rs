@@ -36,9 +36,9 @@ pub fn distance_bits(width: u32) -> u32 {
     u32::BITS - width.leading_zeros()
 }
 
-/// A distance in the bits that a value of `width` bits needs: one that moves it out whole and does not fit in them becomes
-/// the largest that does, which moves it out as well. So what is far costs a gate for each bit of the distance, not of the
-/// value. The result is named where it is not the distance itself.
+/// A distance in the bits that a value of `width` bits needs: one that moves it out whole and does not fit in them
+/// becomes the largest that does, which moves it out as well. So what is far costs a gate for each bit of the distance,
+/// not of the value. The result is named where it is not the distance itself.
 #[track_caller]
 pub fn capped<'g>(distance: Signal<'g>, width: u32, name: &str) -> Signal<'g> {
     let levels = distance_bits(width);

@@ -51,9 +51,9 @@ impl Library<'_> {
 impl Kernel {
     /// The kernel as a pipeline that takes new inputs every `interval` ≥ 2 cycles, with operators cut for `clock_mhz`.
     ///
-    /// It has one more input, `take`: set in the cycle before new inputs come. They come a multiple of `interval` cycles
-    /// after those before them, since the last reset, and stay for `interval` cycles. Outputs are there for one cycle,
-    /// [`Module::latency`] cycles after the first in which the inputs are.
+    /// It has one more input, `take`: set in the cycle before new inputs come. They come a multiple of `interval`
+    /// cycles after those before them, since the last reset, and stay for `interval` cycles. Outputs are there for one
+    /// cycle, [`Module::latency`] cycles after the first in which the inputs are.
     ///
     /// # Errors
     /// What a graph recorded, or a clock no operator can be cut for.

@@ -5,8 +5,8 @@ use nalgebra::{DMatrix, DVector};
 /// Steps at most: it takes some twenty.
 const STEPS: u32 = 200;
 
-/// The positive parameters, from `start` on, for which the squares of `residuals` add up to the least. They are moved by
-/// factors, so none changes its sign.
+/// The positive parameters, from `start` on, for which the squares of `residuals` add up to the least. They are moved
+/// by factors, so none changes its sign.
 pub fn fit(start: &[f64], residuals: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
     let at = |logs: &DVector<f64>| {
         let values: Vec<f64> = logs.iter().map(|log| log.exp()).collect();

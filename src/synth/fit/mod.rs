@@ -151,7 +151,8 @@ fn groups(sorted: &[(f64, Sample)]) -> Vec<Vec<Sample>> {
 mod tests {
     use super::*;
 
-    /// The model's structure may change after a fit: then what the file says of its points must still be what it says today.
+    /// The model's structure may change after a fit: then what the file says of its points must still be what it says
+    /// today.
     #[test]
     fn the_committed_points_are_what_the_model_says() {
         let fit: Fit = serde_json::from_str(include_str!("../../../docs/delays-ecp5.json")).unwrap();

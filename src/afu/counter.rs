@@ -1,8 +1,9 @@
-//! A counter that goes down one at a time, and flags of what it has come to that do not wait for its subtraction.
+//! Counters that say what they come to without waiting for the sum: one that goes down, with flags of what it has come
+//! to, and one that goes up and down, with the slots it counts.
 
 use crate::hdl::{Graph, Register, Signal};
 
-/// The counter under construction.
+/// A counter that goes down one at a time.
 pub(super) struct Countdown<'g> {
     left: Register<'g>,
     /// Whether anything is left.
@@ -20,8 +21,8 @@ impl<'g> Countdown<'g> {
         Self { left: graph.register(name, width, 0), any, one, flags }
     }
 
-    /// Begins with `from` at `start`; goes down at `step`, which is set only while something is left. Gives whether anything
-    /// will be left.
+    /// Begins with `from` at `start`; goes down at `step`, which is set only while something is left. Gives whether
+    /// anything will be left.
     pub(super) fn connect(self, start: Signal<'g>, from: Signal<'g>, step: Signal<'g>) -> Signal<'g> {
         let left = self.left;
         left.next_if(start | step, start.select(from, left.minus(1)));
@@ -33,4 +34,16 @@ impl<'g> Countdown<'g> {
         self.flags[1].next(start.select(from.bit(0) & !above(from), next_one));
         next_any
     }
+}
+
+/// Connects a counter, from 0 at `start`, that one event takes up and another down: which comes last.
+pub(super) fn up_down<'g>(count: Register<'g>, start: Signal<'g>, up: Signal<'g>, down: Signal<'g>) {
+    let moved = up.select(count.plus(1), count.minus(1));
+    count.next_if(start | (up ^ down), start.select(count.same(0), moved));
+}
+
+/// Whether all of a power of two slots are used after a cycle, of which `reserved` are at its beginning.
+pub(super) fn all_used<'g>(reserved: Register<'g>, takes: Signal<'g>, frees: Signal<'g>) -> Signal<'g> {
+    let slots = reserved.width() - 1;
+    !frees & (reserved.msb() | (reserved.low(slots).all() & takes))
 }

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Sets of the four slots, a bit each, for the proofs of the two that use slots in turn.
+
+// So many slots from one on.
+function [3:0] slots(input [1:0] first, input [2:0] many);
+  reg [7:0] from_zero;
+  reg [7:0] from_first;
+  begin
+    from_zero = (8'd1 << many) - 8'd1;
+    from_first = from_zero << first;
+    slots = from_first[3:0] | from_first[7:4];
+  end
+endfunction
+
+// Marks by age, the oldest first, as slots: the oldest's is `first`.
+function [3:0] aged(input [3:0] ages, input [1:0] first);
+  reg [7:0] from_first;
+  begin
+    from_first = {4'd0, ages} << first;
+    aged = from_first[3:0] | from_first[7:4];
+  end
+endfunction
