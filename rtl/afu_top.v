@@ -40,9 +40,9 @@ module afu_top #(
   wire rst;
 
   // ---- state ----
+  reg [511:0] received;
   reg core_answered;
   reg [9:0] spl_rx_hdr0_9_0_d1;
-  reg [511:0] received;
   reg in_reset;
 
   // ---- outputs of instances ----
@@ -101,9 +101,9 @@ module afu_top #(
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
+    received <= spl_rx_data;
     core_answered <= spl_rx_rd_valid & (~|spl_rx_hdr0[13:12] & (spl_rx_hdr0[11:6] == epoch));
     spl_rx_hdr0_9_0_d1 <= spl_rx_hdr0[9:0];
-    received <= spl_rx_data;
     in_reset <= power_on | spl_reset | ~spl_enable;
   end
 
@@ -157,7 +157,7 @@ module afu_top #(
     .read_number        (own_read_number),
     .rsp_valid          (spl_rx_rd_valid),
     .rsp_mdata          (spl_rx_hdr0[13:0]),
-    .rsp_data           (spl_rx_data),
+    .rsp_data           (received),
     .wr_granted         (end_granted),
     .core_done          (core_done),
     .core_error         (core_error),

@@ -38,7 +38,6 @@ module spl2_acknowledge (
 
   // ---- logic ----
   wire take = |stored & ~counts_0;
-  wire [6:0] left = stored - {6'd0, take};
   wire core_s_1 = valid_1 & (~|mdata_1[13:12] & (mdata_1[11:6] == epoch));
   wire core_s_0 = valid_0 & (~|mdata_0[13:12] & (mdata_0[11:6] == epoch));
   assign tag = from_first ? mdata_0_9_0_d2 : oldest;
@@ -63,10 +62,10 @@ module spl2_acknowledge (
     end else begin
       answered <= ~start & (counts_0 | take);
       counts_0 <= core_s_0 & ~start;
-      stored <= start ? 7'd0 : (left + {6'd0, counts_1});
+      if (start | (counts_1 ^ take)) stored <= start ? 7'd0 : (counts_1 ? (stored + 7'd1) : (stored - 7'd1));
       counts_1 <= core_s_1 & ~start;
-      head <= start ? 6'd0 : (head + {5'd0, take});
-      tail <= start ? 6'd0 : (tail + {5'd0, counts_1});
+      if (start | take) head <= start ? 6'd0 : (head + 6'd1);
+      if (start | counts_1) tail <= start ? 6'd0 : (tail + 6'd1);
     end
   end
 

@@ -27,24 +27,22 @@ module spl2_registers (
   // ---- state ----
   reg [31:0] dsm_high;
   reg [31:0] cfg_data_heard;
-  reg cfg_valid_heard;
-  reg [13:0] cfg_offset_heard;
+  reg dsm_base_high;
+  reg dsm_base_low;
   reg spl_reset_heard;
   reg spl_reset_before;
   reg [31:0] context_high;
+  reg context_base_high;
+  reg context_base_low;
   reg due;
   reg identity_due;
   reg scratch_due;
+  reg scratch;
   reg was_identity;
   reg [31:0] scratch_value;
 
   // ---- logic ----
-  wire dsm_base_high = cfg_valid_heard & (cfg_offset_heard == 14'h2280);
-  wire dsm_base_low = cfg_valid_heard & (cfg_offset_heard == 14'h2281);
   wire clear = power_on | (spl_reset_heard & ~spl_reset_before);
-  wire context_base_high = cfg_valid_heard & (cfg_offset_heard == 14'h2282);
-  wire context_base_low = cfg_valid_heard & (cfg_offset_heard == 14'h2283);
-  wire scratch = cfg_valid_heard & (cfg_offset_heard == 14'h22bf);
   wire scratch_granted = wr_granted & ~was_identity;
   wire identity_granted = wr_granted & was_identity;
   assign wr_address = {dsm_line[57:6], identity_due ? 6'd0 : 6'd63};
@@ -55,17 +53,20 @@ module spl2_registers (
     if (dsm_base_low) dsm_line <= {dsm_high, cfg_data_heard[31:6]};
     if (dsm_base_high) dsm_high <= cfg_data_heard;
     cfg_data_heard <= cfg_data;
-    cfg_valid_heard <= cfg_valid;
-    cfg_offset_heard <= cfg_offset;
+    dsm_base_high <= cfg_valid & (cfg_offset == 14'h2280);
+    dsm_base_low <= cfg_valid & (cfg_offset == 14'h2281);
     dsm_valid <= (dsm_valid | dsm_base_low) & ~clear;
     spl_reset_heard <= spl_reset;
     spl_reset_before <= spl_reset_heard;
     if (context_base_low) context_line <= {context_high, cfg_data_heard[31:6]};
     if (context_base_high) context_high <= cfg_data_heard;
+    context_base_high <= cfg_valid & (cfg_offset == 14'h2282);
+    context_base_low <= cfg_valid & (cfg_offset == 14'h2283);
     context_valid <= (context_valid | context_base_low) & ~clear;
     due <= dsm_valid & (identity_due | scratch_due) & ~wr_granted & ~power_on;
     identity_due <= (identity_due | dsm_base_low) & ~(clear | (identity_granted & ~dsm_base_low));
     scratch_due <= (scratch_due | scratch) & ~(clear | (scratch_granted & ~scratch));
+    scratch <= cfg_valid & (cfg_offset == 14'h22bf);
     was_identity <= identity_due;
     if (scratch) scratch_value <= cfg_data_heard;
   end

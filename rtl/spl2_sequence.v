@@ -57,7 +57,6 @@ module spl2_sequence (
   reg has_start_word;
   reg some_job;
   reg is_other;
-  reg [511:0] received;
   reg [31:0] job_sequence;
   reg [511:0] compared;
   reg is_own;
@@ -120,11 +119,10 @@ module spl2_sequence (
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
-    has_start_word <= received[31:0] == 32'h406cccff;
-    is_other <= received[127:96] != job_sequence;
-    received <= rsp_data;
+    has_start_word <= rsp_data[31:0] == 32'h406cccff;
+    is_other <= rsp_data[127:96] != job_sequence;
     if (got_job) job_sequence <= compared[127:96];
-    compared <= received;
+    compared <= rsp_data;
     is_own <= rsp_valid & ((rsp_mdata[13:12] == 2'd1) & (rsp_mdata[11:0] == expected));
     if (rd_granted) expected <= read_number;
     age <= rd_granted ? 17'd0 : (age + 17'd1);
@@ -138,7 +136,7 @@ module spl2_sequence (
     if (got_context) destination_line <= compared[191:134];
     if (got_job) job_mode <= compared[67:64] | {3'd0, |compared[95:68]};
     if (got_job) job_watchdog <= compared[191:160];
-    has_abort <= |received[159:128];
+    has_abort <= |rsp_data[159:128];
     wr_fence <= at_fence;
     wr_virtual <= ~to_dsm;
     wr_address <= to_dsm ? (at_latency ? {dsm_line[57:6], 6'd4} : {dsm_line[57:6], 6'd5}) : (context_line + 58'd1);

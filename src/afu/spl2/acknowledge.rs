@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::hdl::{Errors, Graph, Module};
 
+use super::super::counter::up_down;
 use super::super::{EPOCH_BITS, Spec};
 use super::port::{MDATA_BITS, SHELL_EPOCH_BITS, is_core_s};
 
@@ -21,9 +22,7 @@ pub(super) fn acknowledge(spec: &Spec) -> Result<Arc<Module>, Errors> {
         let valid = graph.input(&format!("valid_{channel}"), 1);
         let mdata = graph.input(&format!("mdata_{channel}"), MDATA_BITS);
         let mine = (valid & is_core_s(mdata, epoch, slot_bits)).named(&format!("core_s_{channel}"));
-        let counts = graph.register(&format!("counts_{channel}"), 1, 0);
-        counts.next(mine & !start);
-        (counts.value(), mdata.low(tag_bits).delay(1))
+        ((mine & !start).registered(&format!("counts_{channel}")), mdata.low(tag_bits).delay(1))
     });
     let [(first, first_tag), (second, second_tag)] = channels;
 
@@ -34,15 +33,12 @@ pub(super) fn acknowledge(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let stored = graph.register("stored", slot_bits + 1, 0);
     let take = (stored.any() & !first).named("take");
     store.write(second, tail.value(), second_tag);
-    tail.next(start.select(tail.same(0), tail.value() + second.extend(slot_bits)));
-    head.next(start.select(head.same(0), head.value() + take.extend(slot_bits)));
-    let left = (stored.value() - take.extend(slot_bits + 1)).named("left");
-    stored.next(start.select(stored.same(0), left + second.extend(slot_bits + 1)));
+    tail.next_if(start | second, start.select(tail.same(0), tail.plus(1)));
+    head.next_if(start | take, start.select(head.same(0), head.plus(1)));
+    up_down(stored, start, second, take);
     let waited = store.read(head.value()).named("oldest");
 
-    let valid = graph.register("answered", 1, 0);
-    valid.next(!start & (first | take));
-    graph.output("valid", valid.value());
+    graph.output("valid", (!start & (first | take)).registered("answered"));
     graph.output("tag", first.delay(1).named("from_first").select(first_tag.delay(1), waited));
     graph.finish()
 }

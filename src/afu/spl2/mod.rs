@@ -66,6 +66,7 @@ pub(super) fn afu_top(spec: &Spec, core: &Arc<Module>) -> Result<Arc<Module>, Er
         ],
     );
 
+    let received = data.delay(1).named("received");
     let (core_done, core_error) = (wire("core_done", 1), wire("core_error", ERROR_BITS));
     let (core_read, core_write) = (wire("core_read_answered", 1), wire("core_write_asked", 1));
     let counts = ["contacts", "invalid", "first_invalid"].map(|name| (name, wire(name, 32)));
@@ -79,7 +80,7 @@ pub(super) fn afu_top(spec: &Spec, core: &Arc<Module>) -> Result<Arc<Module>, Er
         ("read_number", read_number),
         ("rsp_valid", rd_valid),
         ("rsp_mdata", mdata0),
-        ("rsp_data", data),
+        ("rsp_data", received),
         ("wr_granted", end_granted),
         ("core_done", core_done),
         ("core_error", core_error),
@@ -107,7 +108,6 @@ pub(super) fn afu_top(spec: &Spec, core: &Arc<Module>) -> Result<Arc<Module>, Er
         ],
     );
     // What is received is compared with the epoch before the core hears of it.
-    let received = data.delay(1).named("received");
     let core_answered = (rd_valid & is_core_s(mdata0, epoch, slot_bits)).delay(1).named("core_answered");
     let (rd_ready, wr_ready) = (wire("core_rd_ready", 1), wire("core_wr_ready", 1));
     let never = graph.constant(1, 0);

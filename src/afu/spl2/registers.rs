@@ -19,11 +19,10 @@ pub(super) fn registers(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let graph = Graph::new("spl2_registers");
     graph.about("takes CSR writes, answers them in the DSM");
     let power_on = graph.input("power_on", 1);
-    // Heard a cycle later, all of it.
+    // Heard a cycle later, all of it; what is written is known by then.
     let heard = |name: &str, width: u32| graph.input(name, width).delay(1).named(&format!("{name}_heard"));
     let spl_reset = heard("spl_reset", 1);
-    let cfg_valid = heard("cfg_valid", 1);
-    let cfg_offset = heard("cfg_offset", MDATA_BITS);
+    let (cfg_valid, cfg_offset) = (graph.input("cfg_valid", 1), graph.input("cfg_offset", MDATA_BITS));
     let cfg_data = heard("cfg_data", 32);
     let granted = graph.input("wr_granted", 1);
     let capability = graph.input("capability", 64);
@@ -33,7 +32,7 @@ pub(super) fn registers(spec: &Spec) -> Result<Arc<Module>, Errors> {
     before.next(spl_reset);
     let clear = (power_on | (spl_reset & !*before)).named("clear");
 
-    let written = |csr: Csr| (cfg_valid & cfg_offset.is(u128::from(csr.offset / 4))).named(csr.name);
+    let written = |csr: Csr| (cfg_valid & cfg_offset.is(u128::from(csr.offset / 4))).delay(1).named(csr.name);
     let address = |high: Csr, low: Csr, name: &str| {
         let high_half = graph.data_register(&format!("{name}_high"), 32);
         high_half.next_if(written(high), cfg_data);

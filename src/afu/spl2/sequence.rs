@@ -31,6 +31,7 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let read_number = graph.input("read_number", NUMBER_BITS);
     let response_valid = graph.input("rsp_valid", 1);
     let response_mdata = graph.input("rsp_mdata", MDATA_BITS);
+    // A cycle after the other two.
     let received = graph.input("rsp_data", spec.line_bits);
     let write_granted = graph.input("wr_granted", 1);
     let core_done = graph.input("core_done", 1);
@@ -56,7 +57,6 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let waiting = graph.register("waiting", 1, 0);
     let expected = graph.data_register("expected", NUMBER_BITS);
     // A line is compared with what is waited for before it counts.
-    let received = received.delay(1).named("received");
     let response = received.delay(1).named("compared");
     let own = (response_valid & is_own(response_mdata, expected.value())).delay(1).named("is_own");
     let answered = graph.register("answered", 1, 0);
@@ -69,8 +69,7 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, Errors> {
     waiting.next(read_granted | (*waiting & !answered & !overdue));
     let pause_bits = map::RUNNING_POLL_CYCLES.max(map::IDLE_POLL_CYCLES).ilog2() + 1;
     let pause = graph.register("pause", pause_bits, 0);
-    let asks = graph.register("asks", 1, 0);
-    asks.next((at_context | at_poll | at_run) & !*waiting & !read_granted & !pause.any());
+    let asks = ((at_context | at_poll | at_run) & !*waiting & !read_granted & !pause.any()).registered("asks");
 
     // The context.
     let got_context = (at_context & answered).named("got_context");
@@ -202,7 +201,7 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let writes = graph.register("writes", 1, 0);
     writes.next(((to_dsm & dsm_valid) | fences | at_status) & !written);
 
-    graph.output("rd_valid", asks.value());
+    graph.output("rd_valid", asks);
     graph.output("rd_address", at_context.select(context_line, source.value()).named("address"));
     graph.output("start", start);
     graph.output("source", source.plus(map::DATA_LINE.into()).named("first_pairs"));
