@@ -63,14 +63,13 @@ module spl2_transmit (
   assign core_epoch = next_epoch[3:0];
   wire [11:0] not_power_on_wide = {12{~power_on}};
   assign own_rd_granted = own_rd_valid & (own_rd_turn & rd_room);
-  wire own_rd_waits = own_rd_valid & ~own_rd_granted;
   wire own_wr_turn_and_wr_room = own_wr_turn & wr_room;
   assign register_wr_granted = own_wr_turn_and_wr_room & is_register & register_wr_valid;
+  wire own_wr_waits = register_wr_valid | end_wr_valid;
   assign end_wr_granted = own_wr_turn_and_wr_room & ~is_register & end_wr_valid;
-  wire own_granted = register_wr_granted | end_wr_granted;
-  wire own_wr_waits = (register_wr_valid | end_wr_valid) & ~own_granted;
   wire reading = own_rd_granted | (core_rd_turn & core_rd_valid & ~discards);
   wire [57:0] own_rd_address_if_own_rd_granted = own_rd_granted ? own_rd_address : core_rd_address;
+  wire own_granted = register_wr_granted | end_wr_granted;
   wire writing = own_granted | (core_wr_turn & core_wr_valid & ~discards);
   wire [57:0] register_wr_address_if = register_wr_valid ? register_wr_address : end_wr_address;
   wire is_fence = end_wr_fence & ~register_wr_valid;
@@ -79,9 +78,9 @@ module spl2_transmit (
   always @(posedge clk) begin
     epoch <= ~power_on ? next_epoch : 6'd0;
     if (own_rd_granted | power_on) read_number <= (read_number + 12'd1) & not_power_on_wide;
-    own_rd_turn <= own_rd_waits & ~power_on;
+    own_rd_turn <= own_rd_valid & ~power_on;
     rd_room <= ~rd_almostfull;
-    core_rd_turn <= discards | (~own_rd_waits & ~rd_almostfull);
+    core_rd_turn <= discards | (~own_rd_valid & ~rd_almostfull);
     discards <= discard;
     own_wr_turn <= own_wr_waits & ~power_on;
     wr_room <= ~wr_almostfull;

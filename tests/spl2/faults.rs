@@ -28,7 +28,7 @@ enum Planted {
 
 /// File, the assignment's left side, the fault, and what is assigned then.
 const FAULTS: [(&str, &str, Planted, &str); 7] = [
-    ("spl2_transmit.v", " core_rd_turn <= ", Planted::AlmostFullIgnored, "discards | ~own_rd_waits"),
+    ("spl2_transmit.v", " core_rd_turn <= ", Planted::AlmostFullIgnored, "discards | ~own_rd_valid"),
     ("spl2_acknowledge.v", "wire core_s_1 = ", Planted::SecondChannelLost, "valid_1 & ~valid_0 & ~|mdata_1[13:12]"),
     ("spl2_sequence.v", "wire written = ", Planted::NoFence, "wr_granted | (to_dsm & ~dsm_valid) | at_fence"),
     ("spl2_sequence.v", " writes <= ", Planted::NoFence, "((to_dsm & dsm_valid) | at_status) & ~written"),

@@ -36,7 +36,7 @@ pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let own_read_address = graph.input("own_rd_address", ADDRESS_BITS);
     let reads = Turns::new(&graph, "rd", rd_almostfull);
     let own_read_granted = (own_read & reads.own).named("own_rd_granted");
-    reads.connect((own_read & !own_read_granted).named("own_rd_waits"), discard, power_on);
+    reads.connect(own_read, discard, power_on);
     let core_read_ready = reads.core;
     let read_number = number(&graph, "read_number", own_read_granted, power_on);
     let constant = |width: u32, value: u128| graph.constant(width, value);
@@ -75,8 +75,7 @@ pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let register_granted = (writes.own & is_register & register_write).named("register_wr_granted");
     let end_granted = (writes.own & !is_register & end_write).named("end_wr_granted");
     let own_granted = (register_granted | end_granted).named("own_granted");
-    let own_waits = ((register_write | end_write) & !own_granted).named("own_wr_waits");
-    writes.connect(own_waits, discard, power_on);
+    writes.connect((register_write | end_write).named("own_wr_waits"), discard, power_on);
     let write_number = number(&graph, "write_number", own_granted, power_on);
     let is_fence = (end_write_fence & !register_write).named("is_fence");
     let write_line = port::kind(&graph, Request::WriteLine);
@@ -140,8 +139,8 @@ impl<'g> Turns<'g> {
         Self { turn, open, almost_full, own_turn: *turn, own: *turn & room, core: *open }
     }
 
-    /// The next turn is the shell's if it `wants` it; the core's, whatever room there is, while what it asks is
-    /// discarded.
+    /// The next turn is the shell's if it `wants` it, though what it wants may be granted in this one: it asks seldom.
+    /// The core's, whatever room there is, while what it asks is discarded.
     fn connect(self, wants: Signal<'g>, discard: Signal<'g>, power_on: Signal<'g>) {
         self.turn.next(wants & !power_on);
         self.open.next(discard | (!wants & !self.almost_full));
