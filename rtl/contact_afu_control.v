@@ -90,12 +90,12 @@ module contact_afu_control (
   always @(posedge clk) begin
     if (rst) begin
       cycles_busy <= 64'd0;
+      begin_job <= 1'b0;
       running <= 1'b0;
       draining <= 1'b0;
       read_failed_heard <= 1'b0;
       write_failed_heard <= 1'b0;
       expired <= 1'b0;
-      begin_job <= 1'b0;
       complete <= 1'b0;
       stopped <= 1'b0;
       pairs_inside <= 10'd0;
@@ -116,13 +116,13 @@ module contact_afu_control (
       room <= 10'd512;
       room_change <= 10'd0;
     end else begin
-      if (accept | busy) cycles_busy <= accept ? 64'd0 : (cycles_busy + 64'd1);
+      if (begin_job | busy) cycles_busy <= begin_job ? 64'd1 : (cycles_busy + 64'd1);
+      begin_job <= accept;
       running <= (accept & ~failing) | (running & ~completes & ~failing);
       draining <= failing | (draining & ~drained);
       read_failed_heard <= read_failed;
       write_failed_heard <= write_failed;
       expired <= busy & |job_watchdog & (silence >= job_watchdog);
-      begin_job <= accept;
       complete <= run & packer_done & dispatched & link_idle;
       stopped <= draining;
       pairs_inside <= (pairs_inside + entered_wide) - {8'd0, emerged};
@@ -132,8 +132,8 @@ module contact_afu_control (
       if (accept) job_watchdog <= watchdog;
       silence <= (not_waiting | ~busy) ? 32'd0 : (silence + 32'd1);
       response_heard <= response;
-      if (accept | (waits_for_input & running)) cycles_input <= accept ? 64'd0 : (cycles_input + 64'd1);
-      if (accept | (waits_for_output & running)) cycles_output <= accept ? 64'd0 : (cycles_output + 64'd1);
+      if (begin_job | (waits_for_input & running)) cycles_input <= begin_job ? 64'd0 : (cycles_input + 64'd1);
+      if (begin_job | (waits_for_output & running)) cycles_output <= begin_job ? 64'd0 : (cycles_output + 64'd1);
       done <= ~accept & (done | completes | drained);
       error <= gives_up ? 4'd4 : failed;
       if (accept) job_count <= count;

@@ -167,13 +167,14 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, Errors>
     }
     error.next(gives_up.select(error.same(JobError::Watchdog as u128), ended));
 
-    for (name, counts) in [
-        ("cycles_busy", busy),
-        ("cycles_input", waits_for_input & *running),
-        ("cycles_output", waits_for_output & *running),
+    // They begin a cycle after the job does, of which that cycle is one; nothing waits in it yet.
+    for (name, counts, first) in [
+        ("cycles_busy", busy, 1),
+        ("cycles_input", waits_for_input & *running, 0),
+        ("cycles_output", waits_for_output & *running, 0),
     ] {
         let counter = graph.register(name, CYCLE_BITS, 0);
-        counter.next_if(accept | counts, accept.select(counter.same(0), counter.plus(1)));
+        counter.next_if(*begin | counts, begin.select(counter.same(first), counter.plus(1)));
         graph.output(name, counter.value());
     }
     graph.output("busy", busy);
