@@ -30,7 +30,7 @@ module contact_afu_packer (
   reg goes;
   reg went;
   reg place;
-  reg all_out;
+  reg all_seen;
   reg [31:0] emerged;
   reg [511:0] filling;
   reg [767:0] shifted;
@@ -48,12 +48,12 @@ module contact_afu_packer (
   // ---- logic ----
   wire [2:0] next_place = {2'd0, place} + {1'b0, group};
   wire fills = next_place >= 3'd2;
-  wire flushes = all_out & place & ~|group;
+  wire flushes = all_seen & place & ~|group;
   wire start_or_flushes = start | flushes;
   wire [2:0] wrapped_place = fills ? (next_place - 3'd2) : next_place;
   wire [767:0] merged = {256'd0, filling} | shifted;
   wire [511:0] record_1_wide = {record_1, record_0};
-  assign done = all_out & ~place & ~went & ~goes & ~line_valid;
+  assign done = all_seen & ~place & ~went & ~goes & ~line_valid;
   wire some_invalid = invalid_0 | invalid_1;
 
   // ---- at the clock edge ----
@@ -73,7 +73,7 @@ module contact_afu_packer (
       goes <= 1'b0;
       went <= 1'b0;
       place <= 1'b0;
-      all_out <= 1'b0;
+      all_seen <= 1'b0;
       emerged <= 32'd0;
       filling <= 512'd0;
       contact_count <= 32'd0;
@@ -85,7 +85,7 @@ module contact_afu_packer (
       goes <= ~start & went;
       went <= ~start & (fills | flushes);
       place <= start_or_flushes ? 1'b0 : wrapped_place[0];
-      all_out <= ~start & (emerged == count);
+      all_seen <= ~start & (emerged == count);
       emerged <= start ? 32'd0 : (emerged + {30'd0, group});
       filling <= emptied ? 512'd0 : (full ? {256'd0, merged[767:512]} : merged[511:0]);
       contact_count <= start ? 32'd0 : (contact_count + {30'd0, {1'b0, contact_0} + {1'b0, contact_1}});

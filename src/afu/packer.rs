@@ -40,9 +40,7 @@ fn of_all(spec: &Spec) -> Result<Arc<Module>, Errors> {
         contacts.push(graph.input(&format!("contact_{lane}"), 1));
         invalids.push(graph.input(&format!("invalid_{lane}"), 1));
     }
-    let emerged = graph.register("emerged", COUNT_BITS, 0);
-    emerged.next(start.select(emerged.same(0), emerged.value() + group.extend(COUNT_BITS)));
-    let all_out = (!start & emerged.equals(count)).registered("all_out");
+    let (emerged, all_out) = status::emerged(&graph, start, group, count);
     fill(&graph, spec, start, group, records, all_out);
     status::count(&graph, start, emerged.delay(1).named("emerged_before"), &contacts, &invalids);
     graph.finish()

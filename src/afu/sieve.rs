@@ -41,8 +41,7 @@ pub(super) fn sieve(spec: &Spec) -> Result<Arc<Module>, Errors> {
         contacts.push(graph.input(&format!("contact_{lane}"), 1));
         invalids.push(graph.input(&format!("invalid_{lane}"), 1));
     }
-    let emerged = graph.register("emerged", COUNT_BITS, 0);
-    emerged.next(start.select(emerged.same(0), emerged.value() + group.extend(COUNT_BITS)));
+    let (emerged, all_seen) = status::emerged(&graph, start, group, count);
 
     // Each contact moves up by the number of lanes before it without one.
     let steps = lanes.ilog2();
@@ -79,9 +78,8 @@ pub(super) fn sieve(spec: &Spec) -> Result<Arc<Module>, Errors> {
         graph.output(&format!("entry_{lane}"), contact.entry);
     }
     graph.output("dropped", dropped);
-    let all_seen = (!start & emerged.equals(count)).registered("all_seen");
     graph.output("all_out", all_seen & !on_its_way);
-    status::count(&graph, start, *emerged, &contacts, &invalids);
+    status::count(&graph, start, emerged, &contacts, &invalids);
     graph.finish()
 }
 

@@ -4,6 +4,18 @@ use crate::hdl::{Graph, Signal};
 
 use super::COUNT_BITS;
 
+/// How many pairs came out before this cycle's `group`, since `start`, and whether all `count` had come a cycle ago.
+pub(super) fn emerged<'g>(
+    graph: &'g Graph,
+    start: Signal<'g>,
+    group: Signal<'g>,
+    count: Signal<'g>,
+) -> (Signal<'g>, Signal<'g>) {
+    let emerged = graph.register("emerged", COUNT_BITS, 0);
+    emerged.next(start.select(emerged.same(0), emerged.value() + group.extend(COUNT_BITS)));
+    (emerged.value(), (!start & emerged.equals(count)).registered("all_seen"))
+}
+
 /// Counts contacts and invalid pairs, as the outputs `contacts`, `invalid` and `first_invalid`. `emerged` is the number
 /// of the pair in lane 0; the two lists have a bit a lane.
 pub(super) fn count<'g>(
