@@ -49,42 +49,48 @@ module contact_afu_feeder (
   // ---- logic ----
   wire may_go = phase == turn_phase;
   wire [2:0] last_wide = {2'd0, last};
-  wire [2:0] place_wide = {2'd0, place};
-  wire last_wide_below_place_wide = last_wide < place_wide;
-  wire present_0 = ~last_wide_below_place_wide;
-  wire [7:0] turn_wide = {1'b0, turn};
-  wire [6:0] scpus_unless_not_scpus_below_10_unle_unless = (scpus >= 7'd40) ? 7'd40 : ((scpus >= 7'd30) ? 7'd30 : ((scpus >= 7'd20) ? 7'd20 : ((scpus >= 7'd10) ? 7'd10 : scpus)));
-  wire [6:0] scpus_in_turn = (scpus >= 7'd60) ? 7'd60 : ((scpus >= 7'd50) ? 7'd50 : scpus_unless_not_scpus_below_10_unle_unless);
+  wire [2:0] place_after_0 = {2'd0, place};
+  wire line_done_after_0 = last_wide < place_after_0;
+  wire present_0 = ~line_done_after_0;
+  wire [7:0] turn_after_0 = {1'b0, turn};
+  wire [6:0] scpus_up_to_1_rounds = (scpus >= 7'd10) ? 7'd10 : scpus;
+  wire [6:0] scpus_up_to_2_rounds = (scpus >= 7'd20) ? 7'd20 : scpus_up_to_1_rounds;
+  wire [6:0] scpus_up_to_3_rounds = (scpus >= 7'd30) ? 7'd30 : scpus_up_to_2_rounds;
+  wire [6:0] scpus_up_to_4_rounds = (scpus >= 7'd40) ? 7'd40 : scpus_up_to_3_rounds;
+  wire [6:0] scpus_up_to_5_rounds = (scpus >= 7'd50) ? 7'd50 : scpus_up_to_4_rounds;
+  wire [6:0] scpus_in_turn = (scpus >= 7'd60) ? 7'd60 : scpus_up_to_5_rounds;
   wire [7:0] scpus_in_turn_wide = {1'b0, scpus_in_turn};
-  wire unit_0 = turn_wide < scpus_in_turn_wide;
+  wire unit_0 = turn_after_0 < scpus_in_turn_wide;
   wire go_0 = may_enter & may_go & in_hand & present_0 & unit_0;
-  wire [2:0] place_wide_plus_1 = place_wide + 3'd1;
-  wire last_wide_below_place_wide_plus_1 = last_wide < place_wide_plus_1;
+  wire [2:0] place_after_1 = place_after_0 + 3'd1;
+  wire line_done_after_1 = last_wide < place_after_1;
   wire line_comes = line_valid & any_lines_left;
   wire next_last = one_lines_left ? last_place : 1'b1;
-  wire present_1 = ~last_wide_below_place_wide_plus_1 | (|place_wide_plus_1[2:1] & line_comes & (next_last >= place_wide_plus_1[0]));
-  wire [7:0] turn_wide_plus_1 = turn_wide + 8'd1;
-  wire turn_wide_plus_1_below = turn_wide_plus_1 < scpus_in_turn_wide;
-  wire unit_1 = turn_wide_plus_1_below & (1'b0 >= turn[0]);
+  wire present_1 = ~line_done_after_1 | (|place_after_1[2:1] & line_comes & (next_last >= place_after_1[0]));
+  wire [7:0] turn_after_1 = turn_after_0 + 8'd1;
+  wire turn_after_1_below = turn_after_1 < scpus_in_turn_wide;
+  wire unit_1 = turn_after_1_below & (1'b0 >= turn[0]);
   wire go_1 = go_0 & present_1 & unit_1;
   wire [1:0] group = go_1 ? 2'd2 : (go_0 ? 2'd1 : 2'd0);
-  wire [2:0] place_wide_plus_2 = place_wide + 3'd2;
-  wire line_done = go_1 ? (last_wide < place_wide_plus_2) : (go_0 ? last_wide_below_place_wide_plus_1 : last_wide_below_place_wide);
+  wire [2:0] place_after_2 = place_after_0 + 3'd2;
+  wire line_done_after_2 = last_wide < place_after_2;
+  wire line_done = go_1 ? line_done_after_2 : (go_0 ? line_done_after_1 : line_done_after_0);
   assign take = line_comes & (line_done | ~in_hand);
   wire lines_left_31_1_any = |lines_left[31:1];
   wire one_lines_left_next = start ? (lines[0] & ~|lines[31:1]) : (take ? (~|lines_left[31:2] & lines_left[1] & ~lines_left[0]) : (lines_left[0] & ~lines_left_31_1_any));
-  wire [7:0] turn_wide_plus_2 = turn_wide + 8'd2;
-  wire not_turn_wide_plus_2_below = turn_wide_plus_2 >= scpus_in_turn_wide;
-  wire [7:0] turn_wide_plus_2_minus_if = not_turn_wide_plus_2_below ? (turn_wide_plus_2 - scpus_in_turn_wide) : turn_wide_plus_2;
-  wire [7:0] turn_wide_plus_1_minus_if = ~turn_wide_plus_1_below ? (turn_wide_plus_1 - scpus_in_turn_wide) : turn_wide_plus_1;
-  wire [6:0] next_turn = go_1 ? turn_wide_plus_2_minus_if[6:0] : (go_0 ? turn_wide_plus_1_minus_if[6:0] : turn);
-  wire next_place = go_1 ? place_wide_plus_2[0] : (go_0 ? place_wide_plus_1[0] : place);
-  wire turn_wraps = go_1 ? not_turn_wide_plus_2_below : (go_0 ? ~turn_wide_plus_1_below : 1'b0);
+  wire [7:0] turn_after_2 = turn_after_0 + 8'd2;
+  wire turn_wraps_after_2 = turn_after_2 >= scpus_in_turn_wide;
+  wire [7:0] wrapped_turn_after_2 = turn_wraps_after_2 ? (turn_after_2 - scpus_in_turn_wide) : turn_after_2;
+  wire turn_wraps_after_1 = ~turn_after_1_below;
+  wire [7:0] wrapped_turn_after_1 = turn_wraps_after_1 ? (turn_after_1 - scpus_in_turn_wide) : turn_after_1;
+  wire [6:0] next_turn = go_1 ? wrapped_turn_after_2[6:0] : (go_0 ? wrapped_turn_after_1[6:0] : turn);
+  wire next_place = go_1 ? place_after_2[0] : (go_0 ? place_after_1[0] : place);
+  wire turn_wraps = go_1 ? turn_wraps_after_2 : (go_0 ? turn_wraps_after_1 : 1'b0);
   wire [2:0] turn_0_0_wide = {2'd0, turn[0]};
   wire ends_block = go_1 ? ((turn_0_0_wide + 3'd2) == 3'd2) : (go_0 ? ((turn_0_0_wide + 3'd1) == 3'd2) : (turn_0_0_wide == 3'd2));
   wire [1023:0] window = {line, held};
-  wire [1023:0] window_1023_256_wide_if_first_place = first_place ? {256'd0, window[1023:256]} : window;
-  wire [511:0] aligned = window_1023_256_wide_if_first_place[511:0];
+  wire [1023:0] aligned_by_1 = first_place ? {256'd0, window[1023:256]} : window;
+  wire [511:0] aligned = aligned_by_1[511:0];
   wire waits = run & (in_hand | any_lines_left);
 
   // ---- at the clock edge ----
@@ -133,8 +139,7 @@ module contact_afu_feeder (
   assign entered = group_rank_0;
 
   // Bits that nothing needs.
-  wire unused = &{1'b0, turn_wide_plus_2_minus_if[7], turn_wide_plus_1_minus_if[7],
-    window_1023_256_wide_if_first_place[1023:512]};
+  wire unused = &{1'b0, wrapped_turn_after_2[7], wrapped_turn_after_1[7], aligned_by_1[1023:512]};
 
 endmodule
 

@@ -6,7 +6,6 @@ mod browser;
 
 use assert_cmd::Command;
 use std::fs;
-use std::path::Path;
 
 fn afu(arguments: &[&str]) -> assert_cmd::assert::Assert {
     let mut command = Command::cargo_bin("afu").expect("the program");
@@ -91,7 +90,7 @@ fn a_run_is_written_whole_shown_in_a_browser_and_resumed() {
 }
 
 #[cfg(feature = "ode")]
-fn seen(out: &Path) {
+fn seen(out: &std::path::Path) {
     let page = browser::open(&out.join("report.html"));
     assert!(page.console.is_empty(), "{:#?}", page.console);
     assert!(page.fetched.is_empty(), "{:#?}", page.fetched);

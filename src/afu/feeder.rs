@@ -57,8 +57,14 @@ pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, Errors> {
 
     // Lane j carries a pair when all lanes before it do.
     let rounds = Rounds::new(&graph, spec, scpus, turn.value());
-    let after = |pairs: u32| place.extend(place_bits + 2).plus(u128::from(pairs));
-    let beyond = |pairs: u32| after(pairs).greater_than(last.extend(place_bits + 2));
+    let after = |pairs: u32| {
+        let place_after = place.extend(place_bits + 2).plus(u128::from(pairs));
+        place_after.named(&format!("place_after_{pairs}"))
+    };
+    let beyond = |pairs: u32| {
+        let none_left = after(pairs).greater_than(last.extend(place_bits + 2));
+        none_left.named(&format!("line_done_after_{pairs}"))
+    };
     let mut going = rounds.as_ref().map_or(may_enter, |rounds| may_enter & rounds.may_go) & *in_hand;
     let mut go = Vec::new();
     for lane in 0..lanes {
@@ -85,14 +91,18 @@ pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, Errors> {
     lines_left.connect(start, lines, take);
 
     let all = rounds.as_ref().map_or(scpus, |rounds| rounds.scpus).extend(SCPU_BITS + 1);
-    let turn_after = |pairs: u32| turn.extend(SCPU_BITS + 1).plus(u128::from(pairs));
+    let turn_after = |pairs: u32| {
+        let turn_after = turn.extend(SCPU_BITS + 1).plus(u128::from(pairs));
+        turn_after.named(&format!("turn_after_{pairs}"))
+    };
     let wraps_after = |pairs: u32| match pairs {
         0 => graph.constant(1, 0),
-        _ => turn_after(pairs).at_least(all),
+        _ => turn_after(pairs).at_least(all).named(&format!("turn_wraps_after_{pairs}")),
     };
     let next_turn = by_group(&go, |pairs| {
         let next = turn_after(pairs);
-        wraps_after(pairs).select(next - all, next).low(SCPU_BITS)
+        let wrapped = wraps_after(pairs).select(next - all, next);
+        wrapped.named(&format!("wrapped_turn_after_{pairs}")).low(SCPU_BITS)
     });
     turn.next(start.select(turn.same(0), next_turn.named("next_turn")));
     if let Some(rounds) = &rounds {
@@ -112,7 +122,7 @@ pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, Errors> {
         let step = pair_bits << bit;
         if step < aligned.width() {
             let shifted = aligned.drop_low(step).extend(aligned.width());
-            aligned = first_place.bit(bit).select(shifted, aligned);
+            aligned = first_place.bit(bit).select(shifted, aligned).named(&format!("aligned_by_{}", 1 << bit));
         }
     }
     let aligned = aligned.low(lanes * pair_bits).named("aligned");

@@ -37,6 +37,7 @@ impl<'g> Rounds<'g> {
         let whole = lanes * interval;
         let in_turn = (1..=MAX_SCPUS / whole).fold(scpus, |before, rounds| {
             let many = scpus.same(u128::from(rounds * whole));
+            let before = before.named(&format!("scpus_up_to_{}_rounds", rounds - 1));
             scpus.at_least(many).select(many, before)
         });
         let may_go = phase.equals(turn_phase.value()).named("may_go");

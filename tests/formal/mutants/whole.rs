@@ -35,7 +35,7 @@ const CONTROL: Rows = &[
 const FEEDER: Rows = &[
     ("pairs enter after an abort", "wire go_0 = may_enter & ", "wire go_0 = ", 8, "only_in_a_job"),
     ("takes a line that is not there", "wire line_comes = line_valid & ", "wire line_comes = ", 3, "takes_a_line"),
-    ("a turn too many", "(turn_wide_plus_2 >= scpus_wide)", "(turn_wide_plus_2 > scpus_wide)", 8, "turn_is_an_scpu"),
+    ("a turn too many", "turn_after_2 >= scpus_wide;", "turn_after_2 > scpus_wide;", 8, "turn_is_an_scpu"),
     ("two pairs count as one", "go_1 ? 2'd2 : (go_0", "go_1 ? 2'd1 : (go_0", 8, "each_once"),
     ("counts no line that it takes", "if (start | take) lines_left", "if (start) lines_left", 7, "flags_are_right"),
     ("every line is short", "one_lines_left ? last_place : 1'b1", "last_place", 7, "only_last_is_short"),
