@@ -69,7 +69,7 @@ module contact_afu_feeder (
   wire present_1 = ~line_done_after_1 | (|place_after_1[2:1] & line_comes & (next_last >= place_after_1[0]));
   wire [7:0] turn_after_1 = turn_after_0 + 8'd1;
   wire turn_after_1_below = turn_after_1 < scpus_in_turn_wide;
-  wire unit_1 = turn_after_1_below & (1'b0 >= turn[0]);
+  wire unit_1 = turn_after_1_below & ~turn[0];
   wire go_1 = go_0 & present_1 & unit_1;
   wire [1:0] group = go_1 ? 2'd2 : (go_0 ? 2'd1 : 2'd0);
   wire [2:0] place_after_2 = place_after_0 + 3'd2;

@@ -49,7 +49,7 @@ module scpu_slot (
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
-    answers_lane_0 <= (out_lane == 7'd0) & (2'd0 < out_group);
+    answers_lane_0 <= (out_lane == 7'd0) & |out_group;
     if (takes) pair <= takes_lane_1 ? pairs[511:256] : pairs[255:0];
     answers_lane_1 <= (out_lane == 7'd1) & (2'd1 < out_group);
   end

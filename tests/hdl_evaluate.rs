@@ -203,3 +203,42 @@ fn values_are_cut_to_their_port() {
     run.write(y, 1);
     assert_eq!(run.read(y), 2, "an output is not written");
 }
+
+/// An operation with a constant is folded as the graph is built: into nothing, or into less. Every constant on either
+/// side of every operation, for every value of the other.
+#[test]
+fn operations_with_constants_come_to_what_they_would() {
+    type Operation = (&'static str, for<'g> fn(Signal<'g>, Signal<'g>) -> Signal<'g>, fn(u128, u128) -> u128);
+    let operations: [Operation; 8] = [
+        ("and", |a, b| a & b, |a, b| a & b),
+        ("or", |a, b| a | b, |a, b| a | b),
+        ("xor", |a, b| a ^ b, |a, b| a ^ b),
+        ("plus", |a, b| a + b, |a, b| a.wrapping_add(b)),
+        ("minus", |a, b| a - b, |a, b| a.wrapping_sub(b)),
+        ("equals", |a, b| a.equals(b), |a, b| u128::from(a == b)),
+        ("less", |a, b| a.less_than(b), |a, b| u128::from(a < b)),
+        ("at_most", |a, b| a.at_most(b), |a, b| u128::from(a <= b)),
+    ];
+    for width in [1, 3] {
+        let g = Graph::new("constants");
+        let x = g.input("x", width);
+        for constant in 0..1 << width {
+            for (name, operation, _) in operations {
+                g.output(&format!("{name}_{constant}"), operation(x, x.same(constant)));
+                g.output(&format!("c{constant}_{name}"), operation(x.same(constant), x));
+            }
+        }
+        let mut run = Evaluator::new(&g.finish().unwrap(), &[]).unwrap();
+        for x in 0..1 << width {
+            run.set("x", x);
+            for constant in 0..1 << width {
+                for (name, _, expected) in operations {
+                    let bits = if matches!(name, "equals" | "less" | "at_most") { 1 } else { width };
+                    let expected = |a, b| expected(a, b) & ((1 << bits) - 1);
+                    assert_eq!(run.get(&format!("{name}_{constant}")), expected(x, constant), "{x} {name} {constant}");
+                    assert_eq!(run.get(&format!("c{constant}_{name}")), expected(constant, x), "{constant} {name} {x}");
+                }
+            }
+        }
+    }
+}

@@ -48,6 +48,7 @@ pub(super) fn binary<'g>(left: Signal<'g>, right: Signal<'g>, op: &Op) -> Option
             Op::Less if b == 0 => Some(left.graph().constant(1, 0)),
             _ => None,
         },
+        (Some(0), None) if *op == Op::Less => Some(right.any()),
         (Some(a), None) if *op == Op::Less && Some(a) == full => Some(left.graph().constant(1, 0)),
         (Some(_), None) if matches!(op, Op::And | Op::Or | Op::Xor | Op::Add | Op::Equal) => binary(right, left, op),
         (None, None) if left.id() == right.id() => match op {
