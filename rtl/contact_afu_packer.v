@@ -53,13 +53,14 @@ module contact_afu_packer (
   wire [2:0] wrapped_place = fills ? (next_place - 3'd2) : next_place;
   wire [767:0] merged = {256'd0, filling} | shifted;
   wire [511:0] record_1_wide = {record_1, record_0};
+  wire [767:0] moved_by_1 = first_place ? {record_1_wide, 256'd0} : {256'd0, record_1_wide};
   assign done = all_seen & ~place & ~went & ~goes & ~line_valid;
   wire some_invalid = invalid_0 | invalid_1;
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
     line <= merged[511:0];
-    shifted <= first_place ? {record_1_wide, 256'd0} : {256'd0, record_1_wide};
+    shifted <= moved_by_1;
     first_place <= place;
     emptied <= start_or_flushes_d1;
     full <= fills_d1;

@@ -113,9 +113,12 @@ module spl2_sequence (
   wire [57:0] address = at_context ? context_line : source_line;
   wire [57:0] first_pairs = source_line + 58'd1;
   wire aborts = answered & has_abort & runs;
+  wire [511:0] latency_line = {416'd0, {job_sequence, first_write, first_read}};
   wire [63:0] ran_wide = {64{ran}};
+  wire [511:0] performance_line = {288'd0, {job_sequence, cycles_output & ran_wide, cycles_input & ran_wide, cycles_busy & ran_wide}};
   wire [31:0] ran_wide_2 = {32{ran}};
-  wire [511:0] job_sequence_wide_wide_if_at_latency_if = to_dsm ? (at_latency ? {416'd0, {job_sequence, first_write, first_read}} : {288'd0, {job_sequence, cycles_output & ran_wide, cycles_input & ran_wide, cycles_busy & ran_wide}}) : {128'd0, {128'hf885f92148fc4b0b8fd1f127a3a0b8e2, capability, 32'd1, first_invalid | {32{refused}}, invalid & ran_wide_2, contacts & ran_wide_2, job_sequence, 20'd0, ran ? core_error : 4'd8, 7'd0, 1'b1}};
+  wire [511:0] status_line = {128'd0, {128'hf885f92148fc4b0b8fd1f127a3a0b8e2, capability, 32'd1, first_invalid | {32{refused}}, invalid & ran_wide_2, contacts & ran_wide_2, job_sequence, 20'd0, ran ? core_error : 4'd8, 7'd0, 1'b1}};
+  wire [511:0] written_line = to_dsm ? (at_latency ? latency_line : performance_line) : status_line;
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
@@ -140,7 +143,7 @@ module spl2_sequence (
     wr_fence <= at_fence;
     wr_virtual <= ~to_dsm;
     wr_address <= to_dsm ? (at_latency ? {dsm_line[57:6], 6'd4} : {dsm_line[57:6], 6'd5}) : (context_line + 58'd1);
-    wr_data <= job_sequence_wide_wide_if_at_latency_if;
+    wr_data <= written_line;
     if (at_start | ~write_seen) first_write <= (write_now & ~at_start) ? since_start : 32'd0;
     if (at_start | ~read_seen) first_read <= (read_now & ~at_start) ? since_start : 32'd0;
     since_start <= start ? 32'd0 : (since_start + 32'd1);

@@ -111,7 +111,7 @@ fn fill<'g>(
         let step = record_bits << bit;
         if step < shifted.width() {
             let moved = shifted.low(shifted.width() - step).append_zeros(step);
-            shifted = first_place.bit(bit).select(moved, shifted);
+            shifted = first_place.bit(bit).select(moved, shifted).named(&format!("moved_by_{}", 1 << bit));
         }
     }
     let merged = (filling.extend(shifted.width()) | shifted.delay(1).named("shifted")).named("merged");

@@ -146,7 +146,8 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, Errors> {
             (latency::FIRST_WRITE, first_write),
             (latency::SEQUENCE, job_sequence.value()),
         ],
-    );
+    )
+    .named("latency_line");
     let ran = (!*refused).named("ran");
     let performance_line = map::line(
         &graph,
@@ -157,7 +158,8 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, Errors> {
             (performance::OUTPUT, core_cycles[2].gate(ran)),
             (performance::SEQUENCE, job_sequence.value()),
         ],
-    );
+    )
+    .named("performance_line");
     let no_room = constant(ERROR_BITS, JobError::Room as u128);
     let status_line = map::line(
         &graph,
@@ -173,7 +175,8 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, Errors> {
             (status::CAPABILITY, capability),
             (status::AFU_ID, constant(128, map::AFU_ID)),
         ],
-    );
+    )
+    .named("status_line");
     let dsm = |line: u32| dsm_page_line(dsm_line, constant(6, line.into()));
     let status_address = context_line.plus(map::STATUS_LINE.into());
     let to_dsm = (at_latency | at_performance).named("to_dsm");
@@ -217,6 +220,6 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, Errors> {
     graph.output("wr_fence", at_fence.delay(1));
     graph.output("wr_virtual", (!to_dsm).delay(1));
     graph.output("wr_address", to_dsm.select(dsm_address, status_address).delay(1));
-    graph.output("wr_data", to_dsm.select(dsm_data, status_line).delay(1));
+    graph.output("wr_data", to_dsm.select(dsm_data, status_line).named("written_line").delay(1));
     graph.finish()
 }
