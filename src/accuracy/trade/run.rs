@@ -143,11 +143,8 @@ fn beside_the_front(plan: &Plan, results: &Results) -> Vec<Choice> {
     more
 }
 
-/// How often it is looked anew which points are worth it: a clock that place and route lowers may bring another one
-/// there.
-const ROUNDS: usize = 4;
-
-/// Places and routes the points that fronts may be drawn through.
+/// Places and routes the points that fronts may be drawn through. Which are worth it is looked anew after each round: a
+/// clock that place and route lowers may bring another point there. Each is tried once, so that comes to an end.
 fn route(
     plan: &Plan,
     mut guessed: f64,
@@ -157,7 +154,7 @@ fn route(
 ) -> Result<(), TradeError> {
     let seeds = &plan.placer_seeds;
     let mut tried: Vec<usize> = Vec::new();
-    for _ in 0..if seeds.is_empty() { 0 } else { ROUNDS } {
+    while !seeds.is_empty() {
         let is_open = |point: &Point| point.hardware.is_some() && point.routed_mhz().is_none();
         let worth = worth_routing(results).into_iter();
         let chosen: Vec<usize> =
