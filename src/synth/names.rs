@@ -79,7 +79,7 @@ impl<'a> Source<'a> {
     /// that its name begins with.
     fn name(&self, cell: &str, sources: &[String]) -> Hop {
         let end = CELLS.iter().filter_map(|mark| cell.find(mark)).min().unwrap_or(cell.len());
-        let path = cell[..end].split('[').next().unwrap_or_default();
+        let path = without_bit(&cell[..end]);
         let written = sources.iter().find_map(|source| self.written(source));
         let path = match (written, path.rsplit_once('.')) {
             (Some(signal), Some((instance, _))) => format!("{instance}.{signal}"),
@@ -102,12 +102,25 @@ impl<'a> Source<'a> {
         let mut parts: Vec<&str> = path.split('.').collect();
         let signal = parts.pop()?;
         let mut module = self.top;
-        for part in parts {
-            module = &module.instances.iter().find(|instance| instance.name == part)?.module;
+        let mut parts = parts.into_iter();
+        while let Some(part) = parts.next() {
+            let array = part.split_once('[').map(|(name, _)| name);
+            if array.is_some() {
+                parts.next(); // The copy itself: `unit`.
+            }
+            let name = array.unwrap_or(part);
+            module = &module.instances.iter().find(|instance| instance.name == name)?.module;
         }
         let lines = self.lines.get(format!("{}.v", module.name).as_str())?;
         lines.iter().find(|line| line.signal.as_deref() == Some(signal))?.stage
     }
+}
+
+/// A path without the bit at its end, or the place in a generated block; an array's copy is `slots[3].unit`, and stays.
+fn without_bit(path: &str) -> &str {
+    let of_a_copy = |at: usize| path[at..].split_once(']').is_some_and(|(_, rest)| rest.starts_with(".unit."));
+    let end = path.match_indices('[').map(|(at, _)| at).find(|&at| !of_a_copy(at));
+    &path[..end.unwrap_or(path.len())]
 }
 
 /// What each line of a file declares, and the stage whose banner it stands under.
@@ -133,17 +146,38 @@ mod tests {
     use crate::hdl::Graph;
     use crate::synth::route::Pin;
 
+    fn segment(delay: f64, kind: &str, cell: &str) -> Segment {
+        Segment { delay, kind: kind.to_owned(), to: Pin { cell: cell.to_owned() }, sources: Vec::new() }
+    }
+
+    #[test]
+    fn a_signal_in_a_copy_of_an_array_has_its_name_and_stage() {
+        let slot = Graph::new("slot");
+        slot.output("out", slot.input("index", 1).named("in_turn"));
+        let graph = Graph::new("afu");
+        let count = graph.parameter("SCPUS", 2, 1..=2, 2);
+        let slots = graph.array("slots", &slot.finish().expect("a module"), count, &[]);
+        graph.output("out", slots.output("out"));
+        let core = graph.finish().expect("a module");
+        let bench = Graph::new("bench");
+        bench.output("out", bench.instance(UNIT, &core, &[]).output("out"));
+        let top = bench.finish().expect("a module");
+        let files = [("slot.v".to_owned(), "  // ---- stage 4 ----\n  wire in_turn = index;\n".to_owned())];
+        let path = [
+            segment(0.5, "clk-to-q", "unit.core_turn[3]_TRELLIS_FF_Q"),
+            segment(0.25, "routing", "unit.slots[1].unit.in_turn[2]_LUT4_C_1"),
+            segment(0.5, "routing", "unit.sum_block.two_bits[2].cell_TRELLIS_FF_Q"),
+        ];
+        let hops = Source::new(&top, &files).tell(&path);
+        let told: Vec<_> = hops.iter().map(|hop| (hop.signal.as_str(), hop.stage)).collect();
+        assert_eq!(told, [("core_turn", None), ("slots[1].unit.in_turn", Some(4)), ("sum_block.two_bits", None)]);
+    }
+
     #[test]
     fn a_cell_without_a_name_belongs_to_the_hop_before_it() {
         let graph = Graph::new("bench");
         graph.output("out", graph.input("in", 1));
         let top = graph.finish().expect("a module");
-        let segment = |delay, kind: &str, cell: &str| Segment {
-            delay,
-            kind: kind.to_owned(),
-            to: Pin { cell: cell.to_owned() },
-            sources: Vec::new(),
-        };
         let path = [
             segment(0.5, "clk-to-q", "unit.a_s1_TRELLIS_FF_Q"),
             segment(0.25, "routing", "$nextpnr_CCU2C_1$CCU2_FCI_INT"),
