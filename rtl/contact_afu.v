@@ -66,27 +66,28 @@ module contact_afu #(
   reg [1:0] group_done;
   reg [8:0] travelled;
   reg [6:0] cycles_since_reset;
+  reg [8:0] travels_d113;
   (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg [8:0] feeder_issue_group_wide_d112_line [0:15];
-  reg [8:0] feeder_issue_group_wide_d112;
+  reg [8:0] travels_d112_line [0:15];
+  reg [8:0] travels_d112;
   (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg [8:0] feeder_issue_group_wide_d96_line [0:15];
-  reg [8:0] feeder_issue_group_wide_d96;
+  reg [8:0] travels_d96_line [0:15];
+  reg [8:0] travels_d96;
   (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg [8:0] feeder_issue_group_wide_d80_line [0:15];
-  reg [8:0] feeder_issue_group_wide_d80;
+  reg [8:0] travels_d80_line [0:15];
+  reg [8:0] travels_d80;
   (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg [8:0] feeder_issue_group_wide_d64_line [0:15];
-  reg [8:0] feeder_issue_group_wide_d64;
+  reg [8:0] travels_d64_line [0:15];
+  reg [8:0] travels_d64;
   (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg [8:0] feeder_issue_group_wide_d48_line [0:15];
-  reg [8:0] feeder_issue_group_wide_d48;
+  reg [8:0] travels_d48_line [0:15];
+  reg [8:0] travels_d48;
   (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg [8:0] feeder_issue_group_wide_d32_line [0:15];
-  reg [8:0] feeder_issue_group_wide_d32;
+  reg [8:0] travels_d32_line [0:15];
+  reg [8:0] travels_d32;
   (* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)
-  reg [8:0] feeder_issue_group_wide_d16_line [0:15];
-  reg [8:0] feeder_issue_group_wide_d16;
+  reg [8:0] travels_d16_line [0:15];
+  reg [8:0] travels_d16;
   reg [255:0] slots_record_0_d1;
   reg slots_contact_0_d1;
   reg slots_invalid_0_d1;
@@ -143,28 +144,30 @@ module contact_afu #(
   wire response = collector_response | dispatcher_response;
   wire link_idle = collector_idle & dispatcher_idle;
   wire asking = collector_asking | dispatcher_asking;
-  wire settled = cycles_since_reset == 7'd113;
+  wire settled = cycles_since_reset == 7'd114;
   wire [1:0] group_out = settled ? travelled[8:7] : 2'd0;
+  wire [8:0] travels = {feeder_issue_group, feeder_issue_turn};
   wire [6:0] turn_out = travelled[6:0];
   assign capability = {32'd113, 16'd15, 8'd5, {1'b0, SCPUS[6:0]}};
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
-    travelled <= feeder_issue_group_wide_d112;
-    feeder_issue_group_wide_d112_line[delay_16] <= feeder_issue_group_wide_d96;
-    feeder_issue_group_wide_d112 <= feeder_issue_group_wide_d112_line[delay_16_next];
-    feeder_issue_group_wide_d96_line[delay_16] <= feeder_issue_group_wide_d80;
-    feeder_issue_group_wide_d96 <= feeder_issue_group_wide_d96_line[delay_16_next];
-    feeder_issue_group_wide_d80_line[delay_16] <= feeder_issue_group_wide_d64;
-    feeder_issue_group_wide_d80 <= feeder_issue_group_wide_d80_line[delay_16_next];
-    feeder_issue_group_wide_d64_line[delay_16] <= feeder_issue_group_wide_d48;
-    feeder_issue_group_wide_d64 <= feeder_issue_group_wide_d64_line[delay_16_next];
-    feeder_issue_group_wide_d48_line[delay_16] <= feeder_issue_group_wide_d32;
-    feeder_issue_group_wide_d48 <= feeder_issue_group_wide_d48_line[delay_16_next];
-    feeder_issue_group_wide_d32_line[delay_16] <= feeder_issue_group_wide_d16;
-    feeder_issue_group_wide_d32 <= feeder_issue_group_wide_d32_line[delay_16_next];
-    feeder_issue_group_wide_d16_line[delay_16] <= {feeder_issue_group, feeder_issue_turn};
-    feeder_issue_group_wide_d16 <= feeder_issue_group_wide_d16_line[delay_16_next];
+    travelled <= travels_d113;
+    travels_d113 <= travels_d112;
+    travels_d112_line[delay_16] <= travels_d96;
+    travels_d112 <= travels_d112_line[delay_16_next];
+    travels_d96_line[delay_16] <= travels_d80;
+    travels_d96 <= travels_d96_line[delay_16_next];
+    travels_d80_line[delay_16] <= travels_d64;
+    travels_d80 <= travels_d80_line[delay_16_next];
+    travels_d64_line[delay_16] <= travels_d48;
+    travels_d64 <= travels_d64_line[delay_16_next];
+    travels_d48_line[delay_16] <= travels_d32;
+    travels_d48 <= travels_d48_line[delay_16_next];
+    travels_d32_line[delay_16] <= travels_d16;
+    travels_d32 <= travels_d32_line[delay_16_next];
+    travels_d16_line[delay_16] <= travels;
+    travels_d16 <= travels_d16_line[delay_16_next];
     slots_record_0_d1 <= slots_record_0;
     slots_contact_0_d1 <= slots_contact_0;
     slots_invalid_0_d1 <= slots_invalid_0;

@@ -68,16 +68,19 @@ module contact_afu_control (
   // ---- logic ----
   assign busy = running | draining;
   wire accept = start & ~busy;
-  wire [3:0] cause = (|mode & accept) ? 4'd5 : ((running & abort_job) ? 4'd1 : ((running & read_failed_heard) ? 4'd2 : ((running & write_failed_heard) ? 4'd3 : ((running & expired) ? 4'd4 : 4'd0))));
+  wire mode_any = |mode;
+  wire refuses = accept & mode_any;
+  wire [3:0] cause = abort_job ? 4'd1 : (read_failed_heard ? 4'd2 : (write_failed_heard ? 4'd3 : (expired ? 4'd4 : 4'd0)));
   assign run = running & ~begin_job;
   wire completes = run & complete;
-  wire failing = |cause & ~completes;
+  wire failing = running & |cause & ~completes;
   wire none_inside = ~|pairs_inside & ~|entered;
   wire drained = draining & stopped & none_inside & (link_idle_heard | (given_up & ~asking_heard));
   wire gives_up = busy & expired;
   wire [9:0] entered_wide = {8'd0, entered};
   wire not_waiting = response_heard | link_idle_heard;
-  wire [3:0] failed = failing ? cause : (accept ? 4'd0 : error);
+  wire [3:0] failed = failing ? cause : error;
+  wire [3:0] ended = gives_up ? 4'd4 : failed;
   wire [32:0] rounded_count = {1'b0, count} + 33'd1;
   wire [9:0] next_room = room + room_change;
 
@@ -118,8 +121,8 @@ module contact_afu_control (
     end else begin
       if (begin_job | busy) cycles_busy <= begin_job ? 64'd1 : (cycles_busy + 64'd1);
       begin_job <= accept;
-      running <= (accept & ~failing) | (running & ~completes & ~failing);
-      draining <= failing | (draining & ~drained);
+      running <= (accept & ~refuses) | (running & ~completes & ~failing);
+      draining <= refuses | failing | (draining & ~drained);
       read_failed_heard <= read_failed;
       write_failed_heard <= write_failed;
       expired <= busy & |job_watchdog & (silence >= job_watchdog);
@@ -135,7 +138,7 @@ module contact_afu_control (
       if (begin_job | (waits_for_input & running)) cycles_input <= begin_job ? 64'd0 : (cycles_input + 64'd1);
       if (begin_job | (waits_for_output & running)) cycles_output <= begin_job ? 64'd0 : (cycles_output + 64'd1);
       done <= ~accept & (done | completes | drained);
-      error <= gives_up ? 4'd4 : failed;
+      error <= accept ? (mode_any ? 4'd5 : 4'd0) : ended;
       if (accept) job_count <= count;
       if (accept) job_epoch <= epoch;
       if (accept) job_lines <= rounded_count[32:1];

@@ -37,8 +37,6 @@ module contact_afu_feeder (
   reg any_lines_left;
   reg one_lines_left;
   reg [31:0] lines_left;
-  reg [1:0] group_rank_1;
-  reg [6:0] turn_d2;
   reg [6:0] turn_d1;
   reg first_place;
   reg [511:0] held;
@@ -96,8 +94,7 @@ module contact_afu_feeder (
   // ---- at the clock edge ----
   always @(posedge clk) begin
     if (take) last <= next_last;
-    issue_turn <= turn_d2;
-    turn_d2 <= turn_d1;
+    issue_turn <= turn_d1;
     turn_d1 <= turn;
     issue_pairs <= aligned;
     first_place <= place_d1;
@@ -120,7 +117,6 @@ module contact_afu_feeder (
       one_lines_left <= 1'b0;
       lines_left <= 32'd0;
       issue_group <= 2'd0;
-      group_rank_1 <= 2'd0;
     end else begin
       group_rank_0 <= group;
       phase <= (phase == 3'd4) ? 3'd0 : (phase + 3'd1);
@@ -131,8 +127,7 @@ module contact_afu_feeder (
       any_lines_left <= start ? |lines : (take ? lines_left_31_1_any : |lines_left);
       one_lines_left <= one_lines_left_next;
       if (start | take) lines_left <= start ? lines : (lines_left - 32'd1);
-      issue_group <= group_rank_1;
-      group_rank_1 <= group_rank_0;
+      issue_group <= group_rank_0;
     end
   end
 

@@ -26,7 +26,9 @@ module scpu_slot (
 
   // ---- state ----
   reg answers_lane_0;
+  reg takes;
   reg [255:0] pair;
+  reg takes_lane_1;
   reg answers_lane_1;
 
   // ---- outputs of instances ----
@@ -39,8 +41,6 @@ module scpu_slot (
   wire [6:0] index_plus_scpus = index + scpus;
   wire [6:0] out_lane = (index < out_turn) ? (index_plus_scpus - out_turn) : (index - out_turn);
   wire [6:0] in_lane = (index < in_turn) ? (index_plus_scpus - in_turn) : (index - in_turn);
-  wire takes = in_lane < {5'd0, in_group};
-  wire takes_lane_1 = in_lane == 7'd1;
   assign contact_0 = unit_contact & answers_lane_0;
   assign invalid_0 = unit_invalid_pair & answers_lane_0;
   assign record_1 = answers_lane_1 ? unit_record : 256'd0;
@@ -51,7 +51,15 @@ module scpu_slot (
   always @(posedge clk) begin
     answers_lane_0 <= (out_lane == 7'd0) & |out_group;
     if (takes) pair <= takes_lane_1 ? pairs[511:256] : pairs[255:0];
+    takes_lane_1 <= in_lane == 7'd1;
     answers_lane_1 <= (out_lane == 7'd1) & (2'd1 < out_group);
+  end
+  always @(posedge clk) begin
+    if (rst) begin
+      takes <= 1'b0;
+    end else begin
+      takes <= in_lane < {5'd0, in_group};
+    end
   end
 
   scpu unit (

@@ -129,19 +129,19 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, Errors>
     // The end.
     let complete = (run & packed & dispatched & link_idle_now).registered("complete");
     let complete = (run & complete).named("completes");
+    let refuses = (accept & mode.any()).named("refuses");
     let causes = [
-        (mode.any() & accept, JobError::Mode),
-        (*running & abort, JobError::Aborted),
-        (*running & read_failed, JobError::Read),
-        (*running & write_failed, JobError::Write),
-        (*running & *expired, JobError::Watchdog),
+        (abort, JobError::Aborted),
+        (read_failed, JobError::Read),
+        (write_failed, JobError::Write),
+        (*expired, JobError::Watchdog),
     ];
     let mut cause = graph.constant(ERROR_BITS, 0);
     for (condition, code) in causes.into_iter().rev() {
         cause = condition.select(graph.constant(ERROR_BITS, code as u128), cause);
     }
     let cause = cause.named("cause");
-    let failing = (cause.any() & !complete).named("failing");
+    let failing = (*running & cause.any() & !complete).named("failing");
     // Whatever else went wrong, this is what the host must know: late responses may still come, and late writes.
     let gives_up = (busy & *expired).named("gives_up");
     let given_up = graph.register("given_up", 1, 0);
@@ -151,10 +151,10 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, Errors>
     let stopped = draining.registered("stopped");
     let empty = (!inside.any() & !entered.any()).named("none_inside");
     let drained = (*draining & stopped & empty & (link_idle | (*given_up & !asking))).named("drained");
-    running.next((accept & !failing) | (*running & !complete & !failing));
-    draining.next(failing | (*draining & !drained));
+    running.next((accept & !refuses) | (*running & !complete & !failing));
+    draining.next(refuses | failing | (*draining & !drained));
     done.next(!accept & (*done | complete | drained));
-    let failed = failing.select(cause, accept.select(error.same(0), *error)).named("failed");
+    let failed = failing.select(cause, *error).named("failed");
     let mut ended = failed;
     if spec.config.results == Results::Hits {
         let overflowed = graph.input("overflowed", 1);
@@ -165,7 +165,10 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, Errors>
         job_lines.next_if(accept, lines);
         graph.output("job_destination_lines", job_lines.value());
     }
-    error.next(gives_up.select(error.same(JobError::Watchdog as u128), ended));
+    let ended = gives_up.select(error.same(JobError::Watchdog as u128), ended).named("ended");
+    // A job is accepted while none is there that could end: that comes last here, since it is known last.
+    let begun = mode.any().select(error.same(JobError::Mode as u128), error.same(0));
+    error.next(accept.select(begun, ended));
 
     // They begin a cycle after the job does, of which that cycle is one; nothing waits in it yet.
     for (name, counts, first) in [

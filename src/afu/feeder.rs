@@ -14,6 +14,9 @@ use super::{COUNT_BITS, SCPU_BITS, Spec};
 /// Register ranks from the decision which pairs go to them on their way: its data come as late as lines do, and are
 /// registered.
 const RANKS: u32 = CYCLES_TO_WORD + 1;
+/// Likewise to a group's size and first SCPU, which the slots hear a cycle before its pairs: by then each knows what it
+/// takes.
+const RANKS_TO_GROUP: u32 = RANKS - 1;
 /// From a line offered to a group of its pairs on their way to the slots: the line in hand, and the decision's ranks.
 pub(super) const CYCLES_TO_ISSUE: u32 = 1 + RANKS;
 /// Groups that do not show yet in whether there is room when one is decided, that one among them.
@@ -128,16 +131,16 @@ pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let aligned = aligned.low(lanes * pair_bits).named("aligned");
 
     // Registered towards the slots.
-    let ranks = (0..RANKS).scan(group, |before, rank| {
-        let last = rank + 1 == RANKS;
+    let ranks = (0..RANKS_TO_GROUP).scan(group, |before, rank| {
+        let last = rank + 1 == RANKS_TO_GROUP;
         let name = if last { "issue_group".to_owned() } else { format!("group_rank_{rank}") };
         *before = before.registered(&name);
         Some(*before)
     });
     let ranks: Vec<_> = ranks.collect();
     graph.output("entered", ranks[0]);
-    graph.output("issue_group", ranks[RANKS as usize - 1]);
-    graph.output("issue_turn", turn.delay(RANKS).named("issue_turn"));
+    graph.output("issue_group", ranks[RANKS_TO_GROUP as usize - 1]);
+    graph.output("issue_turn", turn.delay(RANKS_TO_GROUP).named("issue_turn"));
     graph.output("issue_pairs", aligned.delay(1).named("issue_pairs"));
     graph.output("take", take);
     let waits = (run & (*in_hand | some_left)).named("waits");

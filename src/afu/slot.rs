@@ -29,18 +29,18 @@ pub(super) fn slot(spec: &Spec, scpu: &Arc<Module>) -> Result<Arc<Module>, Error
     let out_turn = graph.input("out_turn", SCPU_BITS);
 
     // Lane j of a group that begins with SCPU `turn` belongs to SCPU (turn + j) mod N. What an SCPU takes outside its
-    // turn, nobody reads.
+    // turn, nobody reads. Size and turn come a cycle before the pairs, so that what chooses among these is registered.
     let in_lane = lane(index, in_turn, scpus).named("in_lane");
     let mut chosen = pairs.low(layout.pair_bits());
     for number in 1..lanes {
-        let here = in_lane.is(u128::from(number)).named(&format!("takes_lane_{number}"));
+        let here = in_lane.is(u128::from(number)).delay(1).named(&format!("takes_lane_{number}"));
         chosen = here.select(pairs.slice(number * layout.pair_bits(), layout.pair_bits()), chosen);
     }
     let unit = if spec.config.interval > 1 {
         // The pair stays until the next one; the SCPU hears of it a cycle before.
         let in_group = graph.input("in_group", group_bits);
         let width = SCPU_BITS.max(group_bits);
-        let takes = in_lane.extend(width).less_than(in_group.extend(width)).named("takes");
+        let takes = in_lane.extend(width).less_than(in_group.extend(width)).registered("takes");
         let pair = graph.data_register("pair", layout.pair_bits());
         pair.next_if(takes, chosen);
         graph.instance("unit", scpu, &[("take", takes), ("pair", pair.value())])

@@ -132,7 +132,8 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, E
     waits_for_input.drive(feeder.output("waits_for_input"));
     waits_for_output.drive(feeder.output("waits_for_output"));
 
-    // A group's size and first SCPU travel beside the SCPUs, so that its results are known when they come out.
+    // A group's size and first SCPU travel beside the SCPUs, so that its results are known when they come out. They
+    // come a cycle before its pairs, and are there again a cycle before its results.
     let group = feeder.output("issue_group");
     let turn = feeder.output("issue_turn");
     let (group_out, turn_out) = alongside(&graph, group, turn, slot_latency);
@@ -204,15 +205,14 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, E
     graph.finish()
 }
 
-/// Group size and turn as they were `latency` − 1 cycles ago. What a delay line holds is not reset, so group sizes
-/// count only once the line has been filled since reset.
-fn alongside<'g>(graph: &'g Graph, group: Signal<'g>, turn: Signal<'g>, latency: u32) -> (Signal<'g>, Signal<'g>) {
-    let cycles = latency - 1;
+/// Group size and turn as they were `cycles` ago. What a delay line holds is not reset, so group sizes count only once
+/// the line has been filled since reset.
+fn alongside<'g>(graph: &'g Graph, group: Signal<'g>, turn: Signal<'g>, cycles: u32) -> (Signal<'g>, Signal<'g>) {
     let age_bits = cycles.ilog2() + 1;
     let age = graph.register("cycles_since_reset", age_bits, 0);
     let settled = age.is(u128::from(cycles)).named("settled");
     age.next(settled.select(*age, age.plus(1)));
-    let travelled = group.concat(turn).delay(cycles).named("travelled");
+    let travelled = group.concat(turn).named("travels").delay(cycles).named("travelled");
     let group_out = travelled.high(group.width()).gate(settled).named("group_out");
     (group_out, travelled.low(turn.width()).named("turn_out"))
 }

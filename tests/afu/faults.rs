@@ -102,7 +102,7 @@ const FAULTS: [Planted; 8] = [
     ("contact_afu_control.v", "assign lines = ", Controller::LastPairDropped as u32, "job_lines - 32'd1"),
     (
         "contact_afu_packer.v",
-        "all_out <= ~start",
+        "all_seen <= ~start",
         Controller::LastPairDropped as u32,
         "~start & (emerged == (count - 32'd2))",
     ),

@@ -12,7 +12,7 @@ const CONTROL: Rows = &[
     ),
     ("goes on while it drains", "(running & ~completes & ~failing)", "(running & ~completes)", 3, "one_or_other"),
     ("begins while it runs", "wire accept = start & ~busy;", "wire accept = start & ~draining;", 3, "begins_rested"),
-    ("a refused job does not begin", "begin_job <= accept;", "begin_job <= accept & ~failing;", 2, "begins_first"),
+    ("a refused job does not begin", "begin_job <= accept;", "begin_job <= accept & ~refuses;", 2, "begins_first"),
     ("a job begins again", "begin_job <= accept;", "begin_job <= accept | (start & running);", 6, "begins_empty"),
     ("ends with pairs inside", "wire none_inside = ~|pairs_inside & ", "wire none_inside = ", 10, "idle_is_empty"),
     (
