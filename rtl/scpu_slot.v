@@ -51,7 +51,7 @@ module scpu_slot (
   always @(posedge clk) begin
     answers_lane_0 <= (out_lane == 7'd0) & |out_group;
     if (takes) pair <= takes_lane_1 ? pairs[511:256] : pairs[255:0];
-    takes_lane_1 <= in_lane == 7'd1;
+    takes_lane_1 <= (in_lane == 7'd1) & (7'd1 < scpus);
     answers_lane_1 <= (out_lane == 7'd1) & (2'd1 < out_group);
   end
   always @(posedge clk) begin

@@ -30,10 +30,12 @@ pub(super) fn slot(spec: &Spec, scpu: &Arc<Module>) -> Result<Arc<Module>, Error
 
     // Lane j of a group that begins with SCPU `turn` belongs to SCPU (turn + j) mod N. What an SCPU takes outside its
     // turn, nobody reads. Size and turn come a cycle before the pairs, so that what chooses among these is registered.
+    // No lane is N or above: said of the parameter, so that synthesis leaves out the lanes that few SCPUs never use.
     let in_lane = lane(index, in_turn, scpus).named("in_lane");
     let mut chosen = pairs.low(layout.pair_bits());
     for number in 1..lanes {
-        let here = in_lane.is(u128::from(number)).delay(1).named(&format!("takes_lane_{number}"));
+        let is_used = scpus.greater_than(scpus.same(u128::from(number)));
+        let here = (in_lane.is(u128::from(number)) & is_used).delay(1).named(&format!("takes_lane_{number}"));
         chosen = here.select(pairs.slice(number * layout.pair_bits(), layout.pair_bits()), chosen);
     }
     let unit = if spec.config.interval > 1 {
