@@ -18,7 +18,7 @@ module line_memory_64x512 (
 );
 
   // ---- memories ----
-  (* ram_style = "block", ramstyle = "M20K, no_rw_check" *)
+  (* ram_style = "block", ramstyle = "no_rw_check" *)
   reg [511:0] words [0:63];
 
   // ---- state ----

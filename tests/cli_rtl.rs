@@ -124,6 +124,9 @@ fn what_is_not_built_yet_or_out_of_range_is_one_line_and_exit_2() {
         (["--input", "all"], "input all"),
         (["--shell", "axi"], "shell axi"),
         (["--target", "tin"], "tin"),
+        // There is no Verilog for these alone, and no other is written in its place.
+        (["--target", "cyclonev"], "`afu synth --target cyclonev` estimates the area"),
+        (["--target", "xilinx"], "`afu synth --target xilinx` estimates the area"),
         (["--scpus", "0"], "0 SCPUs"),
         (["--scpus", "65"], "65 SCPUs"),
         (["--clock", "0"], "clock 0"),
@@ -204,4 +207,22 @@ fn a_target_s_blocks_are_named() {
     };
     assert_eq!(primitives(&ecp5), serde_json::json!(["CCU2C", "DP16KD", "MULT18X18D"]));
     assert!(primitives(&plain).is_null());
+    afu(room.path(), &["rtl", "--interval", "1", "--out", "ice40", "--target", "ice40"]).success();
+    let ice40 = contents(&room.path().join("ice40"));
+    let top = |files: &BTreeMap<String, Vec<u8>>| String::from_utf8_lossy(&files["contact_afu.v"]).into_owned();
+    let named = [(&plain, None), (&ecp5, Some("ecp5")), (&ice40, Some("ice40"))];
+    for (files, target) in named {
+        let manifest: serde_json::Value = serde_json::from_slice(&files["manifest.json"]).expect("JSON");
+        assert_eq!(manifest["target"].as_str(), target);
+        assert_eq!(top(files).contains("--target"), target.is_some(), "the command in the header is whole");
+    }
+    // Memories ask for what the family has: a block of Intel's by name for none, MLAB where Quartus may read it.
+    let asks = |files: &BTreeMap<String, Vec<u8>>, word: &str| {
+        files.iter().any(|(name, bytes)| name.ends_with(".v") && String::from_utf8_lossy(bytes).contains(word))
+    };
+    for (files, target) in named {
+        assert!(!["M9K", "M10K", "M20K"].iter().any(|block| asks(files, block)), "{target:?}");
+        assert_eq!(asks(files, "ramstyle"), target.is_none(), "{target:?}");
+        assert_eq!(asks(files, "ram_style = \"distributed\""), target != Some("ice40"), "{target:?}");
+    }
 }

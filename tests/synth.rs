@@ -32,6 +32,14 @@ fn what_is_missing_is_exit_3_with_its_command_and_bad_words_are_exit_2() {
     }
 }
 
+/// A fault once: memories asked for look-up tables, which an iCE40 has none of for them, and Yosys refused.
+#[test]
+fn an_scpu_is_counted_for_a_family_without_memories_of_look_up_tables() {
+    let arguments = ["--kernel", "--profile", "half", "--contact", "hit", "--target", "ice40", "--no-route"];
+    let output = afu(&arguments, &[]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
 #[test]
 fn an_operator_is_placed_and_routed() {
     let cache = tempfile::tempdir().expect("a temporary folder");

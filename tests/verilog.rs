@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use contact_afu::hdl::verilog::{Style, emit};
+use contact_afu::hdl::verilog::{Memories, Style, emit};
 use contact_afu::hdl::{Evaluator, Graph, Module, Reset};
 use expect_test::expect_file;
 
@@ -51,10 +51,29 @@ fn golden_top() {
 
 #[test]
 fn golden_top_asynchronous_reset() {
-    let style = Style { reset: Reset { asynchronous: true, active_low: true }, header: vec![] };
+    let style = Style { reset: Reset { asynchronous: true, active_low: true }, ..Style::default() };
     let text = emit(&top(), &style);
     assert!(text.contains("always @(posedge clk or negedge rst_n) begin\n    if (!rst_n) begin"), "{text}");
     assert!(!text.contains(" rst "), "{text}");
+}
+
+/// M20K is a block of some of Intel's families, and an iCE40 has no memories of look-up tables.
+#[test]
+fn a_memory_asks_for_what_the_family_has() {
+    let graph = Graph::new("memories");
+    let (small, large) = (graph.input("small", 12).delay(20), graph.input("large", 12).delay(200));
+    graph.output("from_small", small);
+    graph.output("from_large", large);
+    let module = graph.finish().unwrap();
+    let attributes = |memories| {
+        let text = emit(&module, &Style { memories, ..Style::default() });
+        text.lines().filter(|line| line.contains("(*")).map(|line| line.trim().to_owned()).collect::<Vec<_>>()
+    };
+    let small = r#"(* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)"#;
+    assert_eq!(attributes(Memories::Any), [small, r#"(* ram_style = "block", ramstyle = "no_rw_check" *)"#]);
+    let [small, large] = [r#"(* ram_style = "distributed" *)"#, r#"(* ram_style = "block" *)"#];
+    assert_eq!(attributes(Memories::BlocksAndLuts), [small, large]);
+    assert_eq!(attributes(Memories::Blocks), [large]);
 }
 
 #[test]
@@ -70,7 +89,7 @@ fn a_top_that_resets_itself_has_no_reset_port() {
     graph.output("value", unit.output("value"));
     let board = graph.finish().unwrap();
     expect_file!["golden/board.v"].assert_eq(&emit(&board, &Style::default()));
-    let low = emit(&board, &Style { reset: Reset { asynchronous: false, active_low: true }, header: vec![] });
+    let low = emit(&board, &Style { reset: Reset { asynchronous: false, active_low: true }, ..Style::default() });
     assert!(low.contains("assign rst_n = ~in_reset;") && low.contains(".rst_n (rst_n)"), "{low}");
     let mut run = Evaluator::new(&board, &[]).unwrap();
     run.set("reset_n", 1);

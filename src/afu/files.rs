@@ -138,6 +138,9 @@ impl Afu {
             "rtl_sha256": self.rtl_sha256(),
             "files": hashes,
         });
+        if let Some(target) = spec.target {
+            manifest["target"] = json!(target);
+        }
         // What a target's blocks are named: another target's flow cannot read these.
         let primitives: BTreeSet<&str> =
             self.top().hierarchy().iter().filter_map(|module| module.primitive).map(Primitive::name).collect();

@@ -119,7 +119,7 @@ impl Afu {
 
     /// The Verilog, a file a module, each after those it instantiates: file name and text.
     pub fn verilog(&self) -> Vec<(String, String)> {
-        let style = Style { reset: self.spec.reset, header: self.header() };
+        let style = Style { reset: self.spec.reset, header: self.header(), memories: self.spec.memories };
         let file = |module: Arc<Module>| (format!("{}.v", module.name), verilog::emit(&module, &style));
         self.top.hierarchy().into_iter().map(file).collect()
     }

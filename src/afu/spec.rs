@@ -1,6 +1,7 @@
 //! What an accelerator is generated from: the configuration, and what only proofs and integrators change.
 
 use crate::config::{Config, INTERVALS, Multipliers};
+use crate::hdl::verilog::Memories;
 use crate::hdl::{DelayModel, Reset};
 
 use super::{COUNT_BITS, Layout};
@@ -23,6 +24,10 @@ pub struct Spec {
     pub dispatch_cycles: u32,
     /// How long the target takes for each operation.
     pub delays: DelayModel,
+    /// The FPGA family's name, if the Verilog is for one alone.
+    pub target: Option<&'static str>,
+    /// Which memories the target has.
+    pub memories: Memories,
 }
 
 /// Why a specification was refused.
@@ -56,6 +61,8 @@ impl From<Config> for Spec {
             max_outstanding: 64,
             dispatch_cycles: 16,
             delays: DelayModel::default(),
+            target: None,
+            memories: Memories::Any,
         }
     }
 }
@@ -101,6 +108,7 @@ impl Spec {
         {
             flags.drain(at..at + 2);
         }
+        flags.extend(self.target.into_iter().flat_map(|target| ["--target".to_owned(), target.to_owned()]));
         flags
     }
 

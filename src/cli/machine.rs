@@ -55,8 +55,8 @@ pub struct Machine {
     /// Clock that pipelines are cut for and time is told in, MHz [default: 200]
     #[arg(long, value_name = "MHZ")]
     pub clock: Option<f64>,
-    /// FPGA family whose blocks are used by name: ecp5, ice40, cyclonev, xilinx; of rtl and synth [default: none; of
-    /// synth ecp5]
+    /// FPGA family that the Verilog is for: ecp5 or ice40, and for synth also cyclonev or xilinx; only for rtl and
+    /// synth [default: any; of synth ecp5]
     #[arg(long, value_name = "NAME")]
     pub target: Option<String>,
     /// Take the configuration from a manifest.json (or a folder with one); options given beside it win
@@ -74,9 +74,8 @@ impl Machine {
     #[cfg(feature = "cosim")]
     pub fn config(&self) -> Result<Config, Failure> {
         if let Some(target) = &self.target {
-            let message = format!(
-                "--target {target}: goes with rtl and synth alone: what is simulated is the same for all families"
-            );
+            let message =
+                format!("--target {target}: only for rtl and synth; what is simulated is the same for all families");
             return Err(Failure::new(Kind::Usage, message));
         }
         self.config_for_any_target()

@@ -49,10 +49,14 @@ impl From<Style> for Reset {
 
 pub fn run(options: &Rtl) -> Result<(), Failure> {
     let target = options.one.machine.target()?;
-    let spec = Spec::from(options.one.config_for_any_target(&options.link)?);
+    let config = options.one.config_for_any_target(&options.link)?;
+    let spec = Spec { reset: options.reset.into(), ..Spec::from(config) };
+    let spec = match target {
+        Some(target) => target.specialise(spec).ok_or_else(|| no_blocks(target))?,
+        None => spec,
+    };
     folder::check(&options.out, options.force)?;
-    let delays = target.map_or_else(|| spec.delays.clone(), Target::delays);
-    let afu = Afu::generate(Spec { reset: options.reset.into(), delays, ..spec })?;
+    let afu = Afu::generate(spec)?;
     let folder = Folder::begin(&options.out, options.force)?;
     let files = afu.files();
     for (name, text) in &files {
@@ -70,6 +74,15 @@ pub fn run(options: &Rtl) -> Result<(), Failure> {
         config.clock_mhz
     );
     output::show(&text, false)
+}
+
+/// A family for which there is nothing but the Verilog for all of them.
+fn no_blocks(target: Target) -> Failure {
+    let message = format!(
+        "--target {target}: there is no Verilog for this family alone; without --target it is for any, with --target \
+         ecp5 or ice40 for one, and `afu synth --target {target}` estimates the area"
+    );
+    Failure::new(Kind::Usage, message)
 }
 
 impl From<BuildError> for Failure {

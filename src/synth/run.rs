@@ -25,7 +25,7 @@ pub struct Options {
 /// # Errors
 /// As of [`synthesise`].
 pub fn netlist(unit: &Unit, target: Target) -> Result<PathBuf, SynthError> {
-    let files = Unit::files(&unit.wrapped()?);
+    let files = Unit::files(&unit.wrapped()?, target);
     let design = Design { unit: &unit.title(), files: &files, top: wrapper::TOP };
     let Netlist { path, .. } = cells(&Program::yosys()?, &design, target, &Cache::open()?)?;
     Ok(path)
@@ -45,7 +45,7 @@ pub fn synthesise(unit: &Unit, options: &Options, mut progress: impl FnMut(&str)
     let cache = Cache::open()?;
 
     let bench = unit.wrapped()?;
-    let files = Unit::files(&bench);
+    let files = Unit::files(&bench, target);
     let name = unit.title();
     progress(&format!("{name}: Yosys, {target}"));
     let design = Design { unit: &name, files: &files, top: wrapper::TOP };

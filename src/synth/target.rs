@@ -6,6 +6,8 @@ use std::str::FromStr;
 use serde::{Deserialize, Serialize};
 
 use super::Area;
+use crate::afu::Spec;
+use crate::hdl::verilog::Memories;
 use crate::hdl::{DelayModel, Primitive};
 
 /// An FPGA family.
@@ -81,6 +83,23 @@ impl Target {
             Self::Ice40 => DelayModel::ecp5(),
             Self::Cyclonev | Self::Xilinx => DelayModel::default(),
         }
+    }
+
+    /// Which memories it has.
+    pub(super) const fn memories(self) -> Memories {
+        match self {
+            Self::Ecp5 => Memories::BlocksAndLuts,
+            Self::Ice40 => Memories::Blocks,
+            Self::Cyclonev | Self::Xilinx => Memories::Any,
+        }
+    }
+
+    /// An AFU for this family alone. `None` if the Verilog would be the same as for any: the family then has no delays
+    /// and no blocks of its own here.
+    pub fn specialise(self, spec: Spec) -> Option<Spec> {
+        let its = Spec { delays: self.delays(), target: Some(self.name()), memories: self.memories(), ..spec };
+        let is_general = its.delays == DelayModel::default() && its.memories == Memories::default();
+        (!is_general).then_some(its)
     }
 
     /// The device, for people.

@@ -122,8 +122,9 @@ impl Unit {
     }
 
     /// The Verilog of `top` and all below it, a file a module: file name and text.
-    pub(super) fn files(top: &Arc<Module>) -> Vec<(String, String)> {
-        let file = |module: Arc<Module>| (format!("{}.v", module.name), emit(&module, &Style::default()));
+    pub(super) fn files(top: &Arc<Module>, target: Target) -> Vec<(String, String)> {
+        let style = Style { memories: target.memories(), ..Style::default() };
+        let file = |module: Arc<Module>| (format!("{}.v", module.name), emit(&module, &style));
         top.hierarchy().into_iter().map(file).collect()
     }
 

@@ -20,6 +20,21 @@ pub struct Style {
     pub reset: Reset,
     /// Lines every file's header carries, such as the generator and its parameters.
     pub header: Vec<String>,
+    /// Which memories the family has.
+    pub memories: Memories,
+}
+
+/// The memories of an FPGA family, which decide what the attributes of a memory ask for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Memories {
+    /// Any family's. No block memory is named, since M20K, M10K and M9K belong to different families of Intel's; MLAB
+    /// is, since Quartus puts no small memory there unasked, and without MLABs it warns and takes what there is.
+    #[default]
+    Any,
+    /// Block memories and memories of look-up tables, of a family that Quartus does not know.
+    BlocksAndLuts,
+    /// Block memories alone: where small memories go is left to synthesis.
+    Blocks,
 }
 
 impl Style {

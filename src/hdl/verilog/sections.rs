@@ -4,12 +4,12 @@ use std::collections::BTreeSet;
 
 use super::super::module::{Instance, InstanceCount, Memory, Module, NodeId, Op};
 use super::super::state::address_width;
-use super::Style;
 use super::delay::DelayKind;
 use super::expression::{Expressions, constant, range};
 use super::lookup::{is_block_memory, lookup};
 use super::names::stage;
 use super::print::is_register;
+use super::{Memories, Style};
 
 /// Up to this depth a memory goes to look-up tables, above it to block RAM.
 const DEEPEST_DISTRIBUTED: u32 = 64;
@@ -88,7 +88,7 @@ impl<'a> Sections<'a> {
         let state: Vec<_> =
             self.module.ids().filter(|id| is_register(self.module, *id) && !self.is_array_output(*id)).collect();
         let mut out = String::new();
-        let memories: String = self.module.memories.iter().map(memory_declaration).collect();
+        let memories: String = self.module.memories.iter().map(|memory| self.memory_declaration(memory)).collect();
         if !memories.is_empty() {
             out += &format!("\n  // ---- memories ----\n{memories}");
         }
@@ -129,7 +129,7 @@ impl<'a> Sections<'a> {
         let Some(name) = &self.text.names.declared[id.index()] else { return String::new() };
         let mut out = String::new();
         match DelayKind::of(node) {
-            Some(DelayKind::Memory(depth)) => out += &ram(&format!("{name}_line"), depth, node.width),
+            Some(DelayKind::Memory(depth)) => out += &self.ram(&format!("{name}_line"), depth, node.width),
             Some(DelayKind::Shift(waiting)) => out += &format!("  reg {}{name}_line;\n", range(waiting * node.width)),
             Some(DelayKind::Register) | None => {}
         }
@@ -242,19 +242,20 @@ impl<'a> Sections<'a> {
         }
         out
     }
-}
 
-fn memory_declaration(memory: &Memory) -> String {
-    ram(&memory.name, memory.depth, memory.width)
-}
+    fn memory_declaration(&self, memory: &Memory) -> String {
+        self.ram(&memory.name, memory.depth, memory.width)
+    }
 
-fn ram(name: &str, depth: u32, width: u32) -> String {
-    let is_small = depth <= DEEPEST_DISTRIBUTED && depth.saturating_mul(width) <= LARGEST_DISTRIBUTED;
-    let (vivado, quartus) =
-        if is_small || width < NARROWEST_BLOCK { ("distributed", "MLAB") } else { ("block", "M20K") };
-    format!(
-        "  (* ram_style = \"{vivado}\", ramstyle = \"{quartus}, no_rw_check\" *)\n  reg {}{name} [0:{}];\n",
-        range(width),
-        depth - 1
-    )
+    fn ram(&self, name: &str, depth: u32, width: u32) -> String {
+        let is_small = depth <= DEEPEST_DISTRIBUTED && depth.saturating_mul(width) <= LARGEST_DISTRIBUTED;
+        let attributes = match (self.style.memories, is_small || width < NARROWEST_BLOCK) {
+            (Memories::Any, true) => "  (* ram_style = \"distributed\", ramstyle = \"MLAB, no_rw_check\" *)\n",
+            (Memories::Any, false) => "  (* ram_style = \"block\", ramstyle = \"no_rw_check\" *)\n",
+            (Memories::BlocksAndLuts, true) => "  (* ram_style = \"distributed\" *)\n",
+            (Memories::BlocksAndLuts | Memories::Blocks, false) => "  (* ram_style = \"block\" *)\n",
+            (Memories::Blocks, true) => "",
+        };
+        format!("{attributes}  reg {}{name} [0:{}];\n", range(width), depth - 1)
+    }
 }

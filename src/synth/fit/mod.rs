@@ -77,7 +77,7 @@ pub fn fit(target: Target, seeds: &[u32], mut progress: impl FnMut(&str)) -> Res
     let mut measured = Vec::new();
     for group in groups(&sorted) {
         let unit = Unit::pipeline("samples", &Profile::WIDE, 400.0, together(&group)?);
-        let files = Unit::files(&unit.wrapped()?);
+        let files = Unit::files(&unit.wrapped()?, target);
         let design = Design { unit: &unit.name, files: &files, top: wrapper::TOP };
         progress(&format!("{} graphs: Yosys", group.len()));
         let netlist = cells(&yosys, &design, target, &cache)?;
