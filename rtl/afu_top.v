@@ -33,8 +33,12 @@ module afu_top #(
   output wire [511:0] afu_tx_data
 );
 
-  // Elaboration stops here when SCPUS is out of range.
-  localparam [0:0] unused_SCPUS_in_range = {((SCPUS >= 32'd1) && (SCPUS <= 32'd64)){1'b1}};
+  // Elaboration fails here if SCPUS is out of range.
+  generate
+    if ((SCPUS < 32'd1) || (SCPUS > 32'd64)) begin : SCPUS_out_of_range
+      SCPUS_must_be_1_to_64 failed ();
+    end
+  endgenerate
 
   // Resets all that is below.
   wire rst;

@@ -48,8 +48,15 @@ module contact_afu #(
   output wire [511:0] wr_req_data
 );
 
-  // Elaboration stops here when SCPUS is out of range.
-  localparam [0:0] unused_SCPUS_in_range = {((SCPUS >= 32'd1) && (SCPUS <= 32'd64)){1'b1}};
+  // Elaboration fails here if SCPUS is out of range.
+  generate
+    if ((SCPUS < 32'd1) || (SCPUS > 32'd64)) begin : SCPUS_out_of_range
+      SCPUS_must_be_1_to_64 failed ();
+    end
+  endgenerate
+
+  // SCPUS up to 10, and the whole 10s of it above that.
+  localparam [31:0] SCPUS_IN_TURN = (SCPUS > 32'd10) ? (SCPUS / 32'd10) * 32'd10 : SCPUS;
 
   // Place of the newest word in the delay lines of 16 cycles.
   reg [3:0] delay_16;
@@ -127,17 +134,17 @@ module contact_afu #(
   wire take_line;
   wire waits_for_input;
   wire waits_for_output;
-  wire [SCPUS*256-1:0] slots_record_0_all;
+  wire [SCPUS_IN_TURN*256-1:0] slots_record_0_all;
   reg [255:0] slots_record_0;
-  wire [SCPUS*1-1:0] slots_contact_0_all;
+  wire [SCPUS_IN_TURN*1-1:0] slots_contact_0_all;
   reg slots_contact_0;
-  wire [SCPUS*1-1:0] slots_invalid_0_all;
+  wire [SCPUS_IN_TURN*1-1:0] slots_invalid_0_all;
   reg slots_invalid_0;
-  wire [SCPUS*256-1:0] slots_record_1_all;
+  wire [SCPUS_IN_TURN*256-1:0] slots_record_1_all;
   reg [255:0] slots_record_1;
-  wire [SCPUS*1-1:0] slots_contact_1_all;
+  wire [SCPUS_IN_TURN*1-1:0] slots_contact_1_all;
   reg slots_contact_1;
-  wire [SCPUS*1-1:0] slots_invalid_1_all;
+  wire [SCPUS_IN_TURN*1-1:0] slots_invalid_1_all;
   reg slots_invalid_1;
 
   // ---- logic ----
@@ -300,7 +307,7 @@ module contact_afu #(
     .rst              (rst),
     .start            (control_begin_job),
     .run              (control_run),
-    .scpus            (SCPUS[6:0]),
+    .scpus            (SCPUS_IN_TURN[6:0]),
     .lines            (control_lines),
     .last_place       (control_last_place),
     .line_valid       (collector_line_valid),
@@ -315,16 +322,16 @@ module contact_afu #(
     .waits_for_output (waits_for_output)
   );
 
-  // SCPUS copies of scpu_slot: the same inputs to all, outputs or-ed together.
+  // SCPUS_IN_TURN copies of scpu_slot: the same inputs to all, outputs or-ed together.
   genvar slots_number;
   generate
-    for (slots_number = 0; slots_number < SCPUS; slots_number = slots_number + 1) begin : slots
+    for (slots_number = 0; slots_number < SCPUS_IN_TURN; slots_number = slots_number + 1) begin : slots
       localparam [31:0] NUMBER = slots_number;
       scpu_slot unit (
         .clk       (clk),
         .rst       (rst),
         .index     (NUMBER[6:0]),
-        .scpus     (SCPUS[6:0]),
+        .scpus     (SCPUS_IN_TURN[6:0]),
         .in_turn   (feeder_issue_turn),
         .pairs     (feeder_issue_pairs),
         .out_group (group_out),
@@ -348,7 +355,7 @@ module contact_afu #(
     slots_record_1 = 256'd0;
     slots_contact_1 = 1'b0;
     slots_invalid_1 = 1'b0;
-    for (slots_place = 0; slots_place < SCPUS; slots_place = slots_place + 1) begin
+    for (slots_place = 0; slots_place < SCPUS_IN_TURN; slots_place = slots_place + 1) begin
       slots_record_0 = slots_record_0 | slots_record_0_all[slots_place*256 +: 256];
       slots_contact_0 = slots_contact_0 | slots_contact_0_all[slots_place*1 +: 1];
       slots_invalid_0 = slots_invalid_0 | slots_invalid_0_all[slots_place*1 +: 1];

@@ -187,6 +187,18 @@ fn interval_auto_is_what_the_link_needs() {
     assert!(said(&refused).contains("none"), "{}", said(&refused));
 }
 
+#[test]
+fn scpus_that_are_not_built_are_warned_of() {
+    let room = tempfile::tempdir().expect("a temporary folder");
+    for (scpus, warning) in [("10", ""), ("11", "11 SCPUs at interval 5: only 10"), ("20", "")] {
+        let options = ["rtl", "--profile", "half", "--interval", "5", "--scpus", scpus, "--out", "out"];
+        let said = said(&afu(room.path(), &options).success());
+        assert!(if warning.is_empty() { said.is_empty() } else { said.contains(warning) }, "{scpus}: {said}");
+        let ports = fs::read_to_string(room.path().join("out/PORTS.md")).expect("written");
+        assert!(ports.contains("above 10 only a multiple of 10"), "{ports}");
+    }
+}
+
 /// With a target its blocks stand in the Verilog by name, and the manifest says so; a simulator reads the same AFU.
 #[test]
 fn a_target_s_blocks_are_named() {

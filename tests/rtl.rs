@@ -121,18 +121,48 @@ fn clean_under_wall_of_both_verilators() {
     }
 }
 
+/// Every tool fails, and names what the parameter must be. Within its range none has a complaint.
 #[test]
 fn elaborates_for_any_number_of_scpus_and_no_other() {
-    let (_folder, verilog) = write(&generate(Config::shipped()));
-    for (scpus, good) in [(1, true), (3, true), (16, true), (0, false), (65, false)] {
+    let (folder, verilog) = write(&generate(Config::shipped()));
+    for (scpus, good) in [(1, true), (3, true), (11, true), (64, true), (0, false), (65, false)] {
+        let check = |tool: &str, output: &Output| {
+            if good {
+                succeeded(&format!("{tool}, {scpus} SCPUs"), output);
+            }
+            let text = String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
+            assert_eq!(output.status.success(), good, "{tool}, {scpus} SCPUs: {text}");
+            assert_eq!(text.contains("SCPUS_must_be_1_to_64"), !good, "{tool}, {scpus} SCPUs: {text}");
+        };
         for mut verilator in verilators() {
-            let output = verilator
-                .args(["--lint-only", "-Wall", "--top-module", "afu_top", &format!("-GSCPUS={scpus}")])
-                .args(&verilog)
-                .output()
-                .unwrap();
-            assert_eq!(output.status.success(), good, "{scpus}: {}", String::from_utf8_lossy(&output.stderr));
+            let arguments = ["--lint-only", "-Wall", "--top-module", "afu_top", &format!("-GSCPUS={scpus}")];
+            check("Verilator", &verilator.args(arguments).args(&verilog).output().unwrap());
         }
+        let mut icarus = Command::new("iverilog");
+        icarus.args(["-g2005", "-Wall", "-Wno-timescale", "-t", "null", "-s", "afu_top"]);
+        check("Icarus", &icarus.arg(format!("-Pafu_top.SCPUS={scpus}")).args(&verilog).output().unwrap());
+        let parameter =
+            format!("chparam -set SCPUS {scpus} afu_top; hierarchy -check -top afu_top; proc; check -assert");
+        check("Yosys", &run_yosys(folder.path(), &format!("read_verilog {}; {parameter}", names(&verilog))));
+    }
+}
+
+/// What turns never come to costs nothing: the slots that synthesis finds are those that `Spec` says.
+#[test]
+fn scpus_without_a_turn_are_not_built() {
+    for interval in [1, 5] {
+        let config = Config { interval, ..Config::shipped() };
+        let (folder, verilog) = write(&generate(config.clone()));
+        let mut script = format!("read_verilog {}; design -save read", names(&verilog));
+        for scpus in [1, 9, 10, 11, 19, 20, 64] {
+            let built = Spec::from(Config { scpus, ..config.clone() }).scpus_in_turn(interval);
+            script += &format!(
+                "; design -load read; chparam -set SCPUS {scpus} contact_afu; hierarchy -top contact_afu; \
+                 select -assert-count {built} t:scpu_slot"
+            );
+        }
+        let output = run_yosys(folder.path(), &script);
+        assert!(output.status.success(), "{interval}: {}", String::from_utf8_lossy(&output.stderr));
     }
 }
 
@@ -142,15 +172,23 @@ fn yosys() -> PathBuf {
     path
 }
 
+fn run_yosys(folder: &Path, script: &str) -> Output {
+    Command::new(yosys()).current_dir(folder).args(["-q", "-p", script]).output().unwrap()
+}
+
+fn names(verilog: &[PathBuf]) -> String {
+    let names: Vec<_> = verilog.iter().map(|path| path.file_name().unwrap().to_str().unwrap()).collect();
+    names.join(" ")
+}
+
 #[test]
 fn yosys_finds_no_latch_and_no_multiple_driver() {
     let (folder, verilog) = write(&generate(Config { scpus: 2, ..Config::shipped() }));
-    let names: Vec<_> = verilog.iter().map(|path| path.file_name().unwrap().to_str().unwrap()).collect();
     let script = format!(
         "read_verilog {}; hierarchy -check -top afu_top; proc; check -assert; select -assert-none t:$dlatch t:$adlatch t:$dlatchsr",
-        names.join(" ")
+        names(&verilog)
     );
-    let output = Command::new(yosys()).current_dir(folder.path()).args(["-q", "-p", &script]).output().unwrap();
+    let output = run_yosys(folder.path(), &script);
     let text = String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success() && !text.contains("Warning"), "{text}");
 }

@@ -22,6 +22,7 @@ fn top() -> Arc<Module> {
     let graph = Graph::new("top");
     graph.about("a counter, a delay line, a memory and an array");
     let count = graph.parameter("SCPUS", 10, 1..=64, 7);
+    let in_fours = graph.rounded_down("SCPUS_IN_FOURS", count, 4);
     let enable = graph.input("enable", 1);
     let data = graph.input("data", 12);
     let position = graph.register("position", 4, 0);
@@ -32,7 +33,7 @@ fn top() -> Arc<Module> {
     graph.output("stored", store.read(position.value()));
     graph.output("late", data.delay(9));
     graph.output("later", data.delay(79));
-    let slots = graph.array("slots", &slot(), count, &[("chosen", data.low(7)), ("value", data.slice(5, 7))]);
+    let slots = graph.array("slots", &slot(), in_fours, &[("chosen", data.low(7)), ("value", data.slice(5, 7))]);
     graph.output("result", slots.output("result"));
     graph.output("last", count.equals(data.low(7)));
     graph.finish().unwrap()
@@ -47,6 +48,23 @@ fn golden_slot() {
 fn golden_top() {
     let style = Style { header: vec!["contact-afu test".to_owned()], ..Style::default() };
     expect_file!["golden/top.v"].assert_eq(&emit(&top(), &style));
+}
+
+/// Copies beyond the rounded number answer nothing: they are not there.
+#[test]
+fn an_array_has_a_rounded_number_of_copies() {
+    for (scpus, copies) in [(3, 3), (4, 4), (7, 4), (8, 8), (10, 8), (64, 64)] {
+        let mut run = Evaluator::new(&top(), &[("SCPUS", scpus)]).unwrap();
+        run.set("enable", 0);
+        for index in 0..64 {
+            let data = 0x800 | index;
+            run.set("data", data);
+            run.step();
+            let sum = (index + (data >> 5)) & 127;
+            assert_eq!(run.get("result"), if index < copies { sum } else { 0 }, "{scpus}, {index}");
+        }
+    }
+    assert!(Evaluator::new(&top(), &[("SCPUS_IN_FOURS", 4)]).is_err(), "computed");
 }
 
 #[test]

@@ -93,7 +93,7 @@ pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, Errors> {
     place.next((start | !*in_hand).select(place.same(0), next_place));
     lines_left.connect(start, lines, take);
 
-    let all = rounds.as_ref().map_or(scpus, |rounds| rounds.scpus).extend(SCPU_BITS + 1);
+    let all = scpus.extend(SCPU_BITS + 1);
     let turn_after = |pairs: u32| {
         let turn_after = turn.extend(SCPU_BITS + 1).plus(u128::from(pairs));
         turn_after.named(&format!("turn_after_{pairs}"))

@@ -10,7 +10,7 @@ use crate::config::{MANIFEST_SCHEMA, Results};
 use crate::hdl::Primitive;
 use crate::pipeline::KernelReport;
 
-use super::{Afu, spl2, timing};
+use super::{Afu, MAX_SCPUS, spl2, timing};
 use crate::config::Shell;
 
 /// The list of the Verilog files in a generated folder, each after those it needs.
@@ -84,10 +84,18 @@ impl Afu {
     }
 
     fn ports(&self) -> String {
+        let spec = self.spec();
+        let scpus = spec.full_rate().filter(|multiple| *multiple < MAX_SCPUS).map_or_else(String::new, |multiple| {
+            format!(
+                ": {multiple} SCPUs at interval {} take a full line per cycle, and above {multiple} only a multiple of \
+                 {multiple} is built, the next smaller one",
+                spec.config.interval
+            )
+        });
         let mut out = format!(
-            "# Ports of `{}`\n\nOne clock. `SCPUS` (1 to 64) is a Verilog parameter. All outputs are registered or functions of \
+            "# Ports of `{}`\n\nOne clock. `SCPUS` (1 to 64) is a Verilog parameter{scpus}. All outputs are registered or functions of \
              registers.\nA line is 512 bits; word i of a line is bits 32·i+31 to 32·i; addresses count lines.\n\n| port | direction | bits | meaning |\n|---|---|---|---|\n",
-            self.top().name
+            self.top().name,
         );
         for (output, width, name) in self.all_ports() {
             let direction = if output { "out" } else { "in" };

@@ -2,12 +2,12 @@
 //!
 //! A phase counter runs freely through the interval. Where a line has L pairs, SCPUs 0 to L − 1 take theirs in phase 0
 //! alone, the next L in phase 1, and so on round: a group stays within such a block. With N SCPUs an interval of II
-//! cycles takes N pairs; and where N is above L·II, turns go round the largest multiple of L·II that is not above N,
-//! since more than a line a cycle never comes.
+//! cycles takes N pairs; and where N is above L·II, there are as many SCPUs as the largest multiple of L·II that is not
+//! above N, since more than a line a cycle never comes ([`Spec::scpus_in_turn`]).
 
 use crate::hdl::{Graph, Register, Signal};
 
-use super::{MAX_SCPUS, SCPU_BITS, Spec};
+use super::{SCPU_BITS, Spec};
 
 /// The feeder's turns.
 pub(super) struct Rounds<'g> {
@@ -17,14 +17,13 @@ pub(super) struct Rounds<'g> {
     turn: Signal<'g>,
     /// The phase in which the SCPU in turn takes a pair.
     turn_phase: Register<'g>,
-    /// The SCPUs that turns go round.
-    pub scpus: Signal<'g>,
+    scpus: Signal<'g>,
     /// Whether it is that phase.
     pub may_go: Signal<'g>,
 }
 
 impl<'g> Rounds<'g> {
-    /// Nothing at an interval of 1: every cycle will do then.
+    /// The turns of `scpus` SCPUs. `None` at an interval of 1: every cycle will do then.
     pub fn new(graph: &'g Graph, spec: &Spec, scpus: Signal<'g>, turn: Signal<'g>) -> Option<Self> {
         let (interval, lanes) = (spec.config.interval, spec.lanes());
         if interval <= 1 {
@@ -34,14 +33,7 @@ impl<'g> Rounds<'g> {
         let phase = graph.register("phase", bits, 0);
         phase.next(following(phase.value(), interval));
         let turn_phase = graph.register("turn_phase", bits, 0);
-        let whole = lanes * interval;
-        let in_turn = (1..=MAX_SCPUS / whole).fold(scpus, |before, rounds| {
-            let many = scpus.same(u128::from(rounds * whole));
-            let before = before.named(&format!("scpus_up_to_{}_rounds", rounds - 1));
-            scpus.at_least(many).select(many, before)
-        });
         let may_go = phase.equals(turn_phase.value()).named("may_go");
-        let scpus = in_turn.named("scpus_in_turn");
         Some(Self { graph, interval, lanes, turn, turn_phase, scpus, may_go })
     }
 

@@ -83,13 +83,32 @@ impl Spec {
         self.layout().pairs_per_line()
     }
 
-    /// The SCPUs that turns go round at an interval: all, or as many as take a whole number of full lines a cycle.
+    /// The SCPUs that turns go round at an interval: all, or as many as take a whole number of full lines per cycle.
+    /// The others are not built.
     pub fn scpus_in_turn(&self, interval: u32) -> u32 {
         let whole = self.lanes() * interval;
         match self.config.scpus {
             scpus if interval > 1 && scpus > whole => scpus / whole * whole,
             scpus => scpus,
         }
+    }
+
+    /// The SCPUs that take a full line per cycle, of which more than these must be a multiple; `None` if any number is
+    /// used.
+    pub fn full_rate(&self) -> Option<u32> {
+        let interval = self.config.interval;
+        (interval > 1).then(|| self.lanes() * interval)
+    }
+
+    /// What to tell the user about SCPUs that are not built; `None` if all are.
+    pub fn unused_scpus(&self) -> Option<String> {
+        let Config { scpus, interval, .. } = self.config;
+        let built = self.scpus_in_turn(interval);
+        let multiple = self.full_rate().filter(|_| built < scpus)?;
+        Some(format!(
+            "{scpus} SCPUs at interval {interval}: only {built} take turns and are built; use at most {multiple} SCPUs, or \
+             a multiple of {multiple}"
+        ))
     }
 
     /// The longest interval at which the SCPUs take `pairs_a_cycle`, or what a line has of them if that is less; 1
@@ -164,6 +183,10 @@ mod tests {
         // Two pairs a line, and no more than a line a cycle.
         assert_eq!([1, 2, 3, 4, 10, 11, 64].map(|scpus| of(scpus, 2.0)), [1, 1, 1, 2, 5, 5, 32]);
         assert_eq!(of(10, f64::INFINITY), Config::shipped().interval);
+        let at_five = |scpus| Spec::from(Config { scpus, interval: 5, ..Config::default() });
+        assert_eq!([1, 10, 11, 19, 20, 64].map(|scpus| at_five(scpus).scpus_in_turn(5)), [1, 10, 10, 10, 20, 60]);
+        assert_eq!([1, 10, 20, 60].map(|scpus| at_five(scpus).unused_scpus()), [const { None }; 4]);
+        assert!(at_five(64).unused_scpus().is_some_and(|text| text.contains("only 60")));
         assert_eq!([0.5, 0.3, 1.0, 1.1, 0.01].map(|rate| of(10, rate)), [20, 33, 10, 9, 64]);
     }
 }

@@ -32,6 +32,11 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, E
     graph.about("collision-detection accelerator: a controller and SCPUS sphere collision processing units");
     graph.about(format!("an SCPU's latency is {} cycles", unit.latency));
     let scpus = graph.parameter("SCPUS", spec.config.scpus, 1..=MAX_SCPUS, SCPU_BITS);
+    // SCPUs that never have a turn are left out.
+    let in_turn = match spec.full_rate() {
+        Some(multiple) if multiple < MAX_SCPUS => graph.rounded_down("SCPUS_IN_TURN", scpus, multiple),
+        _ => scpus,
+    };
     let tag_bits = EPOCH_BITS + spec.max_outstanding.ilog2();
     let start = graph.input("start", 1);
     let source = graph.input("source", ADDRESS_BITS);
@@ -119,7 +124,7 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, E
         &[
             ("start", begin),
             ("run", run),
-            ("scpus", scpus),
+            ("scpus", in_turn),
             ("lines", control.output("lines")),
             ("last_place", control.output("last_place")),
             ("line_valid", collector.output("line_valid")),
@@ -138,7 +143,7 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, E
     let turn = feeder.output("issue_turn");
     let (group_out, turn_out) = alongside(&graph, group, turn, slot_latency);
     let mut slot_inputs = vec![
-        ("scpus", scpus),
+        ("scpus", in_turn),
         ("in_turn", turn),
         ("pairs", feeder.output("issue_pairs")),
         ("out_group", group_out),
@@ -147,7 +152,7 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, E
     if spec.config.interval > 1 {
         slot_inputs.push(("in_group", group));
     }
-    let slots = graph.array("slots", &slot, scpus, &slot_inputs);
+    let slots = graph.array("slots", &slot, in_turn, &slot_inputs);
     // The slots' answers come a cycle after `group_out`, and are registered once more after the or: so it is known a
     // cycle before they are there how many there will be.
     let group_done = group_out.registered("group_done");
@@ -217,10 +222,10 @@ fn alongside<'g>(graph: &'g Graph, group: Signal<'g>, turn: Signal<'g>, cycles: 
     (group_out, travelled.low(turn.width()).named("turn_out"))
 }
 
-/// What the host may rely on: bits 7:0 SCPUs, 15:8 interval, 19:16 contact fields (hit, depth, normal, position from
-/// bit 16 up), 24 set where only contacts come back, 25 where
-/// every sphere has the one radius that is part of the hardware, 27:26 the numbers of records (0 f32, 1 f16, 2 bf16),
-/// 43:32 latency of an SCPU in cycles; the others are zero.
+/// What the host may rely on: bits 7:0 the parameter SCPUS, 15:8 interval, 19:16 contact fields (hit, depth, normal,
+/// position from bit 16 up), 24 set where only contacts come back, 25 where every sphere has the one radius that is
+/// part of the hardware, 27:26 the numbers of records (0 f32, 1 f16, 2 bf16), 43:32 latency of an SCPU in cycles; the
+/// others are zero.
 fn capability<'g>(graph: &'g Graph, spec: &Spec, scpus: Signal<'g>, latency: u32) -> Signal<'g> {
     let fields = spec.config.contact;
     let asked = [fields.position, fields.normal, fields.depth, true];

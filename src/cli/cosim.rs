@@ -15,7 +15,7 @@ use contact_afu::verify::{Bench, Origin, Verdict, corpus};
 use contact_afu::{pairs, tools};
 
 use super::failure::{Classify, Failure, Kind};
-use super::machine::One;
+use super::machine::{One, warn_of_unused_scpus};
 use super::{link, output, progress, replay};
 
 /// Mismatches that are told one by one, for each job.
@@ -69,6 +69,7 @@ pub fn run(options: &Cosim) -> Result<(), Failure> {
     let trace = options.trace()?;
     let jobs = options.jobs()?;
     let bench = options.bench(trace)?;
+    warn_of_unused_scpus(bench.config());
     let link = link.at(bench.config().clock_mhz).ends(Kind::Usage)?;
 
     let mut run = Run {

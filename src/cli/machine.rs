@@ -197,6 +197,13 @@ impl One {
     }
 }
 
+/// Warns about SCPUs that are not built.
+pub fn warn_of_unused_scpus(config: &Config) {
+    if let Some(text) = Spec::from(config.clone()).unused_scpus() {
+        eprintln!("afu: warning: {text}");
+    }
+}
+
 /// The word for an interval that follows from the link.
 const AUTO: &str = "auto";
 

@@ -9,7 +9,7 @@ use contact_afu::report::folder::{self, Folder};
 use contact_afu::synth::Target;
 
 use super::failure::{Failure, Kind};
-use super::machine::One;
+use super::machine::{One, warn_of_unused_scpus};
 use super::output;
 
 #[derive(Args, Debug)]
@@ -64,6 +64,7 @@ pub fn run(options: &Rtl) -> Result<(), Failure> {
     }
     folder.commit()?;
     let config = &afu.spec().config;
+    warn_of_unused_scpus(config);
     let text = format!(
         "{}: {} files; {} SCPUs, {}, a contact {} cycles after its pair at {} MHz",
         options.out.display(),

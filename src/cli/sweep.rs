@@ -9,7 +9,7 @@ use contact_afu::sweep::{Record, RecordError, SweepError, Task, fill, fingerprin
 
 use super::failure::{Failure, Kind};
 use super::list::List;
-use super::machine::Machine;
+use super::machine::{Machine, warn_of_unused_scpus};
 use super::{link, output, progress};
 
 /// Run the same job on AFUs of different sizes and compare them
@@ -51,6 +51,7 @@ pub struct Sweep {
 
 pub fn run(options: &Sweep) -> Result<(), Failure> {
     let configs = options.configs()?;
+    configs.iter().for_each(warn_of_unused_scpus);
     let base = options.machine.config()?;
     let link = link::read(&options.link, base.clock_mhz)?;
     let pairs = pairs::load(&options.pairs, options.seed)?;

@@ -16,7 +16,7 @@ use contact_afu::synth::{self, Figures, SynthError, Target, Unit, synthesise};
 
 use super::failure::{Failure, Kind};
 use super::list::List;
-use super::machine::One;
+use super::machine::{One, warn_of_unused_scpus};
 use super::{output, progress};
 
 #[derive(Args, Debug)]
@@ -144,6 +144,7 @@ fn units(options: &Synth, config: &Config, target: Target) -> Result<Vec<Unit>, 
         return Ok(vec![Unit::scpu_for(config, target)?]);
     }
     if options.operator.is_empty() && !options.compare {
+        warn_of_unused_scpus(config);
         return Ok(vec![Unit::afu(config, target)?]);
     }
     let names: Vec<&str> = match options.operator.as_slice() {

@@ -6,7 +6,7 @@ use std::panic::Location;
 use std::sync::Arc;
 
 use super::error::{Error, Errors};
-use super::module::{Instance, Memory, Module, Node, NodeId, Op, Parameter, Port};
+use super::module::{Instance, Memory, Module, Node, NodeId, Op, Parameter, Port, Rounded};
 use super::signal::Signal;
 
 pub(super) struct Inner {
@@ -99,12 +99,7 @@ impl Graph {
     pub fn parameter(&self, name: &str, default: u32, range: std::ops::RangeInclusive<u32>, width: u32) -> Signal<'_> {
         let place = Location::caller();
         let (min, max) = (*range.start(), *range.end());
-        if !is_identifier(name) {
-            self.error(format!("parameter `{name}` is not a Verilog identifier"), place);
-            return Signal::poison(self);
-        }
-        if self.inner.borrow().parameters.iter().any(|parameter| parameter.name == name) {
-            self.error(format!("parameter `{name}` is declared twice"), place);
+        if !self.is_new_parameter(name, place) {
             return Signal::poison(self);
         }
         if !range.contains(&default) || width == 0 || width < 32 && max >> width != 0 {
@@ -114,8 +109,45 @@ impl Graph {
             );
             return Signal::poison(self);
         }
+        self.push_parameter(Parameter { name: name.to_owned(), default, min, max, rounded: None }, width, place)
+    }
+
+    /// A Verilog `localparam`: the value of the [`Graph::parameter`] `of` up to `multiple`, and above that the largest
+    /// multiple of it that is not more. It is a value of as many bits as `of`.
+    #[track_caller]
+    pub fn rounded_down<'g>(&'g self, name: &str, of: Signal<'g>, multiple: u32) -> Signal<'g> {
+        let place = Location::caller();
+        let Some(ids) = self.own("rounded down", &[of], place) else { return Signal::poison(self) };
+        let Op::Parameter(index) = self.node(ids[0]).op else {
+            self.error(format!("rounded down `{name}`: `{}` is not a parameter", of.describe()), place);
+            return Signal::poison(self);
+        };
+        let parameter = self.inner.borrow().parameters[index].clone();
+        if multiple == 0 || !self.is_new_parameter(name, place) {
+            self.error(format!("rounded down `{name}`: to a multiple of {multiple}"), place);
+            return Signal::poison(self);
+        }
+        let rounded = Rounded { of: index, multiple };
+        let [default, min, max] = [parameter.default, parameter.min, parameter.max].map(|value| rounded.of(value));
+        let local = Parameter { name: name.to_owned(), default, min, max, rounded: Some(rounded) };
+        self.push_parameter(local, of.width(), place)
+    }
+
+    fn is_new_parameter(&self, name: &str, place: &'static Location<'static>) -> bool {
+        if !is_identifier(name) {
+            self.error(format!("parameter `{name}` is not a Verilog identifier"), place);
+            return false;
+        }
+        if self.inner.borrow().parameters.iter().any(|parameter| parameter.name == name) {
+            self.error(format!("parameter `{name}` is declared twice"), place);
+            return false;
+        }
+        true
+    }
+
+    fn push_parameter(&self, parameter: Parameter, width: u32, place: &'static Location<'static>) -> Signal<'_> {
         let mut inner = self.inner.borrow_mut();
-        inner.parameters.push(Parameter { name: name.to_owned(), default, min, max });
+        inner.parameters.push(parameter);
         let index = inner.parameters.len() - 1;
         drop(inner);
         self.shared(Op::Parameter(index), width, vec![], place)

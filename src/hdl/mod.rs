@@ -30,6 +30,8 @@ pub use delay_model::DelayModel;
 pub use error::{Error, Errors};
 pub use evaluate::{EvaluateError, Evaluator, Pin};
 pub use graph::Graph;
-pub use module::{Instance, InstanceCount, Memory, Module, Node, NodeId, Op, Parameter, Port, Primitive, Reset};
+pub use module::{
+    Instance, InstanceCount, Memory, Module, Node, NodeId, Op, Parameter, Port, Primitive, Reset, Rounded,
+};
 pub use signal::Signal;
 pub use state::{Instantiated, MemoryHandle, Register};

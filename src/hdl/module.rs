@@ -116,7 +116,7 @@ pub struct Port {
     pub node: Option<NodeId>,
 }
 
-/// An integer parameter of the Verilog module.
+/// An integer parameter of the Verilog module, or a `localparam` that is computed from one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Parameter {
     /// Its name.
@@ -127,6 +127,25 @@ pub struct Parameter {
     pub min: u32,
     /// Largest allowed value, checked at elaboration.
     pub max: u32,
+    /// Where it is computed: how. Nobody can override it then.
+    pub rounded: Option<Rounded>,
+}
+
+/// How a `localparam` follows from a parameter: the parameter's value up to `multiple`, and above that the largest
+/// multiple of it that is not more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rounded {
+    /// Index of the parameter, which comes first.
+    pub of: usize,
+    /// What it is rounded down to a multiple of; at least 1.
+    pub multiple: u32,
+}
+
+impl Rounded {
+    /// The value for a value of the parameter.
+    pub fn of(self, value: u32) -> u32 {
+        if value > self.multiple { value - value % self.multiple } else { value }
+    }
 }
 
 /// A memory with one write port and any number of registered read ports.
@@ -147,8 +166,8 @@ pub struct Memory {
 pub enum InstanceCount {
     /// One.
     One,
-    /// As many as the parameter with this index says. Inputs are shared by all copies, but for an input named
-    /// `index`, which is each copy's number; outputs are the bitwise or over all copies.
+    /// As many as the parameter (or `localparam`) with this index says. Inputs are shared by all copies, but for an
+    /// input named `index`, which is each copy's number; outputs are the bitwise or over all copies.
     Parameter(usize),
 }
 

@@ -52,6 +52,12 @@ fn three_at_two_take_three_in_two_cycles() {
     check(&every(2, 3));
 }
 
+/// The fifth never has a turn, and is not there.
+#[test]
+fn five_at_two_use_four() {
+    check(&Config { profile: "half".parse().unwrap(), ..every(2, 5) });
+}
+
 #[test]
 fn one_at_sixteen_gives_hits_alone() {
     check(&Config { results: Results::Hits, ..every(16, 1) });

@@ -19,8 +19,15 @@ module top #(
   output wire        last
 );
 
-  // Elaboration stops here when SCPUS is out of range.
-  localparam [0:0] unused_SCPUS_in_range = {((SCPUS >= 32'd1) && (SCPUS <= 32'd64)){1'b1}};
+  // Elaboration fails here if SCPUS is out of range.
+  generate
+    if ((SCPUS < 32'd1) || (SCPUS > 32'd64)) begin : SCPUS_out_of_range
+      SCPUS_must_be_1_to_64 failed ();
+    end
+  endgenerate
+
+  // SCPUS up to 4, and the whole 4s of it above that.
+  localparam [31:0] SCPUS_IN_FOURS = (SCPUS > 32'd4) ? (SCPUS / 32'd4) * 32'd4 : SCPUS;
 
   // Place of the newest word in the delay lines of 6 cycles.
   reg [2:0] delay_6;
@@ -79,7 +86,7 @@ module top #(
   reg [11:0] data_d25;
 
   // ---- outputs of instances ----
-  wire [SCPUS*7-1:0] result_all;
+  wire [SCPUS_IN_FOURS*7-1:0] result_all;
 
   // ---- logic ----
   wire wrapped = position == 4'd11;
@@ -110,10 +117,10 @@ module top #(
     end
   end
 
-  // SCPUS copies of slot: the same inputs to all, outputs or-ed together.
+  // SCPUS_IN_FOURS copies of slot: the same inputs to all, outputs or-ed together.
   genvar slots_number;
   generate
-    for (slots_number = 0; slots_number < SCPUS; slots_number = slots_number + 1) begin : slots
+    for (slots_number = 0; slots_number < SCPUS_IN_FOURS; slots_number = slots_number + 1) begin : slots
       localparam [31:0] NUMBER = slots_number;
       slot unit (
         .clk    (clk),
@@ -128,7 +135,7 @@ module top #(
   integer slots_place;
   always @* begin
     result = 7'd0;
-    for (slots_place = 0; slots_place < SCPUS; slots_place = slots_place + 1) begin
+    for (slots_place = 0; slots_place < SCPUS_IN_FOURS; slots_place = slots_place + 1) begin
       result = result | result_all[slots_place*7 +: 7];
     end
   end

@@ -65,7 +65,9 @@ impl Flat {
     fn inherited(&self, scope: usize, module: &Module) -> Vec<u32> {
         let Scope { module: parent, parameters, .. } = &self.scopes[scope];
         let value = |name: &str| parent.parameters.iter().position(|p| p.name == name).map(|index| parameters[index]);
-        module.parameters.iter().map(|p| value(&p.name).unwrap_or(p.default)).collect()
+        let mut values: Vec<u32> = module.parameters.iter().map(|p| value(&p.name).unwrap_or(p.default)).collect();
+        super::round_parameters(module, &mut values);
+        values
     }
 
     fn open(&mut self, module: &Arc<Module>, path: String, parameters: Vec<u32>) -> usize {

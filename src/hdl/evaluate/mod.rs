@@ -14,7 +14,7 @@ use std::sync::Arc;
 use flatten::{Flat, Scope};
 use lower::{DEAD, Lowered, word_bits, word_count};
 
-use super::module::Module;
+use super::module::{Module, Parameter};
 
 /// Why a module cannot be run.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -270,7 +270,8 @@ impl Evaluator {
 fn parameter_values(module: &Module, given: &[(&str, u32)]) -> Result<Vec<u32>, EvaluateError> {
     let mut values: Vec<u32> = module.parameters.iter().map(|parameter| parameter.default).collect();
     for &(name, value) in given {
-        let Some(index) = module.parameters.iter().position(|parameter| parameter.name == name) else {
+        let is_it = |parameter: &Parameter| parameter.name == name && parameter.rounded.is_none();
+        let Some(index) = module.parameters.iter().position(is_it) else {
             return Err(EvaluateError::UnknownParameter { module: module.name.clone(), name: name.to_owned() });
         };
         let (min, max) = (module.parameters[index].min, module.parameters[index].max);
@@ -279,7 +280,17 @@ fn parameter_values(module: &Module, given: &[(&str, u32)]) -> Result<Vec<u32>, 
         }
         values[index] = value;
     }
+    round_parameters(module, &mut values);
     Ok(values)
+}
+
+/// Computes the values of `localparam`s, each from a parameter before it.
+fn round_parameters(module: &Module, values: &mut [u32]) {
+    for (index, parameter) in module.parameters.iter().enumerate() {
+        if let Some(rounded) = parameter.rounded {
+            values[index] = rounded.of(values[rounded.of]);
+        }
+    }
 }
 
 fn pin_at(places: &[u32], first: u32, width: u32, input: bool, tape_first: usize) -> Pin {

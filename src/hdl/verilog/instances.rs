@@ -81,7 +81,8 @@ impl Sections<'_> {
     /// Parameters that an instance takes from this module, where both have them.
     fn inherited(&self, instance: &Instance) -> String {
         let known = |name: &str| self.module.parameters.iter().any(|parameter| parameter.name == name);
-        let names = instance.module.parameters.iter().map(|p| &p.name).filter(|name| known(name));
+        let parameters = instance.module.parameters.iter().filter(|parameter| parameter.rounded.is_none());
+        let names = parameters.map(|p| &p.name).filter(|name| known(name));
         let list: Vec<_> = names.map(|name| format!("    .{name} ({name})")).collect();
         if list.is_empty() { String::new() } else { format!("#(\n{}\n  ) ", list.join(",\n")) }
     }

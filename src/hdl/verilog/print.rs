@@ -1,6 +1,6 @@
 //! A module's file from top to bottom: header, ports, logic (by stage where there are stages), state, instances.
 
-use super::super::module::{Module, NodeId, Op};
+use super::super::module::{Module, NodeId, Op, Parameter, Rounded};
 use super::Style;
 use super::expression::{Expressions, range};
 use super::names::Names;
@@ -14,6 +14,7 @@ pub(super) fn print(module: &Module, style: &Style) -> String {
     let mut out = header(module, style);
     out += &interface(module, style, &names);
     out += &range_checks(module);
+    out += &local_parameters(module);
     if module.reset.is_some() && module.is_reset() {
         out += &format!("\n  // Resets all that is below.\n  wire {};\n", style.reset_port());
     }
@@ -49,6 +50,7 @@ fn interface(module: &Module, style: &Style, names: &Names) -> String {
         let parameters: Vec<_> = module
             .parameters
             .iter()
+            .filter(|p| p.rounded.is_none())
             .map(|p| format!("  parameter [31:0] {} = 32'd{} // {} to {}", p.name, p.default, p.min, p.max))
             .collect();
         out += &format!(" #(\n{}\n)", parameters.join(",\n"));
@@ -91,17 +93,30 @@ pub(super) fn is_register(module: &Module, id: NodeId) -> bool {
             if module.instances[instance].count != super::super::module::InstanceCount::One)
 }
 
-/// A replication by zero is illegal in every tool, so a parameter out of range stops elaboration.
+/// An instance of a module that does not exist fails elaboration in every tool, if the parameter is out of range.
 fn range_checks(module: &Module) -> String {
-    let check = |p: &super::super::module::Parameter| {
-        let name = &p.name;
+    let check = |p: &Parameter| {
+        let Parameter { name, min, max, .. } = p;
+        let below = if *min > 0 { format!("({name} < 32'd{min}) || ") } else { String::new() };
         format!(
-            "\n  // Elaboration stops here when {name} is out of range.\n  localparam [0:0] unused_{name}_in_range = \
-             {{(({name} >= 32'd{}) && ({name} <= 32'd{})){{1'b1}}}};\n",
-            p.min, p.max
+            "\n  // Elaboration fails here if {name} is out of range.\n  generate\n    if ({below}({name} > 32'd{max})) \
+             begin : {name}_out_of_range\n      {name}_must_be_{min}_to_{max} failed ();\n    end\n  endgenerate\n"
         )
     };
-    module.parameters.iter().map(check).collect()
+    module.parameters.iter().filter(|parameter| parameter.rounded.is_none()).map(check).collect()
+}
+
+/// Parameters that are computed from others.
+fn local_parameters(module: &Module) -> String {
+    let local = |p: &Parameter| {
+        let Rounded { of, multiple } = p.rounded?;
+        let (name, of) = (&p.name, &module.parameters.get(of)?.name);
+        Some(format!(
+            "\n  // {of} up to {multiple}, and the whole {multiple}s of it above that.\n  localparam [31:0] {name} = \
+             ({of} > 32'd{multiple}) ? ({of} / 32'd{multiple}) * 32'd{multiple} : {of};\n"
+        ))
+    };
+    module.parameters.iter().filter_map(local).collect()
 }
 
 fn assignments(module: &Module, style: &Style, names: &Names, expressions: &Expressions<'_>) -> String {
