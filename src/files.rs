@@ -28,7 +28,8 @@ pub fn replace(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<(
         _ => Path::new("."),
     };
     // A file made by hand rather than by tempfile, which would give it to its owner alone.
-    let aside = tempfile::Builder::new().prefix(".afu-").make_in(folder, |path| File::create_new(path))?;
+    let aside = tempfile::Builder::new().prefix(".afu-").make_in(folder, |path| File::create_new(path));
+    let aside = aside.map_err(without_path)?;
     let mut out = BufWriter::new(aside.as_file());
     content(&mut out)?;
     out.flush()?;
@@ -36,6 +37,11 @@ pub fn replace(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<(
     old.map_or(Ok(()), |old: Permissions| fs::set_permissions(aside.path(), old))?;
     aside.persist(&named).map_err(|failed| failed.error)?;
     Ok(())
+}
+
+/// The same error without the name of a temporary file, which nobody knows.
+pub fn without_path(error: io::Error) -> io::Error {
+    if error.raw_os_error().is_none() && error.kind() != io::ErrorKind::Other { error.kind().into() } else { error }
 }
 
 #[cfg(test)]

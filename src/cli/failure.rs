@@ -35,8 +35,21 @@ impl Failure {
 
     /// Says it on standard error, and gives the exit code.
     pub fn report(&self) -> ExitCode {
-        eprintln!("afu: {:#}", self.error);
+        eprintln!("afu: {}", self.text());
         ExitCode::from(self.kind as u8)
+    }
+
+    /// The error and its causes. A cause that the message before it tells already is not told again.
+    fn text(&self) -> String {
+        let mut text = String::new();
+        for cause in self.error.chain().map(ToString::to_string) {
+            if text.is_empty() {
+                text = cause;
+            } else if !text.contains(&cause) {
+                text = format!("{text}: {cause}");
+            }
+        }
+        text
     }
 }
 

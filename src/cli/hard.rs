@@ -19,7 +19,7 @@ pub struct Hard {
     #[arg(long, value_name = "N", default_value_t = 170_000)]
     pairs: u64,
     /// Their seed
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = super::usage::seed)]
     seed: u64,
     /// Profiles to judge, beside the other engines
     #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "paper,wide,exact")]

@@ -29,6 +29,7 @@ mod scene;
 #[cfg(feature = "cosim")]
 mod sweep;
 mod synth;
+mod usage;
 
 use std::process::ExitCode;
 
@@ -41,7 +42,7 @@ use failure::Failure;
 /// Exit status: 0 pass; 1 a mismatch, an unmet check or a job that does not finish; 2 bad usage or input; 3 a missing
 /// tool; 4 anything else. Results go to standard output or files, progress and messages to standard error.
 #[derive(Parser, Debug)]
-#[command(name = "afu", version)]
+#[command(name = "afu", version = usage::version())]
 pub struct Program {
     #[command(subcommand)]
     command: Command,
@@ -75,7 +76,11 @@ enum Command {
 
 /// Runs the program.
 pub fn main() -> ExitCode {
-    match run(&Program::parse()) {
+    let program = match usage::parse(std::env::args_os()) {
+        Ok(program) => program,
+        Err(error) => return usage::report(&error),
+    };
+    match run(&program) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),
     }

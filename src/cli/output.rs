@@ -21,6 +21,15 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     Ok(folder::replace_file(path, bytes)?)
 }
 
+/// Writes to standard output. A reader that has read enough, such as `head`, is no failure.
+pub fn stdout(content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
+    let mut out = io::BufWriter::new(io::stdout());
+    match content(&mut out).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error).ends(Kind::Other),
+        _ => Ok(()),
+    }
+}
+
 /// Writes a value as JSON, with a line end behind it.
 pub fn json(path: &Path, value: &impl Serialize) -> Result<(), Failure> {
     let mut text = serde_json::to_vec_pretty(value).ends(Kind::Other)?;

@@ -3,11 +3,15 @@
 use std::path::PathBuf;
 
 use clap::Args;
+#[cfg(feature = "cosim")]
+use contact_afu::kernel::PairRecord;
+#[cfg(feature = "cosim")]
+use contact_afu::pairs::Loaded;
 use contact_afu::pairs::{self, FileError, LoadError, Set, SetError};
 use contact_afu::report::table::grouped;
 
 use super::failure::{Failure, Kind};
-use super::output;
+use super::{output, usage};
 
 #[derive(Args, Debug)]
 pub struct Pairs {
@@ -16,15 +20,29 @@ pub struct Pairs {
     #[arg(value_name = "SET")]
     set: Set,
     /// Seed of all but the diamond
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = usage::seed)]
     seed: u64,
-    /// File to write: .csv (x1,y1,z1,r1,x2,y2,z2,r2 in decimals that read back the same) or .npy (<f4, n x 8)
+    /// File to write: .csv (x1,y1,z1,r1,x2,y2,z2,r2 in decimals that read back the same) or .npy (<f4, n x 8); - is
+    /// standard output, as CSV
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
 }
 
+/// The pairs of a set or a file. A file's numbers that had to be rounded are told of on standard error.
+#[cfg(feature = "cosim")]
+pub fn load(source: &str, seed: u64) -> Result<Vec<PairRecord>, Failure> {
+    let Loaded { pairs, rounded } = pairs::load_with_notes(source, seed)?;
+    if let Some(rounded) = rounded {
+        eprintln!("afu: {source}: {rounded}");
+    }
+    Ok(pairs)
+}
+
 pub fn run(options: &Pairs) -> Result<(), Failure> {
     let made = options.set.pairs(options.seed);
+    if output::is_stdout(&options.out) {
+        return output::stdout(|out| pairs::write_pairs_csv(out, &made));
+    }
     pairs::write_pairs(&options.out, &made)?;
     let seed = match options.set {
         Set::Random(_) | Set::Dense(_) | Set::Hard(_) => format!(", seed {}", options.seed),

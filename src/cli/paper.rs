@@ -13,8 +13,8 @@ use super::machine::One;
 /// simulated AFU, and writes figure6.svg, figure7.svg, per-collision.svg, CSVs, results.json and report.html. What was
 /// simulated is kept: the same command again goes on where it was stopped.
 ///
-/// Measuring ODE needs the feature `ode`: ./scripts/setup --ode && cargo run --release --features ode -- paper --out
-/// DIR (./scripts/paper does both). Without it this command ends with status 3.
+/// Measuring ODE needs the feature `ode`; without it this command ends with status 3 and says how to get it. In the
+/// repository ./scripts/paper does everything.
 #[derive(Args, Debug)]
 #[cfg_attr(not(feature = "ode"), allow(dead_code, reason = "only the program with ODE reads them"))]
 pub struct Paper {
@@ -52,7 +52,7 @@ pub struct Paper {
     #[arg(long, value_name = "NAME|FILE", default_value = "harp1")]
     pub(super) link: String,
     /// Seed of the link
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = super::usage::seed)]
     pub(super) seed: u64,
     /// Write into the folder even if afu did not make it; other files in it are left alone
     #[arg(long)]
@@ -68,7 +68,8 @@ pub fn run(options: &Paper) -> Result<(), Failure> {
 
 #[cfg(not(feature = "ode"))]
 pub fn run(_: &Paper) -> Result<(), Failure> {
-    let message = "this program was built without the Open Dynamics Engine, which `afu paper` measures; \
-                   ./scripts/setup --ode && cargo run --release --features ode -- paper --out DIR";
+    let install = contact_afu::tools::ode_install("paper --out DIR");
+    let message =
+        format!("this program was built without the Open Dynamics Engine, which `afu paper` measures; {install}");
     Err(Failure::new(super::failure::Kind::Tool, message))
 }

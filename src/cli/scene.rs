@@ -79,6 +79,11 @@ pub fn run(options: &Scene) -> Result<(), Failure> {
         let cost = options.cost(&plan.config)?;
         return output::show(&format!("{}\n\n{}", plan.text(), cost.text()), false);
     }
+    // Before a model is built for nothing.
+    #[cfg(not(feature = "ode"))]
+    if Plan::moves(&story) {
+        return Err(without_ode());
+    }
     if let Some(out) = &options.out {
         folder::check(out, options.force)?;
     }
@@ -231,9 +236,16 @@ fn host_step(_: &Story, _: &Plan) -> Result<Option<f64>, Failure> {
 
 #[cfg(not(feature = "ode"))]
 fn moving(_: &Story, _: &Plan, _: &mut dyn Engine, _: &str) -> Result<Results, Failure> {
-    let message = "this program was built without the Open Dynamics Engine, which moves the bodies of this scene; \
-                   ./scripts/setup --ode && cargo run --release --features ode -- scene FILE";
-    Err(Failure::new(Kind::Tool, message))
+    Err(without_ode())
+}
+
+#[cfg(not(feature = "ode"))]
+fn without_ode() -> Failure {
+    let install = contact_afu::tools::ode_install("scene FILE");
+    let message = format!(
+        "this program was built without the Open Dynamics Engine, which moves the bodies of this scene; {install}"
+    );
+    Failure::new(Kind::Tool, message)
 }
 
 impl From<SceneError> for Failure {

@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use clap::Args;
 use contact_afu::config::Config;
-use contact_afu::pairs;
 use contact_afu::sweep::{Record, RecordError, SweepError, Task, fill, fingerprint};
 
 use super::failure::{Failure, Kind};
@@ -31,7 +30,7 @@ pub struct Sweep {
     #[arg(long, value_name = "NAME|FILE", default_value = "ideal")]
     link: String,
     /// Seed of random pairs, of the link, and of registers that no reset reaches
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = super::usage::seed)]
     seed: u64,
     /// Folder to write: manifest.json (JSON of all) and sweep.csv
     #[arg(long, value_name = "DIR")]
@@ -54,7 +53,7 @@ pub fn run(options: &Sweep) -> Result<(), Failure> {
     configs.iter().for_each(warn_of_unused_scpus);
     let base = options.machine.config()?;
     let link = link::read(&options.link, base.clock_mhz)?;
-    let pairs = pairs::load(&options.pairs, options.seed)?;
+    let pairs = super::pairs::load(&options.pairs, options.seed)?;
     let task = Task { pairs: &pairs, link: &link, seed: options.seed, counts: options.synth };
     let mut record = Record::new(&options.pairs, fingerprint(&pairs), &options.link, options.seed, &base);
     let bar = progress::spinner("");

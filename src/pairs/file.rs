@@ -1,8 +1,9 @@
 //! Reading and writing by file name.
 
-use super::{FileError, Set, SetError, contacts_csv, npy, pairs_csv};
+use super::{FileError, Set, SetError, array, contacts_csv, npy, pairs_csv};
 use crate::files;
 use crate::kernel::{ContactRecord, PairRecord};
+use std::fmt;
 use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
@@ -24,6 +25,42 @@ fn kind(file: &Path) -> Result<Kind, FileError> {
     }
 }
 
+/// Pairs, and what reading them changed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Loaded {
+    /// The pairs.
+    pub pairs: Vec<PairRecord>,
+    /// Which numbers were rounded; `None` if all were taken as they are.
+    pub rounded: Option<Rounded>,
+}
+
+/// Numbers of a file that binary32 does not have.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rounded {
+    /// So many.
+    pub numbers: u64,
+    /// Of so many in the file.
+    pub of: u64,
+    /// The pair of the first.
+    pub pair: u64,
+    /// Its field.
+    pub field: &'static str,
+    /// Its value in the file.
+    pub given: f64,
+    /// The nearest binary32 number.
+    pub taken: f32,
+}
+
+impl fmt::Display for Rounded {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { numbers, of, pair, field, given, taken } = *self;
+        let taken = f64::from(taken);
+        let was = if numbers == 1 { "was" } else { "were" };
+        write!(f, "{numbers} of {of} numbers {was} rounded to binary32; ")?;
+        write!(f, "the first is {field} of pair {pair}: {given} became {taken}")
+    }
+}
+
 /// Why pairs could not be had.
 #[derive(Debug, thiserror::Error)]
 pub enum LoadError {
@@ -40,7 +77,19 @@ pub enum LoadError {
 /// # Errors
 /// When the name or the file is wrong.
 pub fn load(source: &str, seed: u64) -> Result<Vec<PairRecord>, LoadError> {
-    if Set::is_name(source) { Ok(source.parse::<Set>()?.pairs(seed)) } else { Ok(read_pairs(Path::new(source))?) }
+    load_with_notes(source, seed).map(|loaded| loaded.pairs)
+}
+
+/// The same, with what reading a file changed.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_with_notes(source: &str, seed: u64) -> Result<Loaded, LoadError> {
+    let path = Path::new(source);
+    if Set::is_name(source) || (Set::meant(source).is_some() && !path.exists()) {
+        return Ok(Loaded { pairs: source.parse::<Set>()?.pairs(seed), rounded: None });
+    }
+    Ok(read_with_notes(path)?)
 }
 
 /// Whether `file` has a name that can be written: `.csv` or `.npy`.
@@ -56,10 +105,19 @@ pub fn check_name(file: &Path) -> Result<(), FileError> {
 /// # Errors
 /// When the file cannot be read or is not of that form.
 pub fn read_pairs(file: &Path) -> Result<Vec<PairRecord>, FileError> {
-    match kind(file)? {
-        Kind::Csv => pairs_csv::read(file, &bytes(file)?),
-        Kind::Npy => Ok(npy::read::<8>(file, &bytes(file)?, PAIR_TYPE)?.into_iter().map(PairRecord).collect()),
-    }
+    read_with_notes(file).map(|loaded| loaded.pairs)
+}
+
+/// The same, with what reading changed. (Decimals in CSV are always taken as the nearest binary32 number.)
+///
+/// # Errors
+/// As [`read_pairs`].
+pub fn read_with_notes(file: &Path) -> Result<Loaded, FileError> {
+    let (pairs, rounded) = match kind(file)? {
+        Kind::Csv => (pairs_csv::read(file, &bytes(file)?)?, None),
+        Kind::Npy => array::read(file, &bytes(file)?)?,
+    };
+    Ok(Loaded { pairs, rounded })
 }
 
 /// The contacts of a `.csv` or `.npy` file.
@@ -101,6 +159,14 @@ pub fn write_pairs(file: &Path, pairs: &[PairRecord]) -> Result<(), FileError> {
         Kind::Csv => write(file, |out| pairs_csv::write(out, pairs)),
         Kind::Npy => write(file, |mut out| npy::write(&mut out, PAIR_TYPE, pairs.iter().map(|pair| pair.0))),
     }
+}
+
+/// Writes pairs as CSV.
+///
+/// # Errors
+/// As `out` says.
+pub fn write_pairs_csv(out: impl Write, pairs: &[PairRecord]) -> io::Result<()> {
+    pairs_csv::write(out, pairs)
 }
 
 /// Writes contacts to a `.csv` or `.npy` file, which is there whole or not at all.

@@ -1,6 +1,8 @@
 //! Pairs by name (`diamond:10`, `random:1000`, `hard:1000`) and from files, and contacts to files: CSV and `.npy`.
 
+mod array;
 mod contacts_csv;
+mod cure;
 mod dense;
 mod diamond;
 mod error;
@@ -17,7 +19,8 @@ mod table;
 pub use diamond::octahedron;
 pub use error::FileError;
 pub use file::{
-    LoadError, check_name, load, read_contacts, read_hits, read_pairs, write_contacts, write_hits, write_pairs,
+    LoadError, Loaded, Rounded, check_name, load, load_with_notes, read_contacts, read_hits, read_pairs,
+    read_with_notes, write_contacts, write_hits, write_pairs, write_pairs_csv,
 };
 pub use hard::{CATEGORIES, Category};
 pub use npy::numbers as npy_of_numbers;

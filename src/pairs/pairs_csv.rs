@@ -37,9 +37,14 @@ fn record<const N: usize>(row: &Row<'_, N>, first: usize) -> Result<PairRecord, 
 /// Every value reads back to the same word, but for a NaN's, which reads back canonical.
 pub fn write(out: impl Write, pairs: &[PairRecord]) -> io::Result<()> {
     let mut out = csv::Writer::from_writer(out);
-    out.write_record(PAIR_FIELDS)?;
+    // The error of the file system itself, by which a closed pipe is known.
+    let plain = |error: csv::Error| match error.into_kind() {
+        csv::ErrorKind::Io(error) => error,
+        other => io::Error::other(format!("{other:?}")),
+    };
+    out.write_record(PAIR_FIELDS).map_err(plain)?;
     for pair in pairs {
-        out.write_record(pair.values().map(table::decimal))?;
+        out.write_record(pair.values().map(table::decimal)).map_err(plain)?;
     }
     out.flush()
 }

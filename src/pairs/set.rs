@@ -27,10 +27,15 @@ pub enum Set {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SetError {
     /// Neither of the kinds there are.
-    #[error("unknown set of pairs `{0}`: use diamond:H, random:N, dense:N or hard:N")]
-    Unknown(String),
+    #[error("unknown set of pairs `{name}`: use diamond:H, random:N, dense:N or hard:N{}", tip(meant))]
+    Unknown {
+        /// What was given.
+        name: String,
+        /// The set that it may be meant for.
+        meant: Option<String>,
+    },
     /// Not a number, or too large a one.
-    #[error("set of pairs `{name}`: `{size}` must be a number from {least} to {most}")]
+    #[error("set of pairs `{name}`: `{size}` must be a number from {least} to {most}{}", tip(meant))]
     Size {
         /// The whole name.
         name: String,
@@ -40,13 +45,37 @@ pub enum SetError {
         least: u64,
         /// The largest size.
         most: u64,
+        /// The set that it may be meant for.
+        meant: Option<String>,
     },
+}
+
+fn tip(meant: &Option<String>) -> String {
+    meant.as_ref().map(|meant| format!("; did you mean {meant}?")).unwrap_or_default()
+}
+
+/// What the sets are called.
+const KINDS: [&str; 4] = ["diamond", "random", "dense", "hard"];
+
+/// The digits of a whole number written in another way: `1e6`, `1_000_000`.
+fn whole(text: &str) -> Option<String> {
+    let plain: String = text.chars().filter(|c| !matches!(c, '_' | ',' | '\'' | '+')).collect();
+    let value: f64 = plain.parse().ok()?;
+    (value.fract() == 0.0 && (0.0..1e15).contains(&value)).then(|| format!("{value}"))
 }
 
 impl Set {
     /// Whether `text` can only be meant as the name of a set, right or wrong, and not as a file.
     pub fn is_name(text: &str) -> bool {
-        text.split_once(':').is_some_and(|(kind, _)| matches!(kind, "diamond" | "random" | "dense" | "hard"))
+        text.split_once(':').is_some_and(|(kind, _)| KINDS.contains(&kind))
+    }
+
+    /// The set that `text` may be meant for, if its kind is nearly right.
+    pub(super) fn meant(text: &str) -> Option<String> {
+        let (kind, size) = text.split_once(':')?;
+        let likeness = |known: &&str| strsim::jaro(known, &kind.to_lowercase());
+        let nearest = KINDS.into_iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b)))?;
+        (likeness(&nearest) > 0.7).then(|| format!("{nearest}:{}", whole(size).unwrap_or_else(|| size.to_owned())))
     }
 
     /// The pairs, the same on every machine. `seed` matters to all but the diamond.
@@ -75,15 +104,18 @@ impl FromStr for Set {
     type Err = SetError;
 
     fn from_str(text: &str) -> Result<Self, SetError> {
-        let (kind, size) = text.split_once(':').ok_or_else(|| SetError::Unknown(text.to_owned()))?;
+        let unknown = || SetError::Unknown { name: text.to_owned(), meant: Self::meant(text) };
+        let (kind, size) = text.split_once(':').ok_or_else(unknown)?;
         let number = |least, most: u64| {
             let digits = size.bytes().all(|b| b.is_ascii_digit());
             let value = if digits { size.parse().ok() } else { None };
+            let is_within = |meant: &str| meant.parse().is_ok_and(|meant: u64| (least..=most).contains(&meant));
             value.filter(|value| (least..=most).contains(value)).ok_or_else(|| SetError::Size {
                 name: text.to_owned(),
                 size: size.to_owned(),
                 least,
                 most,
+                meant: whole(size).filter(|meant| is_within(meant)).map(|meant| format!("{kind}:{meant}")),
             })
         };
         match kind {
@@ -91,7 +123,7 @@ impl FromStr for Set {
             "random" => Ok(Self::Random(number(0, COUNT)?)),
             "dense" => Ok(Self::Dense(number(0, COUNT)?)),
             "hard" => Ok(Self::Hard(number(0, COUNT)?)),
-            _ => Err(SetError::Unknown(text.to_owned())),
+            _ => Err(unknown()),
         }
     }
 }
@@ -112,5 +144,24 @@ mod tests {
         }
         let error = "diamond:many".parse::<Set>().unwrap_err().to_string();
         assert_eq!(error, "set of pairs `diamond:many`: `many` must be a number from 1 to 100");
+    }
+
+    #[test]
+    fn what_may_be_meant_is_said() {
+        for (wrong, meant) in [
+            ("random:1e6", Some("random:1000000")),
+            ("dense:10_000", Some("dense:10000")),
+            ("random:1.5", None),
+            ("random:1e9", None),
+            ("diamond:0", None),
+            ("diamnd:3", Some("diamond:3")),
+            ("Random:1e3", Some("random:1000")),
+            ("rand:x", Some("random:x")),
+            ("cube:3", None),
+        ] {
+            let error = wrong.parse::<Set>().unwrap_err().to_string();
+            let tip = meant.map(|meant| format!("; did you mean {meant}?"));
+            assert_eq!(error.find("; did you mean").map(|at| error[at..].to_owned()), tip, "{error}");
+        }
     }
 }

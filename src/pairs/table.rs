@@ -1,6 +1,6 @@
 //! A CSV file with known columns.
 
-use super::FileError;
+use super::{FileError, cure};
 use std::path::Path;
 
 /// A row: where it begins in the file's text, and its fields in the order of the columns asked for.
@@ -29,6 +29,9 @@ pub fn read<const N: usize>(
     while reader.read_record(&mut record).map_err(|error| broken(file, text, error))? {
         let begin = record.position().map_or(0, csv::Position::byte);
         let line = || line_at(text, begin);
+        if let Some(problem) = cure::of_row(&record).filter(|_| record.len() != N) {
+            return Err(FileError::Line { file: file.to_owned(), line: line(), problem });
+        }
         if record.len() > N {
             let problem = format!("{} fields under a header of {N}", record.len());
             return Err(FileError::Line { file: file.to_owned(), line: line(), problem });
@@ -58,7 +61,8 @@ fn header<const N: usize>(
     let line = line_at(text, record.position().map_or(0, csv::Position::byte));
     let known = |name: &str| columns.contains(&name);
     if let Some(unknown) = record.iter().find(|name| !known(name)) {
-        let problem = format!("`{unknown}` is no column of this file; the header is {}", columns.join(","));
+        let problem = cure::of_header(record, columns)
+            .unwrap_or_else(|| format!("`{unknown}` is no column of this file; the header is {}", columns.join(",")));
         return Err(FileError::Line { file: file.to_owned(), line, problem });
     }
     let mut places = [0; N];
@@ -115,7 +119,7 @@ impl<const N: usize> Row<'_, N> {
     /// beyond the largest number cannot be meant.
     pub fn number(&self, i: usize) -> Result<f32, FileError> {
         let text = self.text(i);
-        let value = text.parse::<f32>().map_err(|_| self.error(i, format!("`{text}` is not a number")))?;
+        let value = text.parse::<f32>().map_err(|_| self.error(i, cure::of_number(text)))?;
         if value.is_infinite() && text.contains(|c: char| c.is_ascii_digit()) {
             return Err(self.error(i, format!("`{text}` is beyond the largest binary32 number")));
         }

@@ -2,26 +2,35 @@
 
 use serde::Serialize;
 
-use crate::tools::Tool;
+use crate::tools::{FEATURES, Feature, Tool};
 
 /// The findings for other programs.
 #[derive(Serialize)]
 pub struct Report<'a> {
     schema: &'static str,
     version: &'static str,
+    features: &'static [Feature],
     tools: &'a [Tool],
 }
 
 impl<'a> Report<'a> {
     /// Of these tools.
     pub fn new(tools: &'a [Tool]) -> Self {
-        Self { schema: "contact-afu/doctor/1", version: env!("CARGO_PKG_VERSION"), tools }
+        Self { schema: "contact-afu/doctor/1", version: env!("CARGO_PKG_VERSION"), features: &FEATURES, tools }
     }
 }
 
-/// The findings for people: a paragraph a tool, for versions are long.
+/// The findings for people: one paragraph per feature and per tool, for versions are long.
 pub fn text(tools: &[Tool]) -> String {
     let mut lines = Vec::new();
+    for feature in &FEATURES {
+        let found = if feature.built_in { "built in" } else { "NOT BUILT IN" };
+        lines.push(format!("{:<16}{found}", format!("feature {}", feature.name)));
+        lines.push(format!("{:<16}for {}", "", feature.needed_for));
+        if !feature.built_in {
+            lines.push(format!("{:<16}build this program with: --features {}", "", feature.name));
+        }
+    }
     for tool in tools {
         let found = tool.found.as_deref().unwrap_or("MISSING");
         lines.push(format!("{:<16}{found}", tool.name));

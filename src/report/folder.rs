@@ -51,7 +51,8 @@ impl Folder {
             _ => Path::new("."),
         };
         fs::create_dir_all(parent).map_err(at(parent))?;
-        let aside = tempfile::Builder::new().prefix(".afu-").tempdir_in(parent).map_err(at(parent))?;
+        let aside = tempfile::Builder::new().prefix(".afu-").tempdir_in(parent);
+        let aside = aside.map_err(files::without_path).map_err(at(target))?;
         Ok(Self { aside, target: target.to_owned() })
     }
 
@@ -64,11 +65,11 @@ impl Folder {
         if path.is_empty() || !Path::new(path).components().all(plain) {
             return Err(Error::Path(path.to_owned()));
         }
-        let file = self.aside.path().join(path);
+        let (file, shown) = (self.aside.path().join(path), self.target.join(path));
         if let Some(folder) = file.parent() {
-            fs::create_dir_all(folder).map_err(at(folder))?;
+            fs::create_dir_all(folder).map_err(at(&shown))?;
         }
-        fs::write(&file, bytes).map_err(at(&file))
+        fs::write(&file, bytes).map_err(at(&shown))
     }
 
     /// Puts the folder in its place, instead of what stood there.
@@ -77,11 +78,12 @@ impl Folder {
     /// When the file system refuses; what stood there then stands there still.
     pub fn commit(self) -> Result<(), Error> {
         let Self { aside, target } = self;
-        share(aside.path()).map_err(at(aside.path()))?;
+        share(aside.path()).map_err(at(&target))?;
         // The old folder is moved aside too, so that a failing rename can be undone.
         let old = if target.exists() {
             let parent = aside.path().parent().unwrap_or(Path::new("."));
-            let old = tempfile::Builder::new().prefix(".afu-old-").tempdir_in(parent).map_err(at(parent))?;
+            let old = tempfile::Builder::new().prefix(".afu-old-").tempdir_in(parent);
+            let old = old.map_err(files::without_path).map_err(at(&target))?;
             fs::rename(&target, old.path().join("old")).map_err(at(&target))?;
             Some(old)
         } else {

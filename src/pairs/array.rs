@@ -1,0 +1,108 @@
+//! Arrays of pairs as NumPy's users have them: of binary16, binary32 or binary64, in either byte order and either
+//! order of indices, n × 8 or n × 2 × 4.
+
+use std::path::Path;
+
+use super::npy_header::{Header, Problem};
+use super::{FileError, Rounded};
+use crate::kernel::{PAIR_FIELDS, PairRecord, widen};
+use crate::number::Format;
+
+/// The pairs of an array, and which numbers had to be rounded to binary32.
+pub fn read(file: &Path, bytes: &[u8]) -> Result<(Vec<PairRecord>, Option<Rounded>), FileError> {
+    parse(bytes).map_err(|Problem(field, problem)| FileError::Npy { file: file.to_owned(), field, problem })
+}
+
+fn parse(bytes: &[u8]) -> Result<(Vec<PairRecord>, Option<Rounded>), Problem> {
+    let (header, data) = Header::split(bytes)?;
+    let number = Number::of(&header.descr)?;
+    // In C order the words of a pair stand together either way; in Fortran order each word of all pairs does.
+    let (count, fortran_place): (u64, fn(usize) -> usize) = match *header.shape.as_slice() {
+        [count, 8] => (count, |word| word),
+        [count, 2, 4] => (count, |word| word / 4 + 2 * (word % 4)),
+        _ => return Err(Problem("shape", format!("{:?} should be [n, 8] or [n, 2, 4]", header.shape))),
+    };
+    // The shape is believed only where the file bears it out.
+    let (size, there) = (number.size(), data.len());
+    if count.checked_mul(8 * size as u64) != Some(there as u64) {
+        let problem = format!("{count} records of {} bytes, but the data has {there} bytes", 8 * size);
+        return Err(Problem("shape", problem));
+    }
+    let count = there / (8 * size);
+    let mut pairs = Vec::with_capacity(count);
+    let mut rounded: Option<Rounded> = None;
+    for pair in 0..count {
+        let mut words = [0; 8];
+        for (word, to) in words.iter_mut().enumerate() {
+            let place = if header.fortran_order { fortran_place(word) * count + pair } else { 8 * pair + word };
+            let bits = number.bits(&data[place * size..(place + 1) * size]);
+            *to = number.to_binary32(bits);
+            if let Some(given) = number.rounded(bits, *to) {
+                let is_beyond = given.is_finite() && f32::from_bits(*to).is_infinite();
+                if is_beyond {
+                    let problem = format!(
+                        "{given:e}, {} of pair {pair}, is beyond the largest binary32 number",
+                        PAIR_FIELDS[word]
+                    );
+                    return Err(Problem("data", problem));
+                }
+                let first = Rounded {
+                    numbers: 0,
+                    of: 8 * count as u64,
+                    pair: pair as u64,
+                    field: PAIR_FIELDS[word],
+                    given,
+                    taken: f32::from_bits(*to),
+                };
+                rounded.get_or_insert(first).numbers += 1;
+            }
+        }
+        pairs.push(PairRecord(words));
+    }
+    Ok((pairs, rounded))
+}
+
+/// The numbers of an array.
+struct Number {
+    format: Format,
+    is_big_endian: bool,
+}
+
+impl Number {
+    fn of(descr: &str) -> Result<Self, Problem> {
+        let format = match descr.get(1..) {
+            Some("f2") => Some(Format::HALF),
+            Some("f4") => Some(Format::BINARY32),
+            Some("f8") => Some(Format::BINARY64),
+            _ => None,
+        };
+        let is_big_endian = descr.starts_with('>');
+        match format {
+            Some(format) if is_big_endian || descr.starts_with('<') => Ok(Self { format, is_big_endian }),
+            _ => Err(Problem("descr", format!("'{descr}' is none of f2, f4 and f8; save a.astype(\"<f4\")"))),
+        }
+    }
+
+    fn size(&self) -> usize {
+        self.format.width() as usize / 8
+    }
+
+    fn bits(&self, bytes: &[u8]) -> u64 {
+        let join = |bits: u64, byte: &u8| bits << 8 | u64::from(*byte);
+        if self.is_big_endian { bytes.iter().fold(0, join) } else { bytes.iter().rev().fold(0, join) }
+    }
+
+    /// The nearest binary32 number.
+    fn to_binary32(&self, bits: u64) -> u32 {
+        match self.size() {
+            8 => (f64::from_bits(bits) as f32).to_bits(),
+            _ => widen(bits as u32, self.format),
+        }
+    }
+
+    /// The value of `bits`, if binary32 does not have it.
+    fn rounded(&self, bits: u64, binary32: u32) -> Option<f64> {
+        let value = Some(f64::from_bits(bits)).filter(|_| self.size() == 8)?;
+        (!value.is_nan() && value != f64::from(f32::from_bits(binary32))).then_some(value)
+    }
+}

@@ -1,0 +1,46 @@
+//! What is wrong with a CSV file that a common tool wrote, and the option of that tool which cures it.
+
+use csv::StringRecord;
+
+/// A header that pandas or NumPy writes unless it is told otherwise. `None` if it is wrong in no known way.
+pub fn of_header(record: &StringRecord, columns: &[&str]) -> Option<String> {
+    let first = record.get(0).unwrap_or_default();
+    let header = columns.join(",");
+    let is_known = |name: &str| columns.contains(&name.trim());
+    if first.starts_with('#') {
+        return Some(format!(
+            "the header begins with `#`, and comments are not read; write {header} alone (numpy.savetxt: comments=\"\")"
+        ));
+    }
+    for (separator, name) in [(';', "`;`"), ('\t', "tabs"), ('|', "`|`"), (' ', "spaces")] {
+        if record.len() == 1 && first.split(separator).filter(|name| is_known(name)).count() > 1 {
+            return Some(format!(
+                "columns are separated by {name}; separate them by commas (pandas: sep=\",\", numpy.savetxt: delimiter=\",\")"
+            ));
+        }
+    }
+    if record.iter().any(|name| name.is_empty() || name == "index" || name.starts_with("Unnamed: ")) {
+        return Some("an index column stands among the pairs'; leave it out (pandas: index=False)".to_owned());
+    }
+    if record.iter().all(|name| name.split_whitespace().all(|part| part.parse::<f64>().is_ok())) {
+        return Some(format!(
+            "`{first}` is no column of this file; it must begin with the header {header} (numpy.savetxt: header=\"{header}\", comments=\"\")"
+        ));
+    }
+    None
+}
+
+/// A row that holds no pair.
+pub fn of_row(record: &StringRecord) -> Option<String> {
+    let first = record.get(0).unwrap_or_default();
+    first.starts_with('#').then(|| "a comment; comments are not read: leave it out".to_owned())
+}
+
+/// A field that should be a number.
+pub fn of_number(text: &str) -> String {
+    if text.is_empty() {
+        return "empty; write a number, or nan if it is unknown (pandas: na_rep=\"nan\")".to_owned();
+    }
+    let comment = if text.starts_with('#') { "; comments are not read" } else { "" };
+    format!("`{text}` is not a number{comment}")
+}
