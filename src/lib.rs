@@ -19,6 +19,7 @@ pub mod operator;
 pub mod pairs;
 #[cfg(feature = "cosim")]
 pub mod paper;
+pub mod patience;
 pub mod pipeline;
 pub mod plot;
 pub mod report;

@@ -243,6 +243,8 @@ fn a_job_that_does_not_finish_is_exit_1_and_says_what_it_waits_for() {
     let told = said(&failed);
     let reason = told.lines().find(|line| line.starts_with("diamond:3: the job did not finish after "));
     let reason = reason.unwrap_or_else(|| panic!("{told}"));
+    let cycles = reason.split_whitespace().find_map(|word| word.parse::<u64>().ok()).expect("a number of cycles");
+    assert!((100..5_000).contains(&cycles), "132 pairs, of which the last line is never written: {reason}");
     assert!(reason.contains("waiting for the AFU (0 reads and 0 writes without a response)"), "{reason}");
     let report = json(room.path(), "out.json");
     assert_eq!((&report["passed"], &report["jobs"][0]["passed"]), (&false.into(), &false.into()));

@@ -218,5 +218,9 @@ fn the_monitor_finds_what_a_broken_afu_does() {
 fn an_afu_that_hangs_is_named() {
     let hung = broken("!outstanding && (stopping || sent == lines)", "1'b0");
     let error = run_on(&hung, link("ideal", 0), 10).unwrap_err();
-    assert!(matches!(error, DriveError::TimedOut { waiting: Waiting::Afu, .. }), "{error}");
+    assert!(matches!(error, DriveError::TimedOut { waiting: Waiting::Afu, cycles: ..1_000, .. }), "{error}");
+    // One that hangs at the beginning of a long job is not waited for as long as the job would take.
+    let hung = broken("(!wr_req_valid || wr_req_ready)", "1'b0");
+    let error = run_on(&hung, link("late", 0), 50_000).unwrap_err();
+    assert!(matches!(error, DriveError::TimedOut { waiting: Waiting::Afu, cycles: ..5_000, .. }), "{error}");
 }

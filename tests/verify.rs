@@ -1,10 +1,13 @@
 //! The AFU as generated today against the reference kernel, over every preset link.
 #![cfg(feature = "cosim")]
 
+use contact_afu::afu::{Afu, Capability, Spec};
 use contact_afu::config::{Config, Multipliers, Record, Results, Shell};
 use contact_afu::kernel::PairRecord;
-use contact_afu::link::LinkModel;
+use contact_afu::link::spl2::Spl2Model;
+use contact_afu::link::{Description, Direction, LinkModel, Stalls};
 use contact_afu::pairs::Set;
+use contact_afu::patience::{self, Work};
 use contact_afu::verify::{Bench, Verdict};
 
 fn good(verdict: &Verdict, what: &str) {
@@ -110,5 +113,67 @@ fn hits_come_back_through_spl2() {
         good(&verdict, "hits through spl2");
         assert_eq!(verdict.numbers.len(), verdict.outcome.contacts as usize);
         assert_eq!(verdict.outcome.lines.iter().flatten().count(), verdict.numbers.len());
+    }
+}
+
+/// A configuration for the tests of patience: small SCPUs that give one bit.
+fn slow(scpus: u32, interval: u32) -> Config {
+    let (profile, contact) = ("e8f3z".parse().expect("a format"), "hit".parse().expect("fields"));
+    Config { scpus, interval, profile, contact, ..Config::default() }
+}
+
+/// Twelve AFUs, below each shell, over links that make them wait: none is given up, and none is waited for without end.
+///
+/// The first was given up below SPL2: "did not finish after 24610 cycles".
+#[test]
+fn a_right_afu_is_never_given_up() {
+    let named = |name: &str| name.parse::<Description>().expect("a link").at(200.0).expect("a clock");
+    let ideal = LinkModel::ideal;
+    let one_at_a_time = Direction { in_flight: 1, lines_per_cycle: 0.05, ..Direction::steady(300, 500) };
+    let creeping = LinkModel { read: one_at_a_time, write: one_at_a_time, lines_per_cycle: 0.06, ..ideal() };
+    let blocked = Direction { stalls: Stalls { chance: 0.5, longest: 200 }, ..Direction::steady(9, 0) };
+    let stalling = LinkModel { read: blocked, write: blocked, ..ideal() };
+    let bf16 = |config: Config| Config { record: Record::Bf16, ..config };
+    let hits = |config: Config| Config { results: Results::Hits, ..config };
+    let paper = Config { profile: "paper".parse().expect("a profile"), multipliers: Multipliers::Spare, ..slow(1, 31) };
+    let cases = [
+        (bf16(Config { clock_mhz: 150.0, ..paper }), ideal(), 1024),
+        (slow(1, 64), ideal(), 900),
+        (slow(3, 64), LinkModel::late(), 1501),
+        (bf16(slow(2, 64)), named("harp1"), 1024),
+        (slow(10, 5), LinkModel::hostile(), 3000),
+        (slow(11, 5), LinkModel::shuffled(), 3001),
+        (slow(19, 5), named("pcie3x8"), 5000),
+        (slow(1, 1), creeping, 300),
+        (slow(5, 1), LinkModel::hostile(), 4000),
+        (slow(3, 1), stalling, 1000),
+        (hits(slow(3, 7)), LinkModel::late(), 5000),
+        (Config { radius: Some(0.25), ..hits(bf16(slow(1, 31))) }, named("harp2"), 1000),
+    ];
+    for (config, link, count) in cases {
+        for shell in [Shell::Line, Shell::Spl2] {
+            let config = Config { shell, ..config.clone() };
+            let pairs: Vec<_> = match config.radius {
+                None => Set::Random(count).pairs(1),
+                // None of them touches: nothing is written.
+                Some(r) => vec![PairRecord::from_spheres([0.0, 0.0, 0.0, r], [9.0, 0.0, 0.0, r]); count as usize],
+            };
+            let what = format!("{} over {link}", config.flags().join(" "));
+            let bench = Bench::new(&config).expect("a model");
+            let verdict = bench.run(&pairs, &link, 1).unwrap_or_else(|error| panic!("{what}: {error}"));
+            good(&verdict, &what);
+
+            let afu = Afu::generate(Spec::from(config)).expect("an AFU");
+            let (said, layout) = (Capability::from_bits(afu.capability()), afu.layout());
+            let (reads, writes) = (layout.source_lines(count), layout.destination_lines(count));
+            let work = Work { pairs: count, reads, writes, watchdog: 0 };
+            let patience = match shell {
+                Shell::Spl2 => patience::spl2(&said, &link, &Spl2Model::default(), &work),
+                _ => patience::line(&said, &link, &work),
+            };
+            println!("{what}: {} cycles, {patience:?}", verdict.outcome.cycles);
+            let times = patience.whole as f64 / verdict.outcome.cycles as f64;
+            assert!((1.0..60.0).contains(&times), "{what}: {} cycles, {patience:?}", verdict.outcome.cycles);
+        }
     }
 }

@@ -4,6 +4,7 @@
 //! contacts come back, sieve and backlog stand before the packer.
 
 mod backlog;
+mod capability;
 mod collector;
 mod control;
 mod counter;
@@ -26,6 +27,7 @@ mod status;
 mod timing;
 mod top;
 
+pub use capability::Capability;
 pub use control::JobError;
 pub use files::FILE_LIST;
 pub use generate::{Afu, BuildError, top_name};

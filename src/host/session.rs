@@ -6,15 +6,12 @@ use super::transaction::{Pointed, Transaction};
 use super::transport::{Transport, TransportError};
 use super::workspace::{AFU_DSM, SPL_CONTEXT, SPL_DSM, Workspace};
 use crate::afu::spl2::map::{self, Csr, control, identity, status};
-use crate::afu::{Afu, BuildError, Layout, Spec};
+use crate::afu::{Afu, BuildError, Capability, Layout, Spec};
 use crate::config::Config;
 use crate::link::spl2::CsrOffset;
 use crate::link::{LINE_BYTES, Line};
+use crate::patience::{self, Work};
 
-/// Cycles that a device with everything it needs may take beyond the link's own patience.
-const PATIENCE_CYCLES: u64 = 20_000;
-/// Cycles a job may take for each that the link's limit says.
-const SLACK: f64 = 16.0;
 /// Cycles between two looks at memory.
 const POLL_CYCLES: u64 = 16;
 
@@ -69,7 +66,7 @@ pub struct Session<T: Transport> {
     pub(super) sequence: u32,
     /// Cycles without a response, with one owed, after which the AFU gives a job up; 0: never.
     pub watchdog: u32,
-    /// Cycles that a status may take; without it, what the link explains.
+    /// Cycles that a status may take; without it, what [`patience`](crate::patience) says.
     pub max_cycles: Option<u64>,
     pub(super) reports: Vec<Report>,
 }
@@ -116,10 +113,13 @@ impl<T: Transport> Session<T> {
         (first..first + lines).for_each(|line| self.transport.memory_mut().set(line, &[0; 16]));
     }
 
-    pub(super) fn patience(&self, lines_read: u64, lines_written: u64) -> u64 {
-        let link = self.transport.link();
-        let work = SLACK * link.limit_cycles(lines_read, lines_written);
-        PATIENCE_CYCLES + link.patience_cycles() + u64::from(self.watchdog) + work as u64
+    /// Cycles that so many pairs may take.
+    pub(super) fn patience(&self, pairs: u64) -> u64 {
+        let layout = self.workspace.layout();
+        let (reads, writes) = (layout.source_lines(pairs), layout.destination_lines(pairs));
+        let work = Work { pairs, reads, writes, watchdog: self.watchdog };
+        let afu = Capability::from_bits(self.expected.capability);
+        patience::spl2(&afu, self.transport.link(), &self.transport.spl2(), &work).whole
     }
 
     /// Resets SPL and AFU, gives them their memory, waits for the AFU to say who it is, enables it.
@@ -151,7 +151,7 @@ impl<T: Transport> Session<T> {
 
     /// Waits for an identity in a DSM.
     fn wait_for(&mut self, is_there: impl Fn(&Self) -> bool) -> Result<(), HostError> {
-        let (begun, patience) = (self.transport.cycle(), self.patience(0, 0));
+        let (begun, patience) = (self.transport.cycle(), self.patience(0));
         while !is_there(self) {
             let waited = self.transport.cycle() - begun;
             if waited > patience {

@@ -265,13 +265,11 @@ impl<'s, T: Transport> Transaction<'s, T, Running> {
     /// Step 5: waits for the status.
     ///
     /// # Errors
-    /// [`HostError::NoStatus`] when it does not come in as many cycles as the link could explain, or as
-    /// [`Session::max_cycles`] says; what the device did wrong.
+    /// [`HostError::NoStatus`] when it does not come in as many cycles as a right AFU needs at most
+    /// ([`patience`](crate::patience)), or as [`Session::max_cycles`] says; what the device did wrong.
     pub fn wait(self) -> Result<Transaction<'s, T, Done>, HostError> {
         let session = &mut *self.open.session;
-        let (layout, pairs) = (*session.workspace.layout(), u64::from(self.open.pairs));
-        let patience = session.patience(layout.source_lines(pairs), layout.destination_lines(pairs));
-        let patience = session.max_cycles.unwrap_or(patience);
+        let patience = session.max_cycles.unwrap_or_else(|| session.patience(self.open.pairs.into()));
         let (status, cycle) = session.wait_for_status(self.state.clock.logged, patience)?;
         Ok(self.to(|running| Done { clock: running.clock, status, cycle }))
     }

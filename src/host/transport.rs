@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::link::spl2::DeviceWrite;
+use crate::link::spl2::{DeviceWrite, Spl2Model};
 use crate::link::{LinkModel, Memory, Traffic};
 
 /// A device below SPL2, with the memory that it shares with the host.
@@ -36,6 +36,11 @@ pub trait Transport {
 
     /// The link between device and memory.
     fn link(&self) -> &LinkModel;
+
+    /// What SPL2 is like, which lies between device and link.
+    fn spl2(&self) -> Spl2Model {
+        Spl2Model::default()
+    }
 
     /// What went over it so far.
     fn traffic(&self) -> Traffic;

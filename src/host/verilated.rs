@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::transport::{Transport, TransportError};
 use crate::cosim::spl2::{Machine, MachineError};
-use crate::link::spl2::{DeviceWrite, Spl2Error};
+use crate::link::spl2::{DeviceWrite, Spl2Error, Spl2Model};
 use crate::link::{LinkModel, Memory, Traffic};
 
 impl From<MachineError> for TransportError {
@@ -47,6 +47,10 @@ impl Transport for Machine<'_> {
 
     fn link(&self) -> &LinkModel {
         self.spl().link().model()
+    }
+
+    fn spl2(&self) -> Spl2Model {
+        *self.spl().model()
     }
 
     fn traffic(&self) -> Traffic {

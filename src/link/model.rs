@@ -152,19 +152,6 @@ impl LinkModel {
         let alone = (read * self.read.cycles_per_read()).max(written * self.write.cycles_per_write());
         alone.max((read + written) / self.lines_per_cycle)
     }
-
-    /// The longest wait for one response that is no fault, in cycles; beyond it an AFU waits in vain. A generous bound:
-    /// a response may queue behind all others.
-    pub(crate) fn patience_cycles(&self) -> u64 {
-        let slowest = |d: &Direction| {
-            let each = u64::from(d.latency) + u64::from(d.tail) + u64::from(d.stragglers.cycles);
-            let spaced = (f64::from(d.in_flight) * d.cycles_per_write()).ceil() as u64;
-            each + 2 * spaced + 64 * u64::from(d.stalls.longest)
-        };
-        let together = f64::from(self.read.in_flight) + f64::from(self.write.in_flight);
-        let joint = (2.0 * together / self.lines_per_cycle).ceil() as u64;
-        2 * (slowest(&self.read).max(slowest(&self.write)) + joint)
-    }
 }
 
 impl Default for LinkModel {

@@ -7,7 +7,7 @@ use super::check::{Verdict, check};
 use super::error::VerifyError;
 use crate::afu::{Afu, FILE_LIST, Layout, Spec, top_name};
 use crate::config::{self, Config, Results, Shell};
-use crate::cosim::spl2::{Machine, MachineError, Place, Session};
+use crate::cosim::spl2::{Machine, Place, Session};
 use crate::cosim::{CosimError, Driver, File, Instance, Job, Model, Outcome, Source, Trace};
 use crate::host::lines;
 use crate::kernel::{PairRecord, Reference};
@@ -198,22 +198,7 @@ fn spl2(
     let mut machine = Machine::new(afu, Spl2::new(Spl2Model::default(), link, seed))?;
     let place = Place::for_lines(job.source.len() as u64, job.destination_lines);
     let mut session = Session::open(&mut machine, place, job.scpus)?;
-    session.start(job);
-    let patience = session.patience(job);
-    let mut waited = 0;
-    let status = loop {
-        match session.wait(PROGRESS_CYCLES.min(patience - waited)) {
-            Err(MachineError::NoStatus { cycles, in_flight }) => {
-                waited += cycles;
-                if waited >= patience {
-                    return Err(MachineError::NoStatus { cycles: waited, in_flight }.into());
-                }
-            }
-            ended => break ended?,
-        }
-        progress(session.machine().spl().link().traffic());
-    };
-    Ok(session.outcome(&status))
+    Ok(session.run_with(job, progress)?)
 }
 
 /// SHA-256 of the Verilog that would be generated for a configuration: [`Bench::rtl_sha256`] without a model.

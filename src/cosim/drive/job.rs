@@ -5,31 +5,13 @@ use std::ops::Range;
 use super::error::DriveError;
 use super::ports::Ports;
 use crate::afu::JobError;
-use crate::config::Results;
 use crate::link::{LINE_BYTES, Line, Link, Memory, Replies, Requests, Traffic};
+use crate::patience::{Patience, Work};
 
 /// Where sources lie unless the job says otherwise: a line address.
 const SOURCE: u64 = 0x1000;
 /// Where results go unless the job says otherwise; beyond every source.
 const DESTINATION: u64 = 1 << 40;
-
-/// What an AFU says of itself in its capability word.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Capability {
-    /// Sphere Collision Processing Units.
-    pub scpus: u32,
-    /// Cycles from one pair to the next in an SCPU.
-    pub interval: u32,
-    /// Which pairs come back.
-    pub results: Results,
-}
-
-impl Capability {
-    pub(super) fn from_bits(bits: u64) -> Self {
-        let results = if bits >> 24 & 1 == 1 { Results::Hits } else { Results::All };
-        Self { scpus: (bits & 0xff) as u32, interval: (bits >> 8 & 0xff) as u32, results }
-    }
-}
 
 /// A job for an AFU.
 #[derive(Clone, Debug)]
@@ -53,7 +35,8 @@ pub struct Job<'a> {
     pub watchdog: u32,
     /// SCPUs that the AFU must have.
     pub scpus: Option<u32>,
-    /// Cycles after which the job has failed even if something still moves.
+    /// Cycles after which the job has failed even if something still moves; without it, what [`patience`](crate::patience)
+    /// says.
     pub max_cycles: Option<u64>,
 }
 
@@ -72,6 +55,12 @@ impl<'a> Job<'a> {
             scpus: None,
             max_cycles: None,
         }
+    }
+
+    /// What of it takes time.
+    pub fn work(&self) -> Work {
+        let (pairs, reads) = (self.pairs.into(), self.source.len() as u64);
+        Work { pairs, reads, writes: self.destination_lines, watchdog: self.watchdog }
     }
 
     fn source_range(&self) -> Range<u64> {
@@ -168,26 +157,24 @@ impl Outcome {
 pub(super) struct Running {
     destination: Range<u64>,
     hits_per_line: Option<u32>,
-    /// Cycles without a sign of life after which it is given up.
-    pub(super) patience: u64,
-    pub(super) max_cycles: Option<u64>,
+    patience: Patience,
     pub(super) started: u64,
     /// The link's traffic at the start.
     pub(super) traffic: Traffic,
     /// The last cycle in which a request was accepted or answered.
-    pub(super) last_sign: u64,
+    last_sign: u64,
     first_data: Option<u64>,
     first_write: Option<u64>,
     write_cycles: Vec<Option<u64>>,
 }
 
 impl Running {
-    pub(super) fn new(job: &Job, patience: u64, cycle: u64, traffic: Traffic) -> Self {
+    pub(super) fn new(job: &Job, patience: Patience, cycle: u64, traffic: Traffic) -> Self {
+        let whole = job.max_cycles.unwrap_or(patience.whole);
         Self {
             destination: job.destination_range(),
             hits_per_line: job.hits_per_line,
-            patience,
-            max_cycles: job.max_cycles,
+            patience: Patience { whole, ..patience },
             started: cycle,
             traffic,
             last_sign: cycle,
@@ -195,6 +182,11 @@ impl Running {
             first_write: None,
             write_cycles: vec![None; usize::try_from(job.destination_lines).unwrap_or(0)],
         }
+    }
+
+    /// Whether it has taken longer than a right AFU would.
+    pub(super) fn is_overdue(&self, cycle: u64) -> bool {
+        cycle - self.started > self.patience.whole || cycle - self.last_sign > self.patience.quiet
     }
 
     /// The first line address that a job with so many contacts must leave unwritten.

@@ -9,20 +9,20 @@ mod monitor;
 mod ports;
 
 pub use error::{DriveError, Waiting};
-pub use job::{Capability, Job, Outcome};
+pub use job::{Job, Outcome};
 pub use monitor::ProtocolError;
 
 use super::instance::{Clock, Instance};
+use crate::afu::Capability;
 use crate::config::Results;
 use crate::link::{Link, Traffic};
+use crate::patience;
 use job::Running;
 use monitor::Monitor;
 use ports::Ports;
 
 /// Cycles that reset is held.
 const RESET_CYCLES: u64 = 4;
-/// Cycles that an AFU with everything it needs may take without a sign: far more than any pipeline is deep.
-const PATIENCE_CYCLES: u64 = 20_000;
 
 /// A host with one AFU at the other end of a link.
 #[derive(Debug)]
@@ -107,7 +107,8 @@ impl<'a> Driver<'a> {
     /// # Errors
     /// When the AFU is not the one that was expected or is busy, or as in [`Driver::step`].
     pub fn start(&mut self, job: &Job) -> Result<(), DriveError> {
-        let Capability { scpus: found, results, .. } = self.capability();
+        let afu = self.capability();
+        let Capability { scpus: found, results, .. } = afu;
         if let Some(expected) = job.scpus.filter(|&expected| expected != found) {
             return Err(DriveError::Scpus { expected, found });
         }
@@ -123,7 +124,7 @@ impl<'a> Driver<'a> {
         self.epoch = (self.epoch + 1) % 16;
         self.ports.start(job, self.epoch);
         self.monitor.begin(self.epoch);
-        let patience = PATIENCE_CYCLES + self.link.model().patience_cycles() + u64::from(job.watchdog);
+        let patience = patience::line(&afu, self.link.model(), &job.work());
         self.running = Some(Running::new(job, patience, self.cycle, self.link.traffic()));
         self.cycle_once()?;
         self.ports.started();
@@ -133,7 +134,7 @@ impl<'a> Driver<'a> {
     /// One cycle; whether the job is done.
     ///
     /// # Errors
-    /// When the AFU breaks the protocol, gives no sign of life for longer than the link could explain, or ends itself.
+    /// When the AFU breaks the protocol, takes longer than a right one would ([`patience`]), or ends itself.
     pub fn step(&mut self) -> Result<bool, DriveError> {
         if self.ports.is_done() {
             let (error, contacts) = (self.ports.error(), self.ports.counters().contacts);
@@ -143,10 +144,8 @@ impl<'a> Driver<'a> {
         }
         self.cycle_once()?;
         let Some(running) = &self.running else { return Ok(true) };
-        let quiet = self.cycle - running.last_sign;
-        let cycles = self.cycle - running.started;
-        if quiet > running.patience || running.max_cycles.is_some_and(|most| cycles > most) {
-            return Err(self.timed_out(cycles));
+        if running.is_overdue(self.cycle) {
+            return Err(self.timed_out(self.cycle - running.started));
         }
         Ok(false)
     }

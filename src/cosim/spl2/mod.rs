@@ -12,7 +12,7 @@ pub use session::{Place, Session, Status};
 
 use super::instance::{Clock, Instance};
 use crate::afu::spl2::map;
-use crate::link::spl2::{DeviceWrite, Spl2, Transmit};
+use crate::link::spl2::{DeviceWrite, Header, Spl2, Transmit};
 use crate::link::{LINE_BYTES, Memory};
 use ports::Ports;
 
@@ -28,6 +28,10 @@ pub struct Machine<'a> {
     cycle: u64,
     /// The high half of a CSR that is yet to be committed.
     high: u32,
+    /// The line that the AFU asked for last.
+    last_read: Option<u64>,
+    /// The cycle of its last request that was no poll.
+    last_work: u64,
 }
 
 impl<'a> Machine<'a> {
@@ -37,7 +41,7 @@ impl<'a> Machine<'a> {
     /// When a port is missing, or the module ends itself.
     pub fn new(afu: &'a Instance, spl: Spl2) -> Result<Self, MachineError> {
         let (clock, ports) = (afu.clock("clk")?, Ports::new(afu)?);
-        let mut machine = Self { clock, ports, spl, cycle: 0, high: 0 };
+        let mut machine = Self { clock, ports, spl, cycle: 0, high: 0, last_read: None, last_work: 0 };
         machine.system_reset()?;
         Ok(machine)
     }
@@ -88,10 +92,24 @@ impl<'a> Machine<'a> {
     fn one_cycle(&mut self, transmit: &Transmit) -> Result<(), MachineError> {
         let received = self.spl.cycle(transmit);
         let receive = received.map_err(|what| MachineError::Protocol { cycle: self.cycle, what })?;
+        self.note(transmit);
         self.ports.receive(&receive);
         self.clock.tick(1)?;
         self.cycle += 1;
         Ok(())
+    }
+
+    /// A poll asks for the line that was asked for before it.
+    fn note(&mut self, transmit: &Transmit) {
+        let line = transmit.read.map(|header| Header::from_bits(header).line);
+        if transmit.write.is_some() || line.is_some_and(|line| self.last_read.replace(line) != Some(line)) {
+            self.last_work = self.cycle;
+        }
+    }
+
+    /// The cycle of the AFU's last request that was no poll: a write, or a read of another line than the one before.
+    pub fn last_work(&self) -> u64 {
+        self.last_work
     }
 
     /// Cycles so far.

@@ -1,10 +1,12 @@
 //! A small host: lays out a workspace, starts the AFU, runs jobs one after another.
 
 use super::{Machine, MachineError};
+use crate::afu::Capability;
 use crate::afu::spl2::map::{self, Field, control, identity, latency, performance, pointers, status};
 use crate::cosim::drive::{Job, Outcome};
 use crate::link::spl2::{CsrOffset, Limits, MAX_PAGES, PAGE_BYTES};
-use crate::link::{LINE_BYTES, Line};
+use crate::link::{LINE_BYTES, Line, Traffic};
+use crate::patience::{self, Patience, Work};
 
 /// Physical byte addresses of what is not in the workspace.
 const SPL_DSM: u64 = 0x1000;
@@ -18,10 +20,8 @@ const WORKSPACE: u64 = 0x0000_7F12_3460_0000;
 const PAGE_LINES: u64 = PAGE_BYTES / LINE_BYTES;
 /// Lines of the context at the beginning of the workspace.
 const CONTEXT_LINES: u64 = 2;
-/// Cycles that AFU_ID may take beyond the link's patience.
-const PATIENCE_CYCLES: u64 = 20_000;
-/// Cycles a job may take for each that the link's limit says.
-const SLACK: f64 = 16.0;
+/// Cycles between two calls for progress.
+const PROGRESS_CYCLES: u64 = 4096;
 
 /// Where the buffers of a session lie in its workspace, in lines from its beginning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,6 +74,7 @@ pub struct Status {
 #[derive(Debug)]
 pub struct Session<'m, 'a> {
     machine: &'m mut Machine<'a>,
+    afu: Capability,
     place: Place,
     sequence: u32,
     /// Of the running job: the cycle of the start word, the link's traffic then, device writes then.
@@ -100,11 +101,12 @@ impl<'m, 'a> Session<'m, 'a> {
         pointer(machine, CsrOffset::DsmHigh as u32, CsrOffset::DsmLow as u32, SPL_DSM)?;
         zero(machine, AFU_DSM, map::DSM_BYTES / LINE_BYTES);
         pointer(machine, map::DSM_BASE_HIGH.offset, map::DSM_BASE_LOW.offset, AFU_DSM)?;
-        wait_for_identity(machine, scpus)?;
+        let afu = wait_for_identity(machine, scpus)?;
 
         let machine_cycle = machine.cycle() as u32;
         let mut session = Self {
             machine,
+            afu,
             place,
             // Late writes of an earlier session's job must not look like this one's.
             sequence: machine_cycle,
@@ -234,22 +236,42 @@ impl<'m, 'a> Session<'m, 'a> {
         Err(MachineError::NoStatus { cycles, in_flight: self.machine.spl().in_flight() })
     }
 
-    /// Cycles in which a job of this size ends if it ends.
-    pub fn patience(&self, job: &Job) -> u64 {
-        let model = self.machine.spl().link().model();
-        let limit = model.limit_cycles(job.source.len() as u64, job.destination_lines);
-        PATIENCE_CYCLES + model.patience_cycles() + u64::from(job.watchdog) + (SLACK * limit) as u64
+    /// How long a job may take.
+    pub fn patience(&self, job: &Job) -> Patience {
+        let spl = self.machine.spl();
+        let patience = patience::spl2(&self.afu, spl.link().model(), spl.model(), &job.work());
+        Patience { whole: job.max_cycles.unwrap_or(patience.whole), ..patience }
     }
 
     /// Runs a job to its end.
     ///
     /// # Errors
-    /// As [`Session::wait`].
+    /// When its status does not come in time ([`patience`]), or the AFU breaks the protocol.
     pub fn run(&mut self, job: &Job) -> Result<Outcome, MachineError> {
+        self.run_with(job, &mut |_| {})
+    }
+
+    /// [`Session::run`] that tells, now and then, what went over the link since the machine began.
+    ///
+    /// # Errors
+    /// As `run`.
+    pub fn run_with(&mut self, job: &Job, progress: &mut dyn FnMut(Traffic)) -> Result<Outcome, MachineError> {
         self.start(job);
-        let cycles = job.max_cycles.unwrap_or_else(|| self.patience(job));
-        let status = self.wait(cycles)?;
-        Ok(self.outcome(&status))
+        let patience = self.patience(job);
+        loop {
+            if let Some(status) = self.status() {
+                return Ok(self.outcome(&status));
+            }
+            let cycles = self.machine.cycle() - self.started;
+            let quiet = self.machine.cycle() - self.machine.last_work().max(self.started);
+            if cycles > patience.whole || quiet > patience.quiet {
+                return Err(MachineError::NoStatus { cycles, in_flight: self.machine.spl().in_flight() });
+            }
+            self.machine.advance(1)?;
+            if self.machine.cycle().is_multiple_of(PROGRESS_CYCLES) {
+                progress(self.machine.spl().link().traffic());
+            }
+        }
     }
 
     /// What came of the job whose status this is. Bytes count all that went over the link since the start word.
@@ -299,8 +321,9 @@ fn pointer(machine: &mut Machine, high: u32, low: u32, address: u64) -> Result<(
     machine.write_csr(low, address as u32)
 }
 
-fn wait_for_identity(machine: &mut Machine, scpus: Option<u32>) -> Result<(), MachineError> {
-    let cycles = PATIENCE_CYCLES + machine.spl().link().model().patience_cycles();
+fn wait_for_identity(machine: &mut Machine, scpus: Option<u32>) -> Result<Capability, MachineError> {
+    let spl = machine.spl();
+    let cycles = patience::spl2(&Capability::from_bits(0), spl.link().model(), spl.model(), &Work::default()).whole;
     let line_at = AFU_DSM / LINE_BYTES + u64::from(map::IDENTITY_LINE);
     for _ in 0..cycles {
         let line = machine.memory().get(line_at).copied().unwrap_or_default();
@@ -309,10 +332,10 @@ fn wait_for_identity(machine: &mut Machine, scpus: Option<u32>) -> Result<(), Ma
             if (afu_id, version) != (map::AFU_ID, map::VERSION) {
                 return Err(MachineError::Identity { afu_id, version });
             }
-            let found = (identity::CAPABILITY.get(&line) & 0xff) as u32;
-            return match scpus.filter(|&expected| expected != found) {
-                Some(expected) => Err(MachineError::Scpus { expected, found }),
-                None => Ok(()),
+            let afu = Capability::from_bits(identity::CAPABILITY.get(&line) as u64);
+            return match scpus.filter(|&expected| expected != afu.scpus) {
+                Some(expected) => Err(MachineError::Scpus { expected, found: afu.scpus }),
+                None => Ok(afu),
             };
         }
         machine.advance(1)?;
