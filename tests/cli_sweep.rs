@@ -39,6 +39,23 @@ fn a_sweep_has_a_row_for_each_size_and_is_resumed() {
 
     let csv = fs::read_to_string(room.path().join("out/sweep.csv")).expect("written");
     assert!(csv.starts_with("scpus,interval,pairs,") && csv.lines().count() == 3, "{csv}");
+
+    let manifest = || fs::read(room.path().join("out/manifest.json")).expect("written");
+    let before = manifest();
+    let read: Value = serde_json::from_slice(&before).expect("JSON");
+    assert_eq!(read["swept"], serde_json::json!({"scpus": [1, 2], "interval": [1]}));
+    for (arguments, words) in [
+        (["--scpus", "1,2", "--pairs", "random:1000"], "holds a sweep of diamond:5, not random:1000"),
+        (["--scpus", "1", "--pairs", "diamond:5"], "rows that are not asked for now (SCPUs: 2 at interval 1)"),
+    ] {
+        let refused = afu(room.path(), &[&["sweep", "--out", "out"][..], &arguments].concat()).code(2);
+        let said = String::from_utf8(refused.get_output().stderr.clone()).expect("UTF-8");
+        assert!(said.contains(words) && said.contains("--force") && said.lines().count() == 1, "{said}");
+        assert_eq!(manifest(), before, "it goes no further");
+    }
+    afu(room.path(), &["sweep", "--scpus", "1", "--pairs", "random:1000", "--out", "out", "--force"]).success();
+    let forced: Value = serde_json::from_slice(&manifest()).expect("JSON");
+    assert_eq!((&forced["pairs"], &forced["rows"][0]["pairs"]), (&"random:1000".into(), &1000.into()));
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use contact_afu::config::Config;
-use contact_afu::sweep::{Record, RecordError, SweepError, Task, fill, fingerprint};
+use contact_afu::sweep::{Record, RecordError, SweepError, Swept, Task, fill};
 
 use super::failure::{Failure, Kind};
 use super::list::List;
@@ -14,7 +14,8 @@ use super::{link, output, progress};
 /// Run the same job on AFUs of different sizes and compare them
 ///
 /// For each: pairs a second at the clock, cycles a pair, latency, mismatches, seconds to build its model from nothing
-/// and to simulate. Rows are written as they come; the same command again resumes.
+/// and to simulate. Rows are written as they come; the same command again resumes, with more SCPUs or intervals if the
+/// lists are longer.
 #[derive(Args, Debug)]
 pub struct Sweep {
     /// Numbers of SCPUs: 1,2,4 or 1..16 (16 included)
@@ -35,7 +36,8 @@ pub struct Sweep {
     /// Folder to write: manifest.json (JSON of all) and sweep.csv
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Write into the folder even if afu did not make it; other files in it are left alone
+    /// Write into the folder even if afu did not make it, or if it holds another sweep, whose rows are replaced; other
+    /// files in it are left alone
     #[arg(long)]
     force: bool,
     /// Write the figures as JSON too (schema contact-afu/sweep/1); - is standard output
@@ -55,7 +57,8 @@ pub fn run(options: &Sweep) -> Result<(), Failure> {
     let link = link::read(&options.link, base.clock_mhz)?;
     let pairs = super::pairs::load(&options.pairs, options.seed)?;
     let task = Task { pairs: &pairs, link: &link, seed: options.seed, counts: options.synth };
-    let mut record = Record::new(&options.pairs, fingerprint(&pairs), &options.link, options.seed, &base);
+    let swept = Swept { scpus: options.scpus.0.clone(), interval: options.interval.0.clone() };
+    let mut record = Record::new(&options.pairs, &options.link, &task, &base, swept);
     let bar = progress::spinner("");
     let resumed = fill(&mut record, &configs, &task, &options.out, options.force, |config| {
         bar.set_message(format!(
@@ -103,6 +106,7 @@ impl From<SweepError> for Failure {
             SweepError::Verify(error) => error.into(),
             SweepError::Synth(error) => error.into(),
             SweepError::Record(RecordError::Folder(error)) => error.into(),
+            SweepError::Record(RecordError::Other { .. }) => Self::caused(Kind::Usage, error),
             SweepError::Record(_) | SweepError::Cache(_) => Self::caused(Kind::Other, error),
         }
     }

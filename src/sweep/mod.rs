@@ -3,7 +3,7 @@
 mod record;
 mod row;
 
-pub use record::{Record, RecordError, SCHEMA};
+pub use record::{Record, RecordError, SCHEMA, Swept};
 pub use row::Row;
 
 use std::path::Path;
@@ -34,8 +34,7 @@ pub struct Task<'a> {
 /// others measured now. The folder is written after each. Says how many rows are of an earlier run.
 ///
 /// # Errors
-/// As [`Bench::new`] and [`Bench::run`]; when the folder is not ours (`force` takes it all the same) or cannot be
-/// written.
+/// As [`Bench::new`] and [`Bench::run`]; as [`Record::earlier`]; if the folder cannot be written.
 pub fn fill(
     record: &mut Record,
     configs: &[Config],
@@ -86,10 +85,12 @@ fn measure(config: &Config, task: &Task) -> Result<Row, SweepError> {
 }
 
 /// SHA-256 of pairs, in hex: whether a file or a set is still what it was.
-pub fn fingerprint(pairs: &[PairRecord]) -> String {
-    let mut hash = Sha256::new();
-    pairs.iter().flat_map(|pair| pair.0).for_each(|word| hash.update(word.to_le_bytes()));
-    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+fn fingerprint(pairs: &[PairRecord]) -> String {
+    sha256(&pairs.iter().flat_map(|pair| pair.0).flat_map(u32::to_le_bytes).collect::<Vec<_>>())
+}
+
+fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// Why a sweep did not come to its end.

@@ -149,6 +149,13 @@ fn of_users(room: &Path) -> Vec<Kind> {
     ]
 }
 
+/// A sweep without rows.
+fn swept() -> sweep::Record {
+    let task = sweep::Task { pairs: &[], link: &LinkModel::ideal(), seed: 1, counts: false };
+    let swept = sweep::Swept { scpus: vec![1], interval: vec![1] };
+    sweep::Record::new("random:5", "ideal", &task, &Config::default(), swept)
+}
+
 /// What the program wrote and reads again: manifests, chosen configurations, studies to be resumed, figures.
 fn of_the_program() -> Vec<Kind> {
     let profile = |name: &str| name.parse::<Profile>().unwrap();
@@ -170,7 +177,6 @@ fn of_the_program() -> Vec<Kind> {
     figures.as_object_mut().unwrap().extend(area.as_object().unwrap().clone());
     let text = |value: &Value| serde_json::to_vec(value).unwrap();
     let hard = accuracy::Record::new(Task { pairs: 0, seed: 1 }, &["somebody"]);
-    let swept = sweep::Record::new("random:5", "0".repeat(64), "ideal", 1, &Config::default());
     vec![
         Kind {
             name: "manifest.json",
@@ -204,11 +210,8 @@ fn of_the_program() -> Vec<Kind> {
         Kind {
             name: "sweep/manifest.json",
             form: Form::Json,
-            seeds: vec![serde_json::to_vec(&swept).unwrap()],
-            read: |path| {
-                let record = sweep::Record::new("random:5", "0".repeat(64), "ideal", 1, &Config::default());
-                record.earlier(path.parent().unwrap(), false).is_ok()
-            },
+            seeds: vec![serde_json::to_vec(&swept()).unwrap()],
+            read: |path| swept().earlier(path.parent().unwrap(), false).is_ok(),
         },
         Kind {
             name: "synth.json",
