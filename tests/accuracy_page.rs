@@ -6,6 +6,7 @@ mod browser;
 
 use assert_cmd::Command;
 use contact_afu::accuracy::trade::{Bounds, Results, Time, choose, committed, front, page, steps, write};
+use contact_afu::afu::{Afu, Spec};
 use contact_afu::config;
 use std::fs;
 
@@ -143,21 +144,35 @@ fn a_choice_meets_its_bounds_and_is_the_cheapest() {
 fn choose_writes_what_config_reads() {
     let room = tempfile::tempdir().expect("a temporary folder");
     let file = room.path().join("chosen.json");
-    let afu = |arguments: &[&str]| {
+    let afu_choose = |arguments: &[&str]| {
         let mut command = Command::cargo_bin("afu").expect("the program");
         command.arg("choose").args(arguments).assert()
     };
     let out = file.to_str().expect("a path");
-    let told = afu(&["--max-error", "1e-6", "--max-bad", "0", "--max-luts", "100000", "--out", out]).success();
+    let told = afu_choose(&["--max-error", "1e-6", "--max-bad", "0", "--max-luts", "100000", "--out", out]).success();
     let text = String::from_utf8_lossy(&told.get_output().stdout).into_owned();
     assert!(text.contains("LUTs") && text.contains("afu accuracy "), "{text}");
     let config = config::read(&file).expect("a configuration");
     assert!(text.starts_with(&config.profile.to_string()), "{text}");
     config.check().expect("one that can be generated");
+    // The stages that were routed, at the clock that the router reached.
+    let results = results();
+    let name = text.split(':').next().expect("a name");
+    let point = results.point(name).expect("the point that it names");
+    let routed = point.routed_mhz().expect("a routed one");
+    assert!((0.0..0.01).contains(&(routed - config.clock_mhz)) && config.clock_mhz < 200.0, "{routed}: {config:?}");
+    let afu = Afu::generate(Spec::from(config)).expect("an AFU");
+    assert_eq!(afu.kernel().latency, point.scpu_cycles);
 
-    let told = afu(&["--max-error", "1e-12"]).code(1);
+    let told = afu_choose(&[]).code(2);
+    let text = String::from_utf8_lossy(&told.get_output().stderr).into_owned();
+    for bound in ["--max-error", "--max-ns", "--max-luts", "--max-bad"] {
+        assert!(text.contains(bound) && text.lines().count() == 1, "{text}");
+    }
+
+    let told = afu_choose(&["--max-error", "1e-12"]).code(1);
     let text = String::from_utf8_lossy(&told.get_output().stderr).into_owned();
     assert!(text.contains("nothing meets these bounds") && text.contains("would do"), "{text}");
-    afu(&["--max-error", "-1"]).code(2);
-    afu(&["--from", out]).code(2);
+    afu_choose(&["--max-error", "-1"]).code(2);
+    afu_choose(&["--max-error", "1", "--from", out]).code(2);
 }

@@ -49,18 +49,19 @@ impl Afu {
         1000.0 / self.spec().config.clock_mhz
     }
 
+    fn clock_comment(&self) -> String {
+        match self.spec().config.cut_mhz {
+            None => "# The clock that the stages were cut for.".to_owned(),
+            Some(cut) => format!("# The clock to run at; the stages were cut for {cut} MHz."),
+        }
+    }
+
     fn sdc(&self) -> String {
-        format!(
-            "# The clock that the stages were cut for.\ncreate_clock -name clk -period {:.3} [get_ports clk]\n",
-            self.period_ns()
-        )
+        format!("{}\ncreate_clock -name clk -period {:.3} [get_ports clk]\n", self.clock_comment(), self.period_ns())
     }
 
     fn xdc(&self) -> String {
-        format!(
-            "# The clock that the stages were cut for.\ncreate_clock -period {:.3} -name clk [get_ports clk]\n",
-            self.period_ns()
-        )
+        format!("{}\ncreate_clock -period {:.3} -name clk [get_ports clk]\n", self.clock_comment(), self.period_ns())
     }
 
     fn all_ports(&self) -> Vec<(bool, u32, String)> {

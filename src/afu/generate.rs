@@ -51,7 +51,7 @@ impl Afu {
             record: spec.config.profile.arithmetic().record(spec.config.record.format()),
             fields: spec.config.contact,
             radius: spec.config.radius.map(|radius| spec.config.record.round(radius)),
-            clock_mhz: spec.config.clock_mhz,
+            clock_mhz: spec.config.cut_mhz(),
             interval: spec.config.interval,
             valid_is_late: spec.config.interval <= 1,
             model: spec.model(),
@@ -137,7 +137,7 @@ impl Afu {
                 config.profile.format(),
                 config.interval,
                 config.contact,
-                config.clock_mhz
+                config.cut_mhz()
             ),
         ]
     }

@@ -14,8 +14,9 @@ use super::output;
 /// Name the cheapest configuration that meets bounds, from the results of `afu accuracy --out`
 ///
 /// The cheapest has the fewest LUTs, of those that were placed and routed where any was; where no cells were counted,
-/// it has the least time. Where nothing meets the bounds, it
-/// says what it would take, bound by bound, and ends with status 1.
+/// it has the least time. At least one bound is needed. Where nothing meets the bounds, it says what it would take,
+/// bound by bound, and ends with status 1. The configuration's clock is the one that the router reached for stages that
+/// were cut for a higher one (--clock and --cut-for).
 #[derive(Args, Debug)]
 pub struct Choose {
     /// Largest relative error on the scenes, at most
@@ -63,6 +64,12 @@ fn at_least_zero(text: &str) -> Result<f64, String> {
 }
 
 pub fn run(options: &Choose) -> Result<(), Failure> {
+    let bounds = Bounds { error: options.max_error, ns: options.max_ns, luts: options.max_luts, bad: options.max_bad };
+    if bounds == Bounds::default() {
+        let message =
+            "nothing to choose by: give at least one bound, of --max-error, --max-ns, --max-luts and --max-bad";
+        return Err(Failure::new(Kind::Usage, message));
+    }
     let results = options.results()?;
     let time = match options.time {
         Which::Lone => Time::Lone,
@@ -74,7 +81,6 @@ pub fn run(options: &Choose) -> Result<(), Failure> {
                        or the full study counts cells";
         return Err(Failure::new(Kind::Usage, message.to_owned()));
     }
-    let bounds = Bounds { error: options.max_error, ns: options.max_ns, luts: options.max_luts, bad: options.max_bad };
     let routed = if results.comparable().any(|point| point.routed_mhz().is_some()) { "placed and routed " } else { "" };
     let count = results.comparable().count();
     let of = format!("of {count} {routed}configurations, {}: {}", results.date, results.command);

@@ -52,9 +52,12 @@ pub struct Machine {
     /// What stands around the AFU's line port: spl2 (Intel HARP v1), line (nothing) [default: spl2]
     #[arg(long, value_name = "SHELL")]
     pub shell: Option<Shell>,
-    /// Clock that pipelines are cut for and time is told in, MHz [default: 200]
+    /// Clock to run at, MHz: pipelines are cut for it, and time is told in it [default: 200]
     #[arg(long, value_name = "MHZ")]
     pub clock: Option<f64>,
+    /// Cut pipelines for this clock instead, MHz: a router may reach less than they were cut for [default: --clock]
+    #[arg(long, value_name = "MHZ")]
+    pub cut_for: Option<f64>,
     /// FPGA family that the Verilog is for: ecp5 or ice40, and for synth also cyclonev or xilinx; only for rtl and
     /// synth [default: any; of synth ecp5]
     #[arg(long, value_name = "NAME")]
@@ -110,7 +113,11 @@ impl Machine {
         set(&mut config.record, &self.record);
         set(&mut config.multipliers, &self.multipliers);
         set(&mut config.shell, &self.shell);
-        set(&mut config.clock_mhz, &self.clock);
+        if let Some(clock) = self.clock {
+            // A file's stages are of the file's clock.
+            (config.clock_mhz, config.cut_mhz) = (clock, None);
+        }
+        config.cut_mhz = self.cut_for.or(config.cut_mhz);
         Ok(config)
     }
 }
@@ -184,6 +191,7 @@ impl One {
             ("--multipliers", m.multipliers.is_some()),
             ("--shell", m.shell.is_some()),
             ("--clock", m.clock.is_some()),
+            ("--cut-for", m.cut_for.is_some()),
             ("--target", m.target.is_some()),
             ("--config", m.config.is_some()),
         ];

@@ -51,8 +51,11 @@ pub struct Config {
     pub multipliers: Multipliers,
     /// The shell around the line port.
     pub shell: Shell,
-    /// The clock that stages are cut for, in MHz; simulated time is told in it.
+    /// The clock, in MHz: simulated time is told in it, and stages are cut for it unless `cut_mhz` says another.
     pub clock_mhz: f64,
+    /// The clock that stages are cut for, in MHz, where it is another than the AFU runs at: a router reached less, say.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cut_mhz: Option<f64>,
 }
 
 impl Default for Config {
@@ -69,6 +72,7 @@ impl Default for Config {
             multipliers: Multipliers::Use,
             shell: Shell::Spl2,
             clock_mhz: 200.0,
+            cut_mhz: None,
         }
     }
 }
@@ -130,8 +134,9 @@ impl Config {
         if !INTERVALS.contains(&self.interval) {
             return Err(Error::Interval(self.interval));
         }
-        if !(1.0..=2000.0).contains(&self.clock_mhz) {
-            return Err(Error::Clock(self.clock_mhz));
+        let clocks = [self.clock_mhz, self.cut_mhz()];
+        if let Some(clock) = clocks.into_iter().find(|clock| !(1.0..=2000.0).contains(clock)) {
+            return Err(Error::Clock(clock));
         }
         if self.profile.is_exact() && self.contact == Fields::HIT {
             return Err(Error::ExactHit);
@@ -169,6 +174,11 @@ impl Config {
         self.profile.reference(self.contact).with_record(self.record.format())
     }
 
+    /// The clock that stages are cut for, in MHz.
+    pub fn cut_mhz(&self) -> f64 {
+        self.cut_mhz.unwrap_or(self.clock_mhz)
+    }
+
     /// One clock cycle, in nanoseconds.
     pub fn cycle_ns(&self) -> f64 {
         1000.0 / self.clock_mhz
@@ -186,6 +196,7 @@ impl Config {
     pub fn flags(&self) -> Vec<String> {
         let default = Self::default();
         let radius = |config: &Self| config.radius.map_or(String::new(), |radius| radius.to_string());
+        let cut = |config: &Self| config.cut_mhz.map_or(String::new(), |clock| clock.to_string());
         let pairs = [
             ("--scpus", self.scpus.to_string(), default.scpus.to_string()),
             ("--interval", self.interval.to_string(), String::new()),
@@ -198,6 +209,7 @@ impl Config {
             ("--multipliers", self.multipliers.to_string(), default.multipliers.to_string()),
             ("--shell", self.shell.to_string(), default.shell.to_string()),
             ("--clock", self.clock_mhz.to_string(), default.clock_mhz.to_string()),
+            ("--cut-for", cut(self), cut(&default)),
         ];
         let differing = pairs.into_iter().filter(|(_, mine, default)| mine != default);
         differing.flat_map(|(flag, mine, _)| [flag.to_owned(), mine]).collect()
@@ -226,7 +238,8 @@ mod tests {
 
     #[test]
     fn json_keeps_a_configuration() {
-        let config = Config { scpus: 3, contact: Fields::HIT, clock_mhz: 312.5, ..Config::default() };
+        let config =
+            Config { scpus: 3, contact: Fields::HIT, clock_mhz: 312.5, cut_mhz: Some(350.0), ..Config::default() };
         let json = serde_json::to_string(&config).expect("plain values");
         assert_eq!(serde_json::from_str::<Config>(&json).expect("as written"), config);
         assert_eq!(serde_json::from_str::<Config>("{}").expect("all defaults"), Config::default());
@@ -241,6 +254,8 @@ mod tests {
         assert_eq!(config.flags(), ["--scpus", "3", "--interval", "1", "--profile", "paper"]);
         let sparing = Config { multipliers: Multipliers::Spare, ..Config::default() };
         assert_eq!(sparing.flags(), ["--interval", "1", "--multipliers", "spare"]);
+        let reached = Config { clock_mhz: 169.1, cut_mhz: Some(200.0), ..Config::default() };
+        assert_eq!(reached.flags(), ["--interval", "1", "--clock", "169.1", "--cut-for", "200"]);
     }
 
     #[test]
@@ -250,6 +265,7 @@ mod tests {
             (Config { scpus: 0, ..Config::default() }, "0 SCPUs"),
             (Config { scpus: 65, ..Config::default() }, "65 SCPUs"),
             (Config { clock_mhz: f64::NAN, ..Config::default() }, "clock NaN"),
+            (Config { cut_mhz: Some(0.5), ..Config::default() }, "clock 0.5"),
             (Config { interval: 0, ..Config::default() }, "interval 0"),
             (Config { interval: 65, ..Config::default() }, "interval 65"),
             (

@@ -101,11 +101,15 @@ pub fn choose<'a>(results: &'a Results, bounds: &Bounds, time: Time) -> Result<&
     })
 }
 
-/// The configuration to build of a point: its arithmetic and clock, with the default shell; one SCPU, or, where the
-/// time is a full device's, as many as it holds.
+/// The configuration to build of a point: its arithmetic, with the default shell; one SCPU, or, where the time is a
+/// full device's, as many as it holds. Its stages are cut as the point's were, and its clock is the one that its times
+/// are of: the router's, rounded down, or the delay model's if nothing was routed.
 pub fn to_build(results: &Results, point: &Point, time: Time) -> Config {
     let default = Config::default();
     let full = point.on_device(results.target).unwrap_or(1).clamp((*SCPUS.start()).into(), (*SCPUS.end()).into());
     let scpus = if time == Time::Device { full as u32 } else { point.config.scpus };
-    Config { scpus, shell: default.shell, ..point.config.clone() }
+    let clock_mhz = (100.0 * point.clock_mhz()).floor() / 100.0;
+    let cut = point.config.cut_mhz();
+    let cut_mhz = Some(cut).filter(|cut| *cut != clock_mhz);
+    Config { scpus, shell: default.shell, clock_mhz, cut_mhz, ..point.config.clone() }
 }

@@ -35,8 +35,8 @@ pub struct Job<'a> {
     pub watchdog: u32,
     /// SCPUs that the AFU must have.
     pub scpus: Option<u32>,
-    /// Cycles after which the job has failed even if something still moves; without it, what [`patience`](crate::patience)
-    /// says.
+    /// Cycles after which the job has failed even if something still moves; without it, what
+    /// [`patience`](crate::patience) says.
     pub max_cycles: Option<u64>,
 }
 
