@@ -5,12 +5,10 @@
 
 use std::fs;
 
-use contact_afu::afu::{Afu, Spec};
 use contact_afu::config::{Config, Shell};
 use contact_afu::link::Description;
-use contact_afu::pairs::Set;
-use contact_afu::report::table;
-use contact_afu::verify::{Bench, account};
+use contact_afu::report::latency;
+use contact_afu::verify::Bench;
 
 fn main() -> anyhow::Result<()> {
     let mut arguments = std::env::args().skip(1);
@@ -24,31 +22,9 @@ fn main() -> anyhow::Result<()> {
     let mut link = description.at(config.clock_mhz)?;
     (link.read.tail, link.write.tail) = (0, 0);
 
-    let afu = Afu::generate(Spec::from(config.clone()))?;
-    let bench = Bench::new(&config)?;
-    let mut columns = Vec::new();
-    for &pairs in &numbers {
-        let parts = account(&afu, &link, pairs)
-            .ok_or_else(|| anyhow::anyhow!("{pairs} pairs over {name}: more than a sum of parts"))?;
-        let measured = bench.run(&Set::Random(pairs.into()).pairs(1), &link, 1)?.outcome.cycles;
-        columns.push((parts, measured));
-    }
-    let named = columns.iter().map(|(parts, _)| parts).max_by_key(|parts| parts.len());
-    let mut rows: Vec<Vec<String>> = Vec::new();
-    for part in named.into_iter().flatten() {
-        let cycles = |parts: &[contact_afu::verify::Part]| {
-            parts.iter().find(|other| other.name == part.name).map_or(0, |part| part.cycles).to_string()
-        };
-        rows.push([part.name.to_owned()].into_iter().chain(columns.iter().map(|(parts, _)| cycles(parts))).collect());
-    }
-    let sums = columns.iter().map(|(parts, _)| parts.iter().map(|part| part.cycles).sum::<u64>().to_string());
-    rows.push(["sum".to_owned()].into_iter().chain(sums).collect());
-    let measured = columns.iter().map(|(_, measured)| measured.to_string());
-    rows.push(["measured".to_owned()].into_iter().chain(measured).collect());
-
-    let heading: Vec<String> =
-        ["cycles".to_owned()].into_iter().chain(numbers.iter().map(|pairs| format!("{pairs} pairs"))).collect();
+    let text = latency::text(&Bench::new(&config)?, &link, &numbers)?
+        .ok_or_else(|| anyhow::anyhow!("{name}: the cycles of such jobs are no sum of parts"))?;
     println!("{name} without its tail, {} SCPUs, {} MHz", config.scpus, config.clock_mhz);
-    println!("{}", table::table(&heading.iter().map(String::as_str).collect::<Vec<_>>(), rows));
+    println!("{text}");
     Ok(())
 }

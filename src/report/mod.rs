@@ -7,6 +7,8 @@ pub mod folder;
 pub mod intervals;
 #[cfg(feature = "cosim")]
 pub mod junit;
+#[cfg(feature = "cosim")]
+pub mod latency;
 pub mod manifest;
 #[cfg(feature = "cosim")]
 pub mod mismatch;
