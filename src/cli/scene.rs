@@ -84,6 +84,7 @@ pub fn run(options: &Scene) -> Result<(), Failure> {
     if Plan::moves(&story) {
         return Err(without_ode());
     }
+    scene::check_start(&story, &plan)?;
     if let Some(out) = &options.out {
         folder::check(out, options.force)?;
     }
@@ -224,6 +225,7 @@ fn host_step(story: &Story, plan: &Plan) -> Result<Option<f64>, Failure> {
     }
     let mut story = story.clone();
     story.steps.value = story.steps.value.min(100);
+    story.start.value = scene::Start::AsGiven;
     let mut reference = plan.config.profile.reference(plan.config.contact);
     let results = scene::run(&story, plan, &mut reference, "", |_| {})?;
     Ok(Some(results.summary.step_ns))

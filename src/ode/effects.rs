@@ -234,6 +234,36 @@ mod tests {
         assert!(world.is_asleep(sphere) && world.wall_contacts().is_empty());
     }
 
+    /// A fault once: ODE kept the forces on a sphere that slept, and gave it all of them when it woke.
+    #[test]
+    fn forces_do_not_gather_while_a_sphere_sleeps() {
+        let (_ode, mut world) = world();
+        world.set_sleep(&Sleep::USUAL).unwrap();
+        // ODE lets only spheres with a joint sleep: both lie on a floor.
+        world.set_gravity([0.0, 0.0, -10.0]).unwrap();
+        world.add_wall([0.0, 0.0, 1.0], 0.0).unwrap();
+        let still = world.add_sphere([0.0, 0.0, 0.5], 0.5, 1.0).unwrap();
+        let comes = world.add_sphere([3.0, 0.0, 0.5], 0.5, 1.0).unwrap();
+        world.set_velocity(comes, [-2.0, 0.0, 0.0], [0.0; 3]).unwrap();
+        let mut slept = 0;
+        for _ in 0..200 {
+            if world.is_asleep(still) {
+                world.add_force(still, [0.0, 1.0, 0.0]).unwrap();
+                slept += 1;
+            }
+            for touch in world.contacts().unwrap() {
+                world.join(&touch, &Surface::SMOOTH).unwrap();
+            }
+            for touch in world.wall_contacts() {
+                world.join_wall(&touch, &Surface::SMOOTH).unwrap();
+            }
+            world.step(0.01).unwrap();
+        }
+        let [x, y, _] = world.velocity(still);
+        assert!(slept > 50 && x < -0.5, "it slept {slept} steps, and was pushed to {x}");
+        assert_eq!(y, 0.0);
+    }
+
     #[test]
     fn damping_and_no_turning_do_what_they_say() {
         let (_ode, mut world) = world();

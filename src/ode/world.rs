@@ -133,12 +133,16 @@ impl World {
         self.spheres[sphere.0].radius
     }
 
-    /// Adds to the force on a sphere's centre during the next step.
+    /// Adds to the force on a sphere's centre during the next step. One that sleeps gets none: ODE would keep it, and
+    /// give the sphere the forces of all steps when it wakes.
     ///
     /// # Errors
     /// When a number is out of range.
     pub fn add_force(&mut self, sphere: Sphere, force: [f64; 3]) -> Result<(), Error> {
         let [x, y, z] = signed("a force", force)?;
+        if self.is_asleep(sphere) {
+            return Ok(());
+        }
         // SAFETY: the body lives as long as the world.
         unsafe { sys::dBodyAddForce(self.spheres[sphere.0].body, x, y, z) };
         Ok(())

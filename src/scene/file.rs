@@ -56,6 +56,18 @@ impl Want {
     }
 }
 
+/// How bodies may lie before the first step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+pub enum Start {
+    /// Apart, above the floor and between the walls.
+    #[default]
+    #[serde(rename = "apart")]
+    Apart,
+    /// As the scene has them.
+    #[serde(rename = "as given")]
+    AsGiven,
+}
+
 /// A force to a centre.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -156,6 +168,8 @@ pub struct Scene {
     pub max_error: Option<Given<f64>>,
     /// SCPUs.
     pub scpus: Given<u32>,
+    /// How bodies may lie at first.
+    pub start: Given<Start>,
     /// What acts.
     pub effects: Effects,
     /// The bodies.

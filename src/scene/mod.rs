@@ -5,9 +5,12 @@
 //! costs nothing: it is not in the Verilog, not in a record, and its part of ODE is never called. [`run`](fn@run) then
 //! runs the scene with what the plan has, and nothing else.
 
+mod balance;
 mod bodies;
 mod cost;
 mod demand;
+#[cfg(feature = "ode")]
+mod energy;
 mod error;
 mod file;
 mod ladder;
@@ -18,13 +21,15 @@ mod read;
 mod results;
 #[cfg(feature = "ode")]
 mod run;
+mod start;
 mod text;
 
+pub use balance::Balance;
 pub use bodies::{Ball, balls};
 pub use cost::Cost;
 pub use demand::{Demand, Part, RULES};
 pub use error::SceneError;
-pub use file::{Effects, Given, Group, Pull, Scene, Shape, Want};
+pub use file::{Effects, Given, Group, Pull, Scene, Shape, Start, Want};
 pub use ladder::ladder;
 pub use page::page;
 pub use plan::{Call, Plan, Row};
@@ -32,3 +37,4 @@ pub use query::{Query, query};
 pub use results::{Energy, Results, SCHEMA, Summary, Touching};
 #[cfg(feature = "ode")]
 pub use run::run;
+pub use start::check_start;

@@ -6,7 +6,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::SceneError;
-use super::file::{Effects, Given, Group, LARGEST, Pull, Scene, Shape, Want};
+use super::file::{Effects, Given, Group, LARGEST, Pull, Scene, Shape, Start, Want};
 
 /// The version this program reads: the key `scene`.
 const VERSION: i64 = 1;
@@ -26,6 +26,7 @@ struct Raw {
     accuracy: Option<Spanned<String>>,
     max_error: Option<Spanned<f64>>,
     scpus: Option<Spanned<u32>>,
+    start: Option<Spanned<Start>>,
     #[serde(default)]
     effects: RawEffects,
     #[serde(default)]
@@ -206,6 +207,7 @@ impl Scene {
             accuracy,
             max_error,
             scpus,
+            start: raw.start.map_or(Given::default_of(Start::Apart), |start| source.given(start)),
             effects,
             bodies: groups("bodies", raw.bodies)?,
             queries: groups("queries", raw.queries)?,

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::plan::{Plan, Row};
-use super::{Cost, Scene};
+use super::{Balance, Cost, Scene};
 use crate::config::Config;
 
 /// The schema of a scene's JSON.
@@ -56,6 +56,9 @@ pub struct Summary {
     pub bytes_with_everything: f64,
     /// The median step's time on this host without the engine's part, nanoseconds; of a query the engine's time.
     pub step_ns: f64,
+    /// The energy at first and in the end, and what came in; none of a query.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub balance: Option<Balance>,
 }
 
 /// A run.

@@ -6,7 +6,7 @@ use super::bodies::{Ball, balls};
 use super::demand::Part;
 use super::plan::Plan;
 use super::results::{Energy, Results, Touching};
-use super::{Scene, SceneError};
+use super::{Balance, Scene, SceneError, check_start};
 use crate::kernel::{ContactRecord, Engine, EngineError, Fields, PairRecord};
 use crate::ode::{Collider, Ode, Sleep, Sphere, Surface, World};
 
@@ -14,7 +14,8 @@ use crate::ode::{Collider, Ode, Sleep, Sphere, Surface, World};
 /// number of those done.
 ///
 /// # Errors
-/// When bodies cannot be read, ODE refuses them or loses one, or the engine fails.
+/// When bodies cannot be read or begin inside one another ([`check_start`]), ODE refuses them or loses one, or the
+/// engine fails.
 pub fn run(
     scene: &Scene,
     plan: &Plan,
@@ -22,6 +23,7 @@ pub fn run(
     name: &str,
     mut progress: impl FnMut(u64),
 ) -> Result<Results, SceneError> {
+    check_start(scene, plan)?;
     let bodies = balls(scene, &scene.bodies)?;
     let ode = Ode::start(Collider::Engine)?;
     let mut world = World::new(&ode)?;
@@ -34,10 +36,13 @@ pub fn run(
     let count = bodies.len() as u64;
     results.radii = bodies.iter().map(|ball| ball.radius).collect();
     record(&mut results, plan, scene, &world, &bodies, true);
+    let mut balance = Balance::begin(scene, &world, &bodies);
     for step in 0..scene.steps.value {
+        let pull = forces.as_ref().filter(|forces| step < forces.steps);
+        let power_before = pull.map_or(0.0, |forces| forces.power(&world, &spheres));
         let begun = Instant::now();
         engine.spent = Duration::ZERO;
-        if let Some(forces) = forces.as_ref().filter(|forces| step < forces.steps) {
+        if let Some(forces) = pull {
             for (&sphere, &force) in spheres.iter().zip(&forces.each) {
                 world.add_force(sphere, force)?;
             }
@@ -58,6 +63,8 @@ pub fn run(
         }
         world.step(scene.time_step.value)?;
         step_times.push(begun.elapsed().saturating_sub(engine.spent));
+        let power_after = pull.map_or(0.0, |forces| forces.power(&world, &spheres));
+        balance.work += scene.time_step.value * (power_before + power_after) / 2.0;
         let summary = &mut results.summary;
         summary.steps += 1;
         summary.contacts += touches.len() as u64;
@@ -76,7 +83,9 @@ pub fn run(
         record(&mut results, plan, scene, &world, &bodies, false);
         progress(step + 1);
     }
+    balance.finish(scene, &world, &bodies);
     let summary = &mut results.summary;
+    summary.balance = Some(balance);
     summary.bodies = bodies.len();
     summary.all_pairs = count * count.saturating_sub(1) / 2;
     summary.pairs = engine.pairs;
@@ -133,6 +142,18 @@ fn set_up(world: &mut World, scene: &Scene, plan: &Plan, bodies: &[Ball]) -> Res
 struct Forces {
     each: Vec<[f64; 3]>,
     steps: u64,
+}
+
+impl Forces {
+    /// The work that they do in a time. That of a step is the mean of those before and after it: Newton's second law,
+    /// as ODE discretises it, has then no other term.
+    fn power(&self, world: &World, spheres: &[Sphere]) -> f64 {
+        let power = |(&sphere, force): (&Sphere, &[f64; 3])| {
+            let velocity = world.velocity(sphere);
+            (0..3).map(|axis| force[axis] * velocity[axis]).sum::<f64>()
+        };
+        spheres.iter().zip(&self.each).map(power).sum()
+    }
 }
 
 fn forces(scene: &Scene, bodies: &[Ball]) -> Option<Forces> {

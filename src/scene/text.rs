@@ -123,6 +123,9 @@ impl Results {
             let sum = |e: &super::Energy| e.kinetic + e.potential;
             out += &format!("\nenergy {:.5e} at first, {:.5e} in the end", sum(first), sum(last));
         }
+        if let Some(warning) = s.balance.and_then(|balance| balance.warning()) {
+            out += &format!("\nWarning: {warning}");
+        }
         out
     }
 

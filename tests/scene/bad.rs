@@ -1,6 +1,6 @@
 //! Bad scenes end in one clear error that names file, line and key.
 
-use contact_afu::scene::Scene;
+use contact_afu::scene::{Plan, Scene, check_start};
 
 const GOOD: &str =
     "scene = 1\nwant = [\"touching\"]\n[effects]\nbounce = 0.5\n[[bodies]]\nshape = \"stack\"\ncount = 3\n";
@@ -84,4 +84,41 @@ fn moving_bodies_are_fewer_and_files_say_what_is_wrong_in_them() {
     std::fs::write(&points, "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 1\n0 0 2.5\n").unwrap();
     let query = contact_afu::scene::Query::of(&Scene::read(&scene).unwrap()).unwrap();
     assert_eq!(query.balls.iter().map(|ball| ball.centre[2]).collect::<Vec<_>>(), [1.0, 2.5]);
+}
+
+/// A lattice whose `at` was taken for its corner lies half below the floor: refused unless the file allows it.
+#[test]
+fn bodies_that_begin_inside_something_are_counted_and_refused() {
+    let lattice = "scene = 1\nwant = [\"energy\"]\n[effects]\ngravity = [0.0, 0.0, -9.81]\nfloor = 0.0\nbounce = 0.5\n\
+                   [[bodies]]\nshape = \"lattice\"\ncount = [2, 2, 4]\nradius = 0.5\nat = [0.5, 0.5, 0.5]\n";
+    let check = |text: &str| {
+        let scene = Scene::parse("s.toml", text).unwrap();
+        check_start(&scene, &Plan::of(&scene).unwrap()).map_err(|error| error.to_string())
+    };
+    let cure = "move them (`at` is the middle of a diamond or a lattice, not its corner), or allow it with start = \"as given\"";
+    let below = "8 bodies begin below the floor, the first body 0 (line 7) by 1.50";
+    assert_eq!(check(lattice), Err(format!("s.toml:7: bodies: {below}; {cure}")));
+    assert_eq!(check(&lattice.replace("scene = 1\n", "scene = 1\nstart = \"as given\"\n")), Ok(()));
+    assert_eq!(check(&lattice.replace("0.5, 0.5, 0.5]", "0.5, 0.5, 2.0]")), Ok(()), "they touch, and no more");
+
+    let walls = lattice.replace("floor = 0.0", "walls = [[-0.5, -0.5, -2.0], [1.5, 1.5, 2.0]]");
+    let outside = "4 bodies begin outside the walls, the first body 3 (line 7) by 0.500";
+    assert_eq!(check(&walls), Err(format!("s.toml:7: bodies: {outside}; {cure}")));
+    // Two groups of which one reaches into the other, and a body that is in neither.
+    let second = "[[bodies]]\nshape = \"stack\"\ncount = 2\nradius = 0.25\nat = [0.1, 0.0, 2.3]\n";
+    let two = format!("{}{second}", lattice.replace("0.5, 0.5, 0.5]", "0.5, 0.5, 2.0]"));
+    let inside =
+        "3 pairs of bodies begin inside one another, the first body 2 (line 7) and body 16 (line 12) by 0.526; ";
+    let error = check(&two).unwrap_err();
+    assert!(error.starts_with(&format!("s.toml:7: bodies: {inside}")), "{error}");
+    // Bodies that nothing parts may overlap, and a query asks for just that.
+    assert_eq!(check(&two.replace("bounce = 0.5\n", "")), Ok(()));
+    let query = "scene = 1\nwant = [\"touching\"]\n[[bodies]]\nshape = \"stack\"\ncount = 9\ngap = -0.5\n";
+    assert_eq!(check(query), Ok(()));
+    let error = Scene::parse("s.toml", &lattice.replace("scene = 1", "scene = 1\nstart = \"anyhow\"")).unwrap_err();
+    assert!(error.to_string().starts_with("s.toml:2: unknown variant `anyhow`"), "{error}");
+    for example in crate::EXAMPLES {
+        let scene = crate::scene(example);
+        check_start(&scene, &Plan::of(&scene).unwrap()).expect("an example begins well");
+    }
 }

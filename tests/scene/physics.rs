@@ -1,13 +1,17 @@
 //! Energy and momentum behave as the named effects say.
 
-use contact_afu::scene::{Energy, Plan, Scene, run};
+use contact_afu::scene::{Energy, Plan, Results, Scene, run};
 
 use crate::scene;
 
-fn energies(scene: &Scene) -> Vec<Energy> {
+fn results(scene: &Scene) -> Results {
     let plan = Plan::of(scene).unwrap();
     let mut engine = plan.config.profile.reference(plan.config.contact);
-    run(scene, &plan, &mut engine, "test", |_| {}).unwrap().energy
+    run(scene, &plan, &mut engine, "test", |_| {}).unwrap()
+}
+
+fn energies(scene: &Scene) -> Vec<Energy> {
+    results(scene).energy
 }
 
 fn total(energy: &Energy) -> f64 {
@@ -91,4 +95,42 @@ fn nothing_happens_that_is_not_named() {
         near(last[0], [0.5, 0.0, 0.0]) && near(last[1], [0.5, 0.0, 2.0]) && near(last[2], [0.5, 0.0, 0.0]),
         "{last:?}"
     );
+}
+
+/// A fault once: a lattice whose `at` was taken for its corner gained energy without a word.
+#[test]
+fn energy_from_nowhere_is_told_and_that_of_a_pull_is_not() {
+    let lattice = "scene = 1\nstart = \"as given\"\nsteps = 300\nwant = [\"trajectories\"]\n[effects]\n\
+                   gravity = [0.0, 0.0, -9.81]\nfloor = 0.0\nbounce = 0.5\n\
+                   [[bodies]]\nshape = \"lattice\"\ncount = [3, 3, 4]\nradius = 0.5\nat = [0.5, 0.5, 0.5]\n";
+    let of = |scene: &Scene| {
+        let results = results(scene);
+        (results.summary.balance.unwrap(), results.text())
+    };
+    let (balance, text) = of(&Scene::parse("test", lattice).unwrap());
+    println!("corner for middle: {balance:?}");
+    assert!(balance.excess().unwrap() > 100.0, "{balance:?}");
+    assert!(
+        text.contains("Warning: energy rose from ") && text.contains("of which pulls account for 0.0000"),
+        "{text}"
+    );
+    // The same from its middle, and every example, and a gas in a field whose bodies spring back with all they have.
+    let well = lattice.replace("0.5, 0.5, 0.5]", "0.5, 0.5, 2.0]").replace("start = \"as given\"\n", "");
+    let gas = "scene = 1\nsteps = 3000\nwant = [\"trajectories\"]\n[effects]\nbounce = 1.0\ngravity = [0.0, 0.0, -9.81]\n\
+               walls = [[-2.0, -2.0, -2.0], [2.0, 2.0, 2.0]]\ntime_step\n\
+               [[bodies]]\nshape = \"lattice\"\ncount = [4, 4, 4]\nradius = 0.2\ngap = 0.3\nat = [0.1, 0.2, 0.0]\nvelocity = [1.0, 0.5, -2.0]\n";
+    let gas = gas.replace("time_step\n", "").replace("steps = 3000", "steps = 3000\ntime_step = 0.001");
+    let mut scenes = vec![Scene::parse("test", &well).unwrap(), Scene::parse("test", &gas).unwrap()];
+    scenes.extend(["diamond", "billiards", "column", "gas"].map(scene));
+    for scene in &scenes {
+        let (balance, text) = of(scene);
+        println!("{}: {balance:?}", scene.name.value);
+        assert!(balance.excess().is_none() && !text.contains("Warning"), "{}: {balance:?}", scene.name.value);
+    }
+    // The pull's work is energy that a scene has called for: all of it, where nothing takes any.
+    let pull = "scene = 1\nsteps = 100\nwant = [\"trajectories\"]\n[effects]\npull = { strength = 3.0 }\n\
+                [[bodies]]\nshape = \"stack\"\ncount = 1\nat = [9.0, 2.0, 0.0]\nvelocity = [0.3, 0.1, 0.2]\n";
+    let (balance, _) = of(&Scene::parse("test", pull).unwrap());
+    let gain = balance.end - balance.start;
+    assert!(gain > 1.0 && (balance.work - gain).abs() < 1e-9 * gain, "{balance:?}");
 }

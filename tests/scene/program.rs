@@ -53,6 +53,27 @@ fn a_bad_scene_ends_in_one_line_and_writes_nothing() {
     assert!(!out.exists());
 }
 
+/// Refused before a model is built or a folder made.
+#[cfg(feature = "ode")]
+#[test]
+fn a_scene_that_begins_below_its_floor_is_exit_2() {
+    let room = tempfile::tempdir().expect("a temporary folder");
+    let (file, out) = (room.path().join("s.toml"), room.path().join("out"));
+    let scene = "scene = 1\nsteps = 40\nwant = [\"energy\"]\n[effects]\ngravity = [0.0, 0.0, -9.81]\nfloor = 0.0\nbounce = 0.5\n\
+                 [[bodies]]\nshape = \"lattice\"\ncount = [2, 2, 4]\nradius = 0.5\nat = [0.5, 0.5, 0.5]\n";
+    fs::write(&file, scene).unwrap();
+    let error = afu(&[&text(&file), "--engine", "reference", "--out", &text(&out)]).code(2);
+    let error = String::from_utf8_lossy(&error.get_output().stderr).into_owned();
+    assert!(error.contains("8 bodies begin below the floor") && error.lines().count() == 1, "{error}");
+    assert!(!out.exists());
+    fs::write(&file, scene.replace("steps", "start = \"as given\"\nsteps")).unwrap();
+    let told = told(&afu(&[&text(&file), "--engine", "reference", "--out", &text(&out)]).success());
+    assert!(told.contains("Warning: energy rose from "), "{told}");
+    let manifest: serde_json::Value = serde_json::from_slice(&fs::read(out.join("manifest.json")).unwrap()).unwrap();
+    let balance = &manifest["summary"]["balance"];
+    assert!(balance["end"].as_f64() > balance["start"].as_f64(), "{balance}");
+}
+
 /// A scene at rest needs no ODE: a query, its contacts, its page.
 #[test]
 fn a_query_says_who_touches_whom() {
