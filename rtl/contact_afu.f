@@ -1,3 +1,7 @@
+// The Verilog of afu_top, each file after those it needs. Names are relative to this file's folder. From any folder:
+//   verilator -F FOLDER/contact_afu.f   (Questa, VCS and Xcelium know -F too)
+//   yosys -p "read_verilog FOLDER/afu_top.v; hierarchy -libdir FOLDER -check -top afu_top"
+//   iverilog -s afu_top -y FOLDER FOLDER/afu_top.v   (it has no -F; in this folder -f contact_afu.f does)
 spl2_transmit.v
 spl2_sequence.v
 spl2_registers.v

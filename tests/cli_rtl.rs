@@ -15,12 +15,17 @@ fn said(assert: &assert_cmd::assert::Assert) -> String {
 }
 
 fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let entries = fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("readable").path());
-    let named = |path: std::path::PathBuf| {
-        let name = path.file_name().expect("a name").to_string_lossy().into_owned();
-        (name, fs::read(&path).expect("readable"))
-    };
-    entries.map(named).collect()
+    let mut files = BTreeMap::new();
+    for entry in fs::read_dir(folder).expect("a folder") {
+        let entry = entry.expect("readable");
+        let name = entry.file_name().to_string_lossy().into_owned();
+        if entry.path().is_dir() {
+            files.extend(contents(&entry.path()).into_iter().map(|(below, bytes)| (format!("{name}/{below}"), bytes)));
+        } else {
+            files.insert(name, fs::read(entry.path()).expect("readable"));
+        }
+    }
+    files
 }
 
 #[test]
@@ -37,8 +42,9 @@ fn a_package_is_whole_and_the_same_every_time() {
     named.sort_unstable();
     assert!(named.iter().eq(hashed.keys().collect::<Vec<_>>().iter()), "every file has its hash");
     let list = String::from_utf8(a["contact_afu.f"].clone()).expect("UTF-8");
-    assert!(list.lines().count() > 10 && list.lines().all(|file| a.contains_key(file)), "{list}");
-    for name in ["contact_afu.core", "contact_afu.sdc", "contact_afu.xdc", "PORTS.md"] {
+    let mut files = list.lines().filter(|line| !line.starts_with("//"));
+    assert!(list.lines().count() > 10 && files.all(|file| a.contains_key(file)), "{list}");
+    for name in ["contact_afu.core", "contact_afu.sdc", "contact_afu.xdc", "PORTS.md", "sim/afu_top_bench.v"] {
         assert!(a.contains_key(name), "{name}");
     }
 }
@@ -185,6 +191,30 @@ fn interval_auto_is_what_the_link_needs() {
     assert!(interval(&["--link", "harp1"]) > 5);
     let refused = afu(room.path(), &["rtl", "--out", "new", "--interval", "auto", "--link", "none"]).code(2);
     assert!(said(&refused).contains("none"), "{}", said(&refused));
+}
+
+/// Every module and file begins with it, and so does the folder's own idea of its top: cosim simulates it.
+#[test]
+fn a_prefix_is_before_every_name() {
+    let room = tempfile::tempdir().expect("a temporary folder");
+    let options = ["--profile", "half", "--contact", "hit", "--scpus", "1", "--shell", "line"];
+    afu(room.path(), &[&["rtl", "--prefix", "left", "--out", "a"][..], &options].concat()).success();
+    let files = contents(&room.path().join("a"));
+    for (name, text) in files.iter().filter(|(name, _)| name.ends_with(".v")) {
+        let text = String::from_utf8_lossy(text);
+        let module = text.lines().find_map(|line| line.strip_prefix("module ")).expect("a module");
+        let stem = name.trim_end_matches(".v").trim_start_matches("sim/");
+        assert!(
+            stem.starts_with("left_") && module.trim_end_matches(';').split(' ').next() == Some(stem),
+            "{name}: {module}"
+        );
+    }
+    afu(room.path(), &["rtl", "--config", "a", "--out", "b"]).success();
+    assert_eq!(files, contents(&room.path().join("b")), "a manifest has the prefix");
+    #[cfg(feature = "cosim")]
+    afu(room.path(), &["cosim", "--rtl", "a", "--pairs", "random:40"]).success();
+    let refused = afu(room.path(), &["rtl", "--prefix", "2x", "--out", "c"]).code(2);
+    assert!(said(&refused).contains("prefix `2x`"), "{}", said(&refused));
 }
 
 #[test]

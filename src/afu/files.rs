@@ -6,34 +6,42 @@ use std::fmt::Write as _;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
-use crate::config::{MANIFEST_SCHEMA, Results};
+use crate::config::{Config, MANIFEST_SCHEMA, Shell};
 use crate::hdl::Primitive;
 use crate::pipeline::KernelReport;
 
-use super::{Afu, MAX_SCPUS, spl2, timing};
-use crate::config::Shell;
+use super::{Afu, spl2};
 
-/// The list of the Verilog files in a generated folder, each after those it needs.
-pub const FILE_LIST: &str = "contact_afu.f";
+/// The folder of the test bench, apart from what is synthesised.
+pub(super) const BENCH_FOLDER: &str = "sim";
+
+/// The name of the list of a configuration's Verilog files, each after those it needs.
+pub fn file_list(config: &Config) -> String {
+    config.prefixed("contact_afu.f")
+}
 
 impl Afu {
     /// All files of the generated folder, the manifest last: relative path and text.
     pub fn files(&self) -> Vec<(String, String)> {
         let verilog = self.verilog();
         let names: Vec<&str> = verilog.iter().map(|(name, _)| name.as_str()).collect();
-        let mut beside = vec![
-            (FILE_LIST, file_list(&names)),
-            ("contact_afu.core", fusesoc_core(&names, &self.top().name)),
-            ("contact_afu.sdc", self.sdc()),
-            ("contact_afu.xdc", self.xdc()),
-            ("contact_afu_instance.vh", self.template()),
-            ("PORTS.md", self.ports()),
-        ];
-        if self.spec().config.shell == Shell::Spl2 {
-            beside.push(("REGISTERS.md", format!("# Registers and lines of `afu_top`\n\n{}", spl2::map::markdown())));
+        let config = &self.spec().config;
+        let named = |name: &str, text: String| (config.prefixed(name), text);
+        let mut files = verilog.clone();
+        files.extend([
+            (format!("{BENCH_FOLDER}/{}.v", self.bench_name()), self.bench()),
+            (file_list(config), self.list(&names)),
+            named("contact_afu.core", self.fusesoc_core(&names)),
+            named("contact_afu.sdc", self.sdc()),
+            named("contact_afu.xdc", self.xdc()),
+            named("contact_afu_instance.vh", self.template()),
+            ("PORTS.md".to_owned(), self.ports()),
+        ]);
+        if config.shell == Shell::Spl2 {
+            let title = format!("# Registers and lines of `{}`", self.top_name());
+            let text = format!("{title}\n\n{}\n{}", spl2::map::markdown(), spl2::map::job());
+            files.push(("REGISTERS.md".to_owned(), text));
         }
-        let beside = beside.into_iter().map(|(name, text)| (name.to_owned(), text));
-        let mut files: Vec<(String, String)> = verilog.iter().cloned().chain(beside).collect();
         let manifest = self.manifest(&files);
         files.push(("manifest.json".to_owned(), manifest));
         files
@@ -64,12 +72,17 @@ impl Afu {
         format!("{}\ncreate_clock -period {:.3} -name clk [get_ports clk]\n", self.clock_comment(), self.period_ns())
     }
 
-    fn all_ports(&self) -> Vec<(bool, u32, String)> {
-        let reset = if self.spec().reset.active_low { "rst_n" } else { "rst" };
-        let reset = self.top().has_reset_port().then(|| (false, 1, reset.to_owned()));
-        let implied = [(false, 1, "clk".to_owned())].into_iter().chain(reset);
-        let declared = self.top().ports.iter().map(|port| (port.output, port.width, port.name.clone()));
-        implied.chain(declared).collect()
+    /// The list of Verilog files, with what each tool calls it by.
+    fn list(&self, names: &[&str]) -> String {
+        let (top, list) = (self.top_name(), file_list(&self.spec().config));
+        let files: String = names.iter().map(|name| format!("{name}\n")).collect();
+        format!(
+            "// The Verilog of {top}, each file after those it needs. Names are relative to this file's folder. From any folder:
+//   verilator -F FOLDER/{list}   (Questa, VCS and Xcelium know -F too)
+//   yosys -p \"read_verilog FOLDER/{top}.v; hierarchy -libdir FOLDER -check -top {top}\"
+//   iverilog -s {top} -y FOLDER FOLDER/{top}.v   (it has no -F; in this folder -f {list} does)
+{files}"
+        )
     }
 
     fn template(&self) -> String {
@@ -80,46 +93,8 @@ impl Afu {
         format!(
             "// Instantiation template.\n{top} #(\n  .SCPUS(32'd{scpus})\n) u_{top} (\n{}\n);\n",
             lines.join(",\n"),
-            top = self.top().name
+            top = self.top_name()
         )
-    }
-
-    fn ports(&self) -> String {
-        let spec = self.spec();
-        let scpus = spec.full_rate().filter(|multiple| *multiple < MAX_SCPUS).map_or_else(String::new, |multiple| {
-            format!(
-                ": {multiple} SCPUs at interval {} take a full line per cycle, and above {multiple} only a multiple of \
-                 {multiple} is built, the next smaller one",
-                spec.config.interval
-            )
-        });
-        let mut out = format!(
-            "# Ports of `{}`\n\nOne clock. `SCPUS` (1 to 64) is a Verilog parameter{scpus}. All outputs are registered or functions of \
-             registers.\nA line is 512 bits; word i of a line is bits 32·i+31 to 32·i; addresses count lines.\n\n| port | direction | bits | meaning |\n|---|---|---|---|\n",
-            self.top().name,
-        );
-        for (output, width, name) in self.all_ports() {
-            let direction = if output { "out" } else { "in" };
-            let _ = writeln!(out, "| `{name}` | {direction} | {width} | {}{} |", meaning(&name), self.more(&name));
-        }
-        out
-    }
-
-    /// What a port means beyond [`meaning`] in an AFU that differs from the default one.
-    fn more(&self, name: &str) -> String {
-        let config = &self.spec().config;
-        let of_hits = match name {
-            "error" => ", 6 more lines of contacts than `destination_lines`",
-            "capability" => ", 24 set: only contacts come back",
-            "contacts" => ": as many records, each beginning with its pair's number",
-            _ => "",
-        };
-        let hits = Some(of_hits.to_owned()).filter(|_| config.results == Results::Hits);
-        let radius = config.radius.map(|radius| format!(", 25 set: every sphere's radius is {radius}"));
-        let code = timing::record_code(config.record);
-        let record = (code > 0).then(|| format!(", 27:26 are {code}: words of records are {}", config.record));
-        let of_capability = [radius, record].into_iter().flatten().filter(|_| name == "capability");
-        hits.into_iter().chain(of_capability).collect()
     }
 
     fn manifest(&self, files: &[(String, String)]) -> String {
@@ -130,7 +105,7 @@ impl Afu {
         let mut manifest = json!({
             "schema": MANIFEST_SCHEMA,
             "version": env!("CARGO_PKG_VERSION"),
-            "top": self.top().name,
+            "top": self.top_name(),
             "config": spec.config,
             "format": spec.config.profile.format().to_string(),
             "reset": { "asynchronous": spec.reset.asynchronous, "active_low": spec.reset.active_low },
@@ -180,83 +155,4 @@ fn hex(bytes: &[u8]) -> String {
         let _ = write!(text, "{byte:02x}");
         text
     })
-}
-
-fn file_list(names: &[&str]) -> String {
-    names.iter().map(|name| format!("{name}\n")).collect()
-}
-
-fn fusesoc_core(names: &[&str], top: &str) -> String {
-    let files: String = names.iter().map(|name| format!("      - {name}\n")).collect();
-    format!(
-        "CAPI=2:\nname: ::contact_afu:{version}\ndescription: Collision-detection accelerator\n\nfilesets:\n  rtl:\n    files:\n{files}    \
-         file_type: verilogSource\n\ntargets:\n  default: &default\n    filesets: [rtl]\n    toplevel: {top}\n    parameters: [SCPUS]\n  lint:\n    \
-         <<: *default\n    default_tool: verilator\n    tools:\n      verilator:\n        mode: lint-only\n        verilator_options: [-Wall]\n  sim:\n    \
-         <<: *default\n    default_tool: icarus\n  synth:\n    <<: *default\n    default_tool: yosys\n    tools:\n      yosys:\n        arch: ecp5\n\n\
-         parameters:\n  SCPUS:\n    datatype: int\n    paramtype: vlogparam\n    description: Sphere Collision Processing Units, 1 to 64\n",
-        version = env!("CARGO_PKG_VERSION")
-    )
-}
-
-fn meaning(name: &str) -> &'static str {
-    match name {
-        "clk" => "clock",
-        "rst" => "reset, active high; at least one cycle",
-        "rst_n" => "reset, active low; at least one cycle",
-        "start" => "one cycle high starts a job; ignored while busy",
-        "source" => "line address of the first source line",
-        "destination" => "line address of the first destination line",
-        "destination_lines" => "lines there is room for at the destination; those beyond are not written",
-        "count" => "pairs of the job; 0 is a job",
-        "mode" => "0; anything else ends the job with error 5",
-        "epoch" => "upper part of the job's tags: change it from job to job, so that late responses are known",
-        "watchdog" => "cycles without a response, with one owed, that end the job with error 4; 0: never",
-        "abort_job" => "high ends the job with error 1, when what is outstanding has been answered",
-        "busy" => "a job is running or ending",
-        "done" => "the last job has ended; low from the next start on",
-        "error" => "how: 0 well, 1 aborted, 2 read error, 3 write error, 4 watchdog, 5 unknown mode",
-        "contacts" => "contacts of the job so far",
-        "invalid" => "invalid pairs of the job so far",
-        "first_invalid" => "number of the first invalid pair, all ones if there is none",
-        "cycles_busy" => "cycles of the job so far",
-        "cycles_input" => "of these, cycles in which the SCPUs waited for pairs",
-        "cycles_output" => "of these, cycles in which pairs waited for room for their results",
-        "capability" => {
-            "7:0 SCPUS, 15:8 interval, 19:16 fields (hit, depth, normal, position from bit 16 up), 43:32 SCPU latency"
-        }
-        "rd_req_valid" => "a read request; it stays as it is until ready",
-        "rd_req_ready" => "the request is taken at this clock edge",
-        "rd_req_address" => "line address to read",
-        "rd_req_tag" => "epoch and slot; not used again before its response",
-        "rd_rsp_valid" => "a read response, in any order; never refused",
-        "rd_rsp_tag" => "the tag of its request",
-        "rd_rsp_data" => "the line",
-        "rd_rsp_error" => "the line could not be read: the job ends with error 2",
-        "wr_req_valid" => "a write request; it stays as it is until ready",
-        "wr_req_ready" => "the request is taken at this clock edge",
-        "wr_req_address" => "line address to write",
-        "wr_req_tag" => "epoch and slot; not used again before its response",
-        "wr_req_data" => "the line",
-        "wr_rsp_valid" => "a write acknowledgement, in any order; never refused",
-        "wr_rsp_tag" => "the tag of its request",
-        "wr_rsp_error" => "the line could not be written: the job ends with error 3",
-        "reset_n" => "the system's reset, active low; at least one cycle",
-        "spl_enable" => "low: everything but the registers rests, as in reset",
-        "spl_reset" => "reset, active high: a job that runs is forgotten",
-        "spl_tx_rd_almostfull" => "no read is put into the port's register while it is high",
-        "spl_tx_wr_almostfull" => "no write is put into the port's register while it is high",
-        "afu_tx_rd_valid" => "a read request, taken in this cycle",
-        "afu_tx_rd_hdr" => "98:93 lines (1), 92:67 and 45:14 line address, 66 virtual, 55:52 type (4), 13:0 mdata",
-        "afu_tx_wr_valid" => "a write request or a fence, taken in this cycle",
-        "afu_tx_wr_hdr" => "as `afu_tx_rd_hdr`; type 2 a line, 5 a fence",
-        "afu_tx_data" => "the line",
-        "afu_tx_intr_valid" => "an interrupt: never",
-        "spl_rx_rd_valid" => "a read response, in any order; never refused",
-        "spl_rx_wr_valid0" | "spl_rx_wr_valid1" => "a write response, in any order, on both channels if need be",
-        "spl_rx_cfg_valid" => "a CSR write: header 13:0 its byte offset / 4, data 31:0 its value",
-        "spl_rx_hdr0" | "spl_rx_hdr1" => "17:14 type, 13:0 mdata of the request",
-        "spl_rx_data" => "the line, or the register's value",
-        "spl_rx_intr_valid0" | "spl_rx_intr_valid1" | "spl_rx_umsg_valid" => "not used",
-        _ => "",
-    }
 }

@@ -4,6 +4,7 @@
 //! contacts come back, sieve and backlog stand before the packer.
 
 mod backlog;
+mod bench;
 mod capability;
 mod collector;
 mod control;
@@ -11,11 +12,15 @@ mod counter;
 mod dispatcher;
 mod feeder;
 mod files;
+mod fusesoc;
 mod generate;
 mod in_order;
 mod layout;
 mod lines;
+pub(crate) mod pack;
 mod packer;
+mod ports;
+mod records;
 mod results;
 mod rounds;
 mod scpu;
@@ -29,7 +34,7 @@ mod top;
 
 pub use capability::Capability;
 pub use control::JobError;
-pub use files::FILE_LIST;
+pub use files::file_list;
 pub use generate::{Afu, BuildError, top_name};
 pub use layout::{Layout, OtherRadius};
 pub use spec::{Spec, SpecError};

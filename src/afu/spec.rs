@@ -127,6 +127,13 @@ impl Spec {
         {
             flags.drain(at..at + 2);
         }
+        let reset = match self.reset {
+            Reset { asynchronous: false, active_low: false } => None,
+            Reset { asynchronous: false, active_low: true } => Some("low"),
+            Reset { asynchronous: true, active_low: false } => Some("async-high"),
+            Reset { asynchronous: true, active_low: true } => Some("async-low"),
+        };
+        flags.extend(reset.into_iter().flat_map(|reset| ["--reset".to_owned(), reset.to_owned()]));
         flags.extend(self.target.into_iter().flat_map(|target| ["--target".to_owned(), target.to_owned()]));
         flags
     }

@@ -14,7 +14,8 @@ use super::output;
 
 #[derive(Args, Debug)]
 pub struct Rtl {
-    /// Folder to write: .v files, file list, FuseSoC core, constraints, instantiation template, PORTS.md, manifest.json
+    /// Folder to write: .v files, file list, FuseSoC core, constraints, instantiation template, PORTS.md, test bench,
+    /// manifest.json
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     /// Replace the folder even if afu did not write it
@@ -23,6 +24,9 @@ pub struct Rtl {
     /// Reset level, and whether it acts without a clock edge
     #[arg(long, value_enum, value_name = "STYLE", default_value_t = Style::High, help_heading = "The AFU")]
     reset: Style,
+    /// Name that all modules and their files begin with, and a _: so that several AFUs fit in one design
+    #[arg(long, value_name = "NAME", help_heading = "The AFU")]
+    prefix: Option<String>,
     /// Link that --interval auto is for: ideal, late, shuffled, hostile, harp1, harp2, pcie3x8, or a file of a link
     #[arg(long, value_name = "NAME|FILE", default_value = "ideal", help_heading = "The AFU")]
     link: String,
@@ -49,7 +53,9 @@ impl From<Style> for Reset {
 
 pub fn run(options: &Rtl) -> Result<(), Failure> {
     let target = options.one.machine.target()?;
-    let config = options.one.config_for_any_target(&options.link)?;
+    let mut config = options.one.config_for_any_target(&options.link)?;
+    config.prefix = options.prefix.clone().or(config.prefix);
+    config.check()?;
     let spec = Spec { reset: options.reset.into(), ..Spec::from(config) };
     let spec = match target {
         Some(target) => target.specialise(spec).ok_or_else(|| no_blocks(target))?,

@@ -18,6 +18,9 @@ pub const SCPUS: std::ops::RangeInclusive<u32> = 1..=64;
 /// The intervals an SCPU can have, in cycles.
 pub const INTERVALS: std::ops::RangeInclusive<u32> = 1..=64;
 
+/// Letters of a prefix, at most.
+const LONGEST_PREFIX: usize = 32;
+
 /// The configuration of an AFU. [`Config::shipped`] is the one whose Verilog lies in `rtl/`.
 ///
 /// In JSON it is the object `config` of a manifest; a key left out has its default, an unknown key is refused.
@@ -27,8 +30,8 @@ pub struct Config {
     /// Sphere Collision Processing Units. A Verilog parameter: it changes no other file than the top's default.
     pub scpus: u32,
     /// Initiation interval: cycles from one pair to the next in one SCPU, which has as few operators as that allows.
-    /// SCPUs beyond a full line of pairs a cycle (at two pairs a line, beyond the largest multiple of twice the
-    /// interval) get none.
+    /// SCPUs beyond a full line of pairs per cycle (at two pairs per line, beyond the largest multiple of twice the
+    /// interval) are not built.
     pub interval: u32,
     /// The arithmetic.
     pub profile: Profile,
@@ -56,6 +59,9 @@ pub struct Config {
     /// The clock that stages are cut for, in MHz, where it is another than the AFU runs at: a router reached less, say.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cut_mhz: Option<f64>,
+    /// What the names of all modules and of their files begin with, and a `_`: so that several AFUs fit in one design.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub prefix: Option<String>,
 }
 
 impl Default for Config {
@@ -73,6 +79,7 @@ impl Default for Config {
             shell: Shell::Spl2,
             clock_mhz: 200.0,
             cut_mhz: None,
+            prefix: None,
         }
     }
 }
@@ -89,6 +96,9 @@ pub enum Error {
     /// Not a frequency one can cut stages for.
     #[error("clock {0} MHz: give a frequency from 1 to 2000 MHz")]
     Clock(f64),
+    /// No part of a Verilog name.
+    #[error("prefix `{0}`: give 1 to {LONGEST_PREFIX} letters, digits and `_`, the first no digit")]
+    Prefix(String),
     /// A record of one bit has no room for "unsettled".
     #[error(
         "profile exact with contact hit alone: a contact of one bit cannot say that a pair is unsettled; ask for the depth too"
@@ -138,6 +148,9 @@ impl Config {
         if let Some(clock) = clocks.into_iter().find(|clock| !(1.0..=2000.0).contains(clock)) {
             return Err(Error::Clock(clock));
         }
+        if let Some(prefix) = self.prefix.as_ref().filter(|prefix| !is_prefix(prefix)) {
+            return Err(Error::Prefix(prefix.clone()));
+        }
         if self.profile.is_exact() && self.contact == Fields::HIT {
             return Err(Error::ExactHit);
         }
@@ -179,6 +192,11 @@ impl Config {
         self.cut_mhz.unwrap_or(self.clock_mhz)
     }
 
+    /// The name of a module or file with the prefix before it.
+    pub fn prefixed(&self, name: &str) -> String {
+        self.prefix.as_ref().map_or_else(|| name.to_owned(), |prefix| format!("{prefix}_{name}"))
+    }
+
     /// One clock cycle, in nanoseconds.
     pub fn cycle_ns(&self) -> f64 {
         1000.0 / self.clock_mhz
@@ -210,10 +228,16 @@ impl Config {
             ("--shell", self.shell.to_string(), default.shell.to_string()),
             ("--clock", self.clock_mhz.to_string(), default.clock_mhz.to_string()),
             ("--cut-for", cut(self), cut(&default)),
+            ("--prefix", self.prefix.clone().unwrap_or_default(), String::new()),
         ];
         let differing = pairs.into_iter().filter(|(_, mine, default)| mine != default);
         differing.flat_map(|(flag, mine, _)| [flag.to_owned(), mine]).collect()
     }
+}
+
+fn is_prefix(text: &str) -> bool {
+    let is_word = text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+    is_word && (1..=LONGEST_PREFIX).contains(&text.len()) && !text.starts_with(|c: char| c.is_ascii_digit())
 }
 
 /// Values that are a line of text in JSON.
@@ -284,6 +308,9 @@ mod tests {
                 Config { radius: Some(1e6), record: Record::F16, ..Config::default() },
                 "radius 1000000: is infinite in records of f16",
             ),
+            (Config { prefix: Some("2x".into()), ..Config::default() }, "prefix `2x`"),
+            (Config { prefix: Some("a-b".into()), ..Config::default() }, "prefix `a-b`"),
+            (Config { prefix: Some(String::new()), ..Config::default() }, "prefix ``"),
             (Config { input: Input::Indexed, ..Config::default() }, "input indexed"),
             (Config { shell: Shell::Axi, ..Config::default() }, "shell axi"),
         ];

@@ -4,6 +4,7 @@
 //! operation records an [`Error`] with its place and yields a poisoned handle; [`Graph::finish`] returns all of
 //! them together or a [`Module`], from which nothing can be taken that its outputs do not need.
 
+mod at_reset;
 mod block_memory;
 mod cut;
 mod delay_block;

@@ -1,78 +1,11 @@
-//! Records to lines and back, by the layout. Here records have words of binary32; in lines they have those of the
-//! layout's numbers, to which pairs are rounded and from which contacts are widened.
+//! Records out of lines, by the layout; [`pack`] puts them in. Here records have words of binary32; in lines they have
+//! those of the layout's numbers, from which they are widened.
 
 use crate::afu::Layout;
-use crate::kernel::{ContactRecord, Flow, PairRecord, narrow, widen};
+use crate::afu::pack::{DWORD, FLAGS, get};
+pub(crate) use crate::afu::pack::{pack, pack_contacts, unpack_pairs};
+use crate::kernel::{ContactRecord, Flow, widen};
 use crate::link::Line;
-
-/// Bits of a dword of a line.
-const DWORD: usize = 32;
-/// A contact's word that is no number: its flags.
-const FLAGS: usize = 7;
-
-/// Puts a word of `bits` bits, which lies in one dword, into zero bits of a line.
-fn put(line: &mut Line, at: usize, bits: u32, word: u32) {
-    let mask = u32::MAX >> (DWORD as u32 - bits);
-    line[at / DWORD] |= (word & mask) << (at % DWORD);
-}
-
-/// A word of `bits` bits, which lies in one dword.
-fn get(line: &Line, at: usize, bits: u32) -> u32 {
-    line[at / DWORD] >> (at % DWORD) & u32::MAX >> (DWORD as u32 - bits)
-}
-
-/// The source lines of pairs; what is unused of the last is zero.
-pub(crate) fn pack(layout: &Layout, pairs: &[PairRecord]) -> Vec<Line> {
-    let (room, words, bits, record) =
-        (layout.pair_bits() as usize, layout.pair_words(), layout.word_bits(), layout.record().format());
-    let line = |pairs: &[PairRecord]| {
-        let mut line: Line = [0; 16];
-        for (place, pair) in pairs.iter().enumerate() {
-            for (slot, &word) in words.iter().enumerate() {
-                put(&mut line, place * room + slot * bits as usize, bits, narrow(pair.0[word], record));
-            }
-        }
-        line
-    };
-    pairs.chunks(layout.pairs_per_line() as usize).map(line).collect()
-}
-
-/// The pairs of source lines.
-pub(crate) fn unpack_pairs(layout: &Layout, lines: &[Line], count: usize) -> Vec<PairRecord> {
-    let (room, words, bits, record) =
-        (layout.pair_bits() as usize, layout.pair_words().len(), layout.word_bits(), layout.record().format());
-    let pair = |line: &Line, place: usize| {
-        let word = |slot: usize| widen(get(line, place * room + slot * bits as usize, bits), record);
-        layout.pair(&(0..words).map(word).collect::<Vec<_>>())
-    };
-    let places = 0..layout.pairs_per_line() as usize;
-    lines
-        .iter()
-        .flat_map(|line| places.clone().map(move |place| (line, place)))
-        .take(count)
-        .map(|(line, place)| pair(line, place))
-        .collect()
-}
-
-/// The destination lines of contacts where each pair has one; what is unused of the last is zero.
-pub(crate) fn pack_contacts(layout: &Layout, records: &[ContactRecord]) -> Vec<Line> {
-    let (words, bits, numbers) = (layout.contact_words(), layout.contact_bits() as usize, layout.record().format());
-    let line = |records: &[ContactRecord]| {
-        let mut line: Line = [0; 16];
-        for (place, record) in records.iter().enumerate() {
-            let at = place * bits;
-            if words.is_empty() {
-                put(&mut line, at, 1, record.is_contact().into());
-            }
-            for (slot, &word) in words.iter().enumerate() {
-                let short = if word == FLAGS { record.0[word] } else { narrow(record.0[word], numbers) };
-                put(&mut line, at + slot * layout.word_bits() as usize, layout.word_bits(), short);
-            }
-        }
-        line
-    };
-    records.chunks(layout.contacts_per_line() as usize).map(line).collect()
-}
 
 /// Destination lines as records.
 pub(crate) struct Contacts<'a> {
@@ -168,6 +101,7 @@ mod tests {
     use super::*;
     use crate::config::{Config, Record, Results};
     use crate::kernel::Fields;
+    use crate::kernel::{PairRecord, narrow};
 
     fn records(count: u32) -> Vec<ContactRecord> {
         let flow = |i: u32| Flow::ALL[i as usize % 4].flags();

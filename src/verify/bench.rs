@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use super::check::{Verdict, check};
 use super::error::VerifyError;
-use crate::afu::{Afu, FILE_LIST, Layout, Spec, top_name};
+use crate::afu::{Afu, Layout, Spec, file_list, top_name};
 use crate::config::{self, Config, Results, Shell};
 use crate::cosim::spl2::{Machine, Place, Session};
 use crate::cosim::{CosimError, Driver, File, Instance, Job, Model, Outcome, Source, Trace};
@@ -76,8 +76,8 @@ impl Bench {
         let in_folder = config::read(folder)?;
         let config = Config { scpus: scpus.unwrap_or(in_folder.scpus), ..in_folder.clone() };
         Spec::from(config.clone()).check().map_err(crate::afu::BuildError::from)?;
-        let source =
-            with_scpus(Source::from_list(&folder.join(FILE_LIST), top_name(config.shell))?, &config, in_folder.scpus);
+        let source = Source::from_list(&folder.join(file_list(&config)), &top_name(&config))?;
+        let source = with_scpus(source, &config, in_folder.scpus);
         Self::of(&config, source, |source| Model::build(source, trace), trace == Trace::Off)
     }
 
@@ -213,9 +213,11 @@ pub fn rtl_sha256(config: &Config) -> Result<String, VerifyError> {
 fn generated(config: &Config) -> Result<Source, VerifyError> {
     let scpus = Config::default().scpus;
     Spec::from(config.clone()).check().map_err(crate::afu::BuildError::from)?;
-    let afu = Afu::generate(Spec::from(Config { scpus, ..config.clone() }))?;
+    // Names change nothing, and models are shared by those that have none before them.
+    let plain = Config { scpus, prefix: None, ..config.clone() };
+    let afu = Afu::generate(Spec::from(plain))?;
     let files = afu.verilog().into_iter().map(|(name, text)| File { name, text }).collect();
-    Ok(with_scpus(Source::new(top_name(config.shell), files), config, scpus))
+    Ok(with_scpus(Source::new(&afu.top_name(), files), config, scpus))
 }
 
 fn with_scpus(source: Source, config: &Config, default: u32) -> Source {

@@ -264,6 +264,27 @@ pub const LINES: [(&str, &str, &[Field]); 7] = [
     ("Source line 0: control memory", "host", &control::FIELDS),
 ];
 
+/// The steps of a job as Markdown.
+pub fn job() -> String {
+    format!(
+        "## A job
+
+The records of pairs and contacts are in PORTS.md. Source line {DATA_LINE} is the first line of pairs; destination line 0 is the first line
+of contacts.
+
+1. Reset the AFU (`spl_reset`). Clear the DSM. Write its physical address to `dsm_base_high`, then to `dsm_base_low`: the AFU writes DSM
+   line {IDENTITY_LINE}.
+2. Write context line {POINTERS_LINE}, clear source line {CONTROL_LINE}, and write the context's virtual address to `context_base_high`, then to
+   `context_base_low`. Raise `spl_enable`.
+3. Write the pairs, then source line {CONTROL_LINE}, `start` last. The AFU reads that line {IDLE_POLL_CYCLES} cycles after its last answer, and every
+   {RUNNING_POLL_CYCLES} cycles while a job runs.
+4. Wait until context line {STATUS_LINE} has `done` and the job's `sequence`: the contacts and DSM lines {LATENCY_LINE} and {PERFORMANCE_LINE} were
+   written before it.
+5. For another job, clear `start` and go on with 3, with another `sequence`.
+"
+    )
+}
+
 /// The map as Markdown: a table of the registers and one of the lines' fields.
 pub fn markdown() -> String {
     let mut out = format!("AFU_ID `{AFU_ID:032x}`, version {VERSION} of this map.\n\n");

@@ -88,7 +88,7 @@ impl Sections<'_> {
     }
 
     pub(super) fn instance(&self, instance: &Instance) -> String {
-        let (name, module) = (&instance.name, &instance.module.name);
+        let (name, module) = (&instance.name, format!("{}{}", self.style.prefix, instance.module.name));
         let indent = |text: &str, spaces: usize| text.replace('\n', &format!("\n{}", " ".repeat(spaces)));
         match instance.count {
             InstanceCount::One => {

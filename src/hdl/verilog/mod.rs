@@ -18,6 +18,8 @@ use super::module::{Module, Reset};
 pub struct Style {
     /// How registers are reset.
     pub reset: Reset,
+    /// What the names of this module and of those it instantiates begin with.
+    pub prefix: String,
     /// Lines every file's header carries, such as the generator and its parameters.
     pub header: Vec<String>,
     /// Which memories the family has.

@@ -30,7 +30,7 @@ pub(super) fn print(module: &Module, style: &Style) -> String {
 
 fn header(module: &Module, style: &Style) -> String {
     let mut out = String::from("// SPDX-License-Identifier: MIT OR Apache-2.0\n");
-    out += &format!("// {}\n", module.name);
+    out += &format!("// {}{}\n", style.prefix, module.name);
     for line in &module.about {
         out += &format!("// {line}\n");
     }
@@ -45,7 +45,7 @@ fn header(module: &Module, style: &Style) -> String {
 }
 
 fn interface(module: &Module, style: &Style, names: &Names) -> String {
-    let mut out = format!("module {}", module.name);
+    let mut out = format!("module {}{}", style.prefix, module.name);
     if !module.parameters.is_empty() {
         let parameters: Vec<_> = module
             .parameters

@@ -2,6 +2,9 @@
 //! multiple drivers in Yosys, elaborating for every number of SCPUs, and giving the same bits in Icarus, where nothing
 //! that was never reset may reach a result.
 
+mod adopt;
+mod cocotb;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -21,8 +24,9 @@ fn write(afu: &Afu) -> (tempfile::TempDir, Vec<PathBuf>) {
     let mut verilog = Vec::new();
     for (name, text) in afu.files() {
         let path = folder.path().join(&name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
         fs::write(&path, text).unwrap();
-        if name.ends_with(".v") {
+        if name.ends_with(".v") && !name.contains('/') {
             verilog.push(path);
         }
     }
@@ -73,7 +77,8 @@ fn the_committed_rtl_is_what_the_generator_writes() {
     }
     for entry in fs::read_dir(&committed).unwrap() {
         let name = entry.unwrap().file_name().into_string().unwrap();
-        assert!(files.iter().any(|(known, _)| *known == name), "rtl/{name} is not generated any more");
+        let is_known = |known: &str| known.split('/').next() == Some(&name);
+        assert!(files.iter().any(|(known, _)| is_known(known)), "rtl/{name} is not generated any more");
     }
 }
 
@@ -112,7 +117,7 @@ fn clean_under_wall_of_both_verilators() {
         let (_folder, verilog) = write(&generate(config.clone()));
         for mut verilator in verilators() {
             let output = verilator
-                .args(["--lint-only", "-Wall", "--top-module", top_name(config.shell), "-GSCPUS=2"])
+                .args(["--lint-only", "-Wall", "--top-module", &top_name(&config), "-GSCPUS=2"])
                 .args(&verilog)
                 .output()
                 .unwrap();
@@ -199,16 +204,18 @@ fn hex_line(words: &[u32]) -> String {
     padded.iter().rev().map(|word| format!("{word:08x}")).collect()
 }
 
-/// Runs pairs through the AFU in Icarus, in the bench of that name, and gives what it says and the destination lines.
-fn icarus(bench: &str, verilog: &[PathBuf], scpus: u32, pairs: &[PairRecord], seed: u32) -> (String, Vec<String>) {
+/// Runs pairs through the AFU in Icarus, in its own bench, and gives what it says and the destination lines.
+fn icarus(package: &Path, scpus: u32, pairs: &[PairRecord], seed: u32) -> (String, Vec<String>) {
     let folder = tempfile::tempdir().unwrap();
     let program = folder.path().join("bench");
+    let bench_file = fs::read_dir(package.join("sim")).unwrap().next().unwrap().unwrap().path();
+    let bench = bench_file.file_stem().unwrap().to_str().unwrap();
     let compiled = Command::new("iverilog")
         .args(["-g2005", "-Wall", "-Wno-timescale", "-s", bench, "-o"])
         .arg(&program)
         .arg(format!("-P{bench}.SCPUS={scpus}"))
-        .arg(root().join(format!("tb/{bench}.v")))
-        .args(verilog)
+        .arg("-y")
+        .args([package, &bench_file])
         .output()
         .expect("needs Icarus: run scripts/setup --test");
     succeeded(bench, &compiled);
@@ -241,11 +248,10 @@ fn reference(config: &Config, pairs: &[PairRecord]) -> (Vec<String>, [i64; 3]) {
 #[test]
 fn icarus_gives_the_reference_bits() {
     for (profile, scpus) in [("wide", 3), ("paper", 2)] {
-        // This bench is one for the core; it takes the core out of whatever shell it is in.
-        let config = Config { profile: profile.parse().unwrap(), ..Config::default() };
-        let (_folder, verilog) = write(&generate(config.clone()));
+        let config = Config { profile: profile.parse().unwrap(), shell: Shell::Line, ..Config::default() };
+        let (folder, _) = write(&generate(config.clone()));
         let pairs = pairs::load("random:300", 7).unwrap();
-        let (said, lines) = icarus("contact_afu_tb", &verilog, scpus, &pairs, 5);
+        let (said, lines) = icarus(folder.path(), scpus, &pairs, 5);
         assert!(said.contains("done 1 error 0"), "{said}");
         assert_eq!(lines, reference(&config, &pairs).0, "{profile}");
     }
@@ -254,11 +260,9 @@ fn icarus_gives_the_reference_bits() {
 /// The committed AFU, shell and all: two jobs, and nothing that was never reset reaches a valid output.
 #[test]
 fn icarus_gives_the_reference_bits_below_spl2() {
-    let names = fs::read_dir(root().join("rtl")).unwrap().map(|entry| entry.unwrap().path());
-    let verilog: Vec<PathBuf> = names.filter(|path| path.extension().is_some_and(|kind| kind == "v")).collect();
     let mut pairs = pairs::load("random:300", 7).unwrap();
     pairs.extend(pairs::load("hard:101", 7).unwrap());
-    let (said, lines) = icarus("afu_top_tb", &verilog, 3, &pairs, 5);
+    let (said, lines) = icarus(&root().join("rtl"), 3, &pairs, 5);
     let (expected, [contacts, invalid, first]) = reference(&Config::shipped(), &pairs);
     assert!(contacts > 0 && invalid > 0, "all kinds");
     assert_eq!(lines, expected);
@@ -292,12 +296,12 @@ fn a_spoilt_shell_is_found_out() {
         ),
         ("spl2_registers.v", "dsm_line <= {dsm_high,", "dsm_line <= {~dsm_high,", "a write elsewhere"),
     ] {
-        let (folder, verilog) = write(&generate(Config::default()));
+        let (folder, _) = write(&generate(Config::default()));
         let path = folder.path().join(file);
         let text = fs::read_to_string(&path).unwrap();
         assert_eq!(text.matches(old).count(), 1, "{file}: one `{old}`");
         fs::write(&path, text.replace(old, new)).unwrap();
-        let (said, _) = icarus("afu_top_tb", &verilog, 2, &pairs, 5);
+        let (said, _) = icarus(folder.path(), 2, &pairs, 5);
         assert!(said.contains(&format!("fault: {fault} in cycle ")) && !said.contains("no fault"), "{said}");
     }
 }

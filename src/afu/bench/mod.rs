@@ -1,0 +1,85 @@
+//! The test bench beside the Verilog: a job with its pairs and the lines that the reference kernel gives for them, for
+//! simulators that know nothing of this crate.
+
+use crate::config::{Results, Shell};
+use crate::kernel::{Flow, PairRecord};
+
+use super::pack::{Line, pack, pack_contacts, unpack_pairs};
+use super::spl2::map;
+use super::{Afu, COUNT_BITS};
+
+/// Spheres one in the other, beside each other, touching, far apart, equal; and what is no pair of spheres.
+const SPHERES: [([f32; 4], [f32; 4]); 13] = [
+    ([0.0, 0.0, 0.0, 1.0], [1.5, 0.0, 0.0, 1.0]),
+    ([0.0, 0.0, 0.0, 1.0], [3.0, 0.0, 0.0, 1.0]),
+    ([1.0, 2.0, 3.0, 0.5], [1.0, 2.0, 3.0, 0.25]),
+    ([0.0, 0.0, 0.0, 1.0], [0.0, 2.0, 0.0, 1.0]),
+    ([0.1, 0.2, 0.3, 0.4], [0.5, -0.6, 0.7, 0.8]),
+    ([-3.0, 1.25, 0.75, 2.5], [-1.0, 0.0, 2.0, 0.125]),
+    ([f32::NAN, 0.0, 0.0, 1.0], [0.0, 0.0, 0.0, 1.0]),
+    ([7.0, -7.0, 7.0, 1.0], [-7.0, 7.0, -7.0, 1.0]),
+    ([0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0]),
+    ([0.0, 0.0, 0.0, -1.0], [0.0, 0.0, 1.0, 1.0]),
+    ([0.3, 0.3, 0.3, 0.1], [0.35, 0.35, 0.35, 0.1]),
+    ([100.0, 0.01, 0.0, 60.0], [0.0, 0.0, 0.02, 40.5]),
+    ([1.0, 1.0, 1.0, 1.0], [2.0, 2.0, 2.0, 1.0]),
+];
+
+impl Afu {
+    /// The name of the test bench's module.
+    pub fn bench_name(&self) -> String {
+        format!("{}_bench", self.top_name())
+    }
+
+    /// The text of the test bench.
+    pub(super) fn bench(&self) -> String {
+        let (config, layout) = (&self.spec().config, self.layout());
+        let pairs = SPHERES.map(|(first, second)| PairRecord::from_spheres(first, second));
+        let source = pack(&layout, &pairs);
+        // As the AFU reads them: rounded to the record's numbers, with the hardware's radius.
+        let records = config.reference().run_all(&unpack_pairs(&layout, &source, pairs.len()));
+        let expected = pack_contacts(&layout, &records);
+        let invalid: Vec<usize> = (0..records.len()).filter(|&i| records[i].flow() == Some(Flow::Invalid)).collect();
+        let first_invalid = invalid.first().map_or(u32::MAX >> (u32::BITS - COUNT_BITS), |&number| number as u32);
+        let contacts = records.iter().filter(|record| record.is_contact()).count();
+
+        let (template, first) = match config.shell {
+            Shell::Spl2 => (include_str!("spl2.v"), map::DATA_LINE as usize),
+            _ => (include_str!("line.v"), 0),
+        };
+        let reset = if self.spec().reset.active_low { ".rst_n          (~rst)" } else { ".rst            (rst)" };
+        let room = match config.results {
+            Results::All => "",
+            Results::Hits => "    .destination_lines (32'd4096),\n",
+        };
+        let lines = |lines: &[Line], text: &dyn Fn(usize, &str) -> String| {
+            let lines = lines.iter().enumerate().map(|(number, line)| text(number, &hex(line)));
+            lines.collect::<Vec<_>>().join("\n")
+        };
+        let values = [
+            ("@BENCH@", self.bench_name()),
+            ("@TOP@", self.top_name()),
+            ("@VERSION@", env!("CARGO_PKG_VERSION").to_owned()),
+            ("@COMMAND@", self.command()),
+            ("@SCPUS@", config.scpus.to_string()),
+            ("@COUNT@", pairs.len().to_string()),
+            ("@PER_LINE@", layout.pairs_per_line().to_string()),
+            ("@EXPECTED_LINES@", expected.len().to_string()),
+            ("@CONTACTS@", contacts.to_string()),
+            ("@INVALID@", invalid.len().to_string()),
+            ("@FIRST_INVALID@", first_invalid.to_string()),
+            ("@RESET@", reset.to_owned()),
+            ("@DESTINATION_LINES@", room.to_owned()),
+            (
+                "@SOURCE@",
+                lines(&source, &|number, hex| format!("      source_lines[{}] = 512'h{hex};", number + first)),
+            ),
+            ("@EXPECTED@", lines(&expected, &|number, hex| format!("      expect_line({number}, 512'h{hex});"))),
+        ];
+        values.into_iter().fold(template.to_owned(), |text, (name, value)| text.replace(name, &value))
+    }
+}
+
+fn hex(line: &Line) -> String {
+    line.iter().rev().map(|word| format!("{word:08x}")).collect::<Vec<_>>().join("_")
+}

@@ -1,0 +1,85 @@
+//! Records into lines, and pairs out of them, by the layout. Here records have words of binary32; in lines they have
+//! those of the layout's numbers, to which they are rounded.
+
+use crate::kernel::{ContactRecord, PairRecord, narrow, widen};
+
+use super::Layout;
+
+/// A line's dwords, the lowest first.
+pub(crate) type Line = [u32; 16];
+
+/// Bits of a dword of a line.
+pub(crate) const DWORD: usize = 32;
+/// A contact's word that is no number: its flags.
+pub(crate) const FLAGS: usize = 7;
+
+/// Puts a word of `bits` bits, which lies in one dword, into zero bits of a line.
+fn put(line: &mut Line, at: usize, bits: u32, word: u32) {
+    let mask = u32::MAX >> (DWORD as u32 - bits);
+    line[at / DWORD] |= (word & mask) << (at % DWORD);
+}
+
+/// A word of `bits` bits, which lies in one dword.
+pub(crate) fn get(line: &Line, at: usize, bits: u32) -> u32 {
+    line[at / DWORD] >> (at % DWORD) & u32::MAX >> (DWORD as u32 - bits)
+}
+
+/// The source lines of pairs; what is unused of the last is zero.
+pub(crate) fn pack(layout: &Layout, pairs: &[PairRecord]) -> Vec<Line> {
+    let (room, words, bits, record) =
+        (layout.pair_bits() as usize, layout.pair_words(), layout.word_bits(), layout.record().format());
+    let line = |pairs: &[PairRecord]| {
+        let mut line: Line = [0; 16];
+        for (place, pair) in pairs.iter().enumerate() {
+            for (slot, &word) in words.iter().enumerate() {
+                put(&mut line, place * room + slot * bits as usize, bits, narrow(pair.0[word], record));
+            }
+        }
+        line
+    };
+    pairs.chunks(layout.pairs_per_line() as usize).map(line).collect()
+}
+
+/// The pairs of source lines.
+pub(crate) fn unpack_pairs(layout: &Layout, lines: &[Line], count: usize) -> Vec<PairRecord> {
+    let (room, words, bits, record) =
+        (layout.pair_bits() as usize, layout.pair_words().len(), layout.word_bits(), layout.record().format());
+    let pair = |line: &Line, place: usize| {
+        let word = |slot: usize| widen(get(line, place * room + slot * bits as usize, bits), record);
+        layout.pair(&(0..words).map(word).collect::<Vec<_>>())
+    };
+    let places = 0..layout.pairs_per_line() as usize;
+    lines
+        .iter()
+        .flat_map(|line| places.clone().map(move |place| (line, place)))
+        .take(count)
+        .map(|(line, place)| pair(line, place))
+        .collect()
+}
+
+/// The destination lines of the contacts of all pairs, of which only hits are there where only contacts come back; what
+/// is unused of the last line is zero.
+pub(crate) fn pack_contacts(layout: &Layout, records: &[ContactRecord]) -> Vec<Line> {
+    let (words, bits, numbers) = (layout.contact_words(), layout.contact_bits() as usize, layout.record().format());
+    let number_bits = layout.number_bits();
+    let is_there = |record: &ContactRecord| number_bits == 0 || record.is_contact();
+    let there: Vec<_> = (0..).zip(records).filter(|(_, record)| is_there(record)).collect();
+    let line = |records: &[(u32, &ContactRecord)]| {
+        let mut line: Line = [0; 16];
+        for (place, (number, record)) in records.iter().enumerate() {
+            let at = place * bits;
+            if number_bits > 0 {
+                put(&mut line, at, number_bits, *number);
+            } else if words.is_empty() {
+                put(&mut line, at, 1, record.is_contact().into());
+            }
+            for (slot, &word) in words.iter().enumerate() {
+                let short = if word == FLAGS { record.0[word] } else { narrow(record.0[word], numbers) };
+                let at = at + number_bits as usize + slot * layout.word_bits() as usize;
+                put(&mut line, at, layout.word_bits(), short);
+            }
+        }
+        line
+    };
+    there.chunks(layout.contacts_per_line() as usize).map(line).collect()
+}

@@ -1,0 +1,127 @@
+//! The records of an AFU as a table for people: what lies where in a line, computed from the layout.
+
+use std::fmt::Write as _;
+
+use crate::config::{Record, Results};
+use crate::kernel::{ContactRecord, Flow, PAIR_FIELDS};
+
+use super::Afu;
+
+/// The words of a full contact, in record order.
+const CONTACT: [(&str, &str); 8] = [
+    ("pos_x", "contact position"),
+    ("pos_y", "contact position"),
+    ("pos_z", "contact position"),
+    ("normal_x", "contact normal"),
+    ("normal_y", "contact normal"),
+    ("normal_z", "contact normal"),
+    ("depth", "penetration depth"),
+    ("flags", "see below"),
+];
+
+impl Afu {
+    /// The section `Records` of PORTS.md.
+    pub(super) fn records(&self) -> String {
+        let (config, layout) = (&self.spec().config, self.layout());
+        let (line, word) = (layout.line_bits(), layout.word_bits());
+        let numbers = match config.record {
+            Record::F32 => "IEEE 754 binary32",
+            Record::F16 => "IEEE 754 binary16",
+            Record::Bf16 => "bfloat16 (the upper half of binary32)",
+        };
+        let mut out =
+            format!("## Records\n\nNumbers are {numbers}. Bits of a record are counted from its lowest bit.\n");
+        let (bits, per_line) = (layout.pair_bits(), layout.pairs_per_line());
+        let _ = write!(
+            out,
+            "\n**Pairs.** A pair is {bits} bits; a source line holds {per_line}. Pair p of the job is in line p / \
+             {per_line} of the source, from bit {bits} · (p mod {per_line}) on. The job reads ⌈`count` / {per_line}⌉ \
+             lines. What the last line holds after the last pair is ignored.\n\n| bits of a pair | word | meaning \
+             |\n|---|---|---|\n"
+        );
+        let words = layout.pair_words();
+        for (place, field) in words.iter().map(|word| PAIR_FIELDS[*word]).enumerate() {
+            let sphere = if field.ends_with('1') { "first" } else { "second" };
+            let what = if field.starts_with('r') { "radius" } else { "centre" };
+            let _ =
+                writeln!(out, "| {} | `{field}` | {what} of the {sphere} sphere |", bits_of(place as u32 * word, word));
+        }
+        rest(&mut out, words.len() as u32 * word, bits, "ignored");
+        if let Some(radius) = config.radius {
+            let _ = writeln!(out, "\nEvery sphere's radius is {radius}; it is part of the hardware.");
+        }
+
+        let (bits, per_line, number) = (layout.contact_bits(), layout.contacts_per_line(), layout.number_bits());
+        let (which, all) = match config.results {
+            Results::All => ("Every pair has a contact record, in the order of the pairs.", "count"),
+            Results::Hits => ("Only pairs in contact have a record, in the order of the pairs.", "contacts"),
+        };
+        let _ = write!(
+            out,
+            "\n**Contacts.** {which} A record is {bits} bit{s}; a destination line holds {per_line}. Record i is in line i \
+             / {per_line} of the destination, from bit {bits} · (i mod {per_line}) on. The job writes ⌈`{all}` / \
+             {per_line}⌉ lines and nothing after them. What the last line holds after the last record is zero.\n\n| bits of \
+             a record | word | meaning |\n|---|---|---|\n",
+            s = if bits == 1 { "" } else { "s" }
+        );
+        if number > 0 {
+            let _ = writeln!(out, "| {} | `number` | number of the pair, from 0 |", bits_of(0, number));
+        }
+        let words = layout.contact_words();
+        if words.is_empty() && number == 0 {
+            out += "| 0 | `hit` | 1: contact |\n";
+        }
+        for (place, (name, meaning)) in words.iter().map(|word| CONTACT[*word]).enumerate() {
+            let _ = writeln!(out, "| {} | `{name}` | {meaning} |", bits_of(number + place as u32 * word, word));
+        }
+        rest(&mut out, layout.used_bits(), bits, "zero");
+        if !words.is_empty() {
+            out += &self.flags();
+        }
+        let _ = write!(
+            out,
+            "\n**What is computed.** With d the distance of the centres p1 and p2: contact if d ≤ r1 + r2; then normal n = \
+             (p1 − p2) / d, position p1 + n · ((r2 − r1) − d) / 2, depth (r1 + r2) − d. If d = 0: position p1, normal (1, \
+             0, 0), depth r1 + r2. Without contact every word but the flags is zero. A pair with a NaN, an infinity or a \
+             negative radius is invalid (−0 is a valid radius): it is counted, and is no contact. A line is {line} bits.\n"
+        );
+        out
+    }
+
+    /// What the word `flags` can be.
+    fn flags(&self) -> String {
+        let mut out = "\nOf the word `flags`, bit 0 is set for a contact, bits 2:1 say which way the pair went, bit 3 is set \
+                       for an invalid pair, and bit 4 for one that the host must decide. The others are zero. It is one \
+                       of:\n\n| `flags` | meaning |\n|---|---|\n"
+            .to_owned();
+        let hits = self.spec().config.results == Results::Hits;
+        let flows = [
+            (Flow::Real, "contact"),
+            (Flow::Grazing, "contact, the centres are equal"),
+            (Flow::Fake, "no contact"),
+            (Flow::Invalid, "invalid pair"),
+        ];
+        let mut values: Vec<(u32, &str)> = flows
+            .into_iter()
+            .filter(|(flow, _)| !hits || matches!(flow, Flow::Real | Flow::Grazing))
+            .map(|(flow, meaning)| (flow.flags(), meaning))
+            .collect();
+        if self.spec().config.profile.is_exact() {
+            values.push((ContactRecord::UNSETTLED.flags(), "not decided: the host must compute this pair"));
+        }
+        for (value, meaning) in values {
+            let _ = writeln!(out, "| {value} | {meaning} |");
+        }
+        out
+    }
+}
+
+fn bits_of(low: u32, bits: u32) -> String {
+    format!("{}:{low}", low + bits - 1)
+}
+
+fn rest(out: &mut String, used: u32, bits: u32, what: &str) {
+    if used < bits {
+        let _ = writeln!(out, "| {} | | {what} |", bits_of(used, bits - used));
+    }
+}
