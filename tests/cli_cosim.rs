@@ -38,7 +38,7 @@ fn a_bad_file_is_one_line_with_file_line_and_field_and_nothing_is_written() {
     let header = "x1,y1,z1,r1,x2,y2,z2,r2\n";
     let lying = npy("{'descr': '<f4', 'fortran_order': False, 'shape': (1000000000000, 8), }\n", &[0; 32]);
     let flat = npy("{'descr': '<f4', 'fortran_order': False, 'shape': (8,), }\n", &[0; 32]);
-    let doubles = npy("{'descr': '<f8', 'fortran_order': False, 'shape': (1, 8), }\n", &[0; 64]);
+    let integers = npy("{'descr': '<i8', 'fortran_order': False, 'shape': (1, 8), }\n", &[0; 64]);
     let files: Vec<(&str, Vec<u8>, &[&str])> = vec![
         ("column.csv", "x1,y1,z1,r1,x2,y2,z2\n0,0,0,1,0,0,0\n".into(), &["column.csv", "line 1", "field r2"]),
         (
@@ -52,7 +52,7 @@ fn a_bad_file_is_one_line_with_file_line_and_field_and_nothing_is_written() {
         ("empty.npy", vec![], &["empty.npy", "header"]),
         ("lying.npy", lying, &["lying.npy", "shape"]),
         ("flat.npy", flat, &["flat.npy", "shape"]),
-        ("doubles.npy", doubles, &["doubles.npy", "descr"]),
+        ("integers.npy", integers, &["integers.npy", "descr", "astype"]),
         ("pairs.txt", header.into(), &["pairs.txt"]),
     ];
     for (name, content, words) in &files {

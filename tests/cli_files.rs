@@ -80,9 +80,12 @@ fn pairs_in_float64_run_with_a_note_of_what_was_rounded() {
     let mut bytes = [&b"\x93NUMPY\x01\x00"[..], &(header.len() as u16).to_le_bytes(), header.as_bytes()].concat();
     bytes.extend([0.1, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0_f64].iter().flat_map(|value| value.to_le_bytes()));
     fs::write(room.path().join("p.npy"), bytes).expect("written");
-    let assert = afu(room.path(), &["cosim", "--pairs", "p.npy"]).success();
-    let said = String::from_utf8(assert.get_output().stderr.clone()).expect("UTF-8");
-    assert!(said.contains("afu: p.npy: 1 of 8 numbers was rounded to binary32; the first is x1 of pair 0"), "{said}");
+    for option in ["--pairs", "--replay"] {
+        let assert = afu(room.path(), &["cosim", option, "p.npy"]).success();
+        let said = String::from_utf8(assert.get_output().stderr.clone()).expect("UTF-8");
+        let note = "afu: p.npy: 1 of 8 numbers was rounded to binary32; the first is x1 of pair 0";
+        assert!(said.contains(note), "{said}");
+    }
 }
 
 #[test]

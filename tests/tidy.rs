@@ -23,7 +23,7 @@ const HOUSE: &[(&str, &[&str])] = &[
     ("host", &["cosim", "patience", "link", "afu", "config", "kernel", "number"]),
     ("verify", &["host", "cosim", "link", "pairs", "afu", "config", "kernel", "number"]),
     ("tools", &["cosim"]),
-    ("synth", &["tools", "config", "afu", "pipeline", "operator", "kernel", "hdl", "number"]),
+    ("synth", &["tools", "config", "afu", "pipeline", "operator", "kernel", "hdl", "number", "files"]),
     (
         "report",
         &[

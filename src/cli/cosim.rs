@@ -131,9 +131,10 @@ impl Cosim {
         }
         let mut jobs = Vec::new();
         if let Some(path) = &self.replay {
-            let corpus = corpus::read(path)?;
+            let name = path.display().to_string();
+            let corpus = super::pairs::noted(&name, corpus::read(path)?);
             if !corpus.is_empty() {
-                jobs.push((path.display().to_string(), corpus));
+                jobs.push((name, corpus));
             }
         }
         for source in &self.pairs {

@@ -28,14 +28,19 @@ pub struct Pairs {
     out: PathBuf,
 }
 
-/// The pairs of a set or a file. A file's numbers that had to be rounded are told of on standard error.
+/// The pairs of a set or a file.
 #[cfg(feature = "cosim")]
 pub fn load(source: &str, seed: u64) -> Result<Vec<PairRecord>, Failure> {
-    let Loaded { pairs, rounded } = pairs::load_with_notes(source, seed)?;
+    Ok(noted(source, pairs::load_with_notes(source, seed)?))
+}
+
+/// The pairs of a file. Numbers that had to be rounded are told of on standard error.
+#[cfg(feature = "cosim")]
+pub fn noted(source: &str, Loaded { pairs, rounded }: Loaded) -> Vec<PairRecord> {
     if let Some(rounded) = rounded {
         eprintln!("afu: {source}: {rounded}");
     }
-    Ok(pairs)
+    pairs
 }
 
 pub fn run(options: &Pairs) -> Result<(), Failure> {

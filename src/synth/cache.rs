@@ -28,6 +28,11 @@ impl Cache {
         Ok(Self { folder })
     }
 
+    /// Where everything is kept: what an error names, since nobody knows the folder of [`Cache::scratch`].
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
     /// A folder to work in, gone when dropped.
     pub fn scratch(&self) -> Result<TempDir, SynthError> {
         tempfile::Builder::new()

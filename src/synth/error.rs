@@ -4,6 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::afu::BuildError;
+use crate::files;
 use crate::hdl::Errors;
 use crate::tools::MissingTool;
 
@@ -56,6 +57,6 @@ pub enum SynthError {
 
 impl SynthError {
     pub(super) fn io(action: &'static str, path: &Path, source: io::Error) -> Self {
-        Self::Io { action, path: path.to_owned(), source }
+        Self::Io { action, path: path.to_owned(), source: files::without_path(source) }
     }
 }

@@ -148,7 +148,7 @@ impl Run<'_> {
         }
         let room = cache.scratch()?;
         let file = room.path().join("netlist.json");
-        fs::copy(&self.netlist.path, &file).map_err(|e| SynthError::io("write", &file, e))?;
+        fs::copy(&self.netlist.path, &file).map_err(|e| SynthError::io("write into", cache.folder(), e))?;
         let mut command = self.nextpnr.command();
         command.args(self.device).args(fixed).args(options);
         command.args(["--json", "netlist.json", "--seed", &seed, "--report", "report.json"]);

@@ -66,7 +66,7 @@ pub(super) fn synthesise(
     let room = cache.scratch()?;
     for (name, text) in design.files {
         let file = room.path().join(name);
-        fs::write(&file, text).map_err(|e| SynthError::io("write", &file, e))?;
+        fs::write(&file, text).map_err(|e| SynthError::io("write into", cache.folder(), e))?;
     }
     run(yosys, yosys.command().args(["-q", "-p", &script]).current_dir(room.path()), design.unit)?;
     let cells = read::<Stat>(yosys, &room.path().join("stat.json"), design.unit)?.design.num_cells_by_type;
