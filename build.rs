@@ -34,8 +34,11 @@ mod cosim {
 
     use crate::verilate::{self, Compiler, Design, Harness, Tool, Trace};
 
-    const HARNESS: Harness<'static> =
-        Harness { header: include_str!("tb/harness.h"), source: include_str!("tb/harness.cpp") };
+    const HARNESS: Harness<'static> = Harness {
+        header: include_str!("tb/harness.h"),
+        source: include_str!("tb/harness.cpp"),
+        fst: include_str!("tb/fst.cpp"),
+    };
 
     /// The default AFU's top module.
     const TOP: &str = "afu_top";

@@ -2,7 +2,9 @@
 
 use std::fs::{self, File, OpenOptions, Permissions};
 use std::io::{self, BufWriter, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+use tempfile::TempDir;
 
 /// Writes a file's whole content. A file, old or new, is written aside and renamed into place, with the permissions
 /// that the old one had. Through a symbolic link the file that it names is replaced, not the link. A device, a pipe or
@@ -12,31 +14,95 @@ use std::path::Path;
 /// # Errors
 /// When the file system refuses, or `content` fails; an old file is then as it was.
 pub fn replace(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
-    let old = match fs::metadata(path) {
-        Ok(old) if !old.is_file() => {
-            let mut out = BufWriter::new(OpenOptions::new().write(true).open(path)?);
-            content(&mut out)?;
-            return out.flush();
-        }
-        Ok(old) => Some(old.permissions()),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => None,
-        Err(error) => return Err(error),
-    };
-    let named = if old.is_some() { fs::canonicalize(path)? } else { path.to_owned() };
-    let folder = match named.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    };
-    // A file made by hand rather than by tempfile, which would give it to its owner alone.
-    let aside = tempfile::Builder::new().prefix(".afu-").make_in(folder, |path| File::create_new(path));
-    let aside = aside.map_err(without_path)?;
-    let mut out = BufWriter::new(aside.as_file());
+    if is_device(path)? {
+        let mut out = BufWriter::new(OpenOptions::new().write(true).open(path)?);
+        content(&mut out)?;
+        return out.flush();
+    }
+    let aside = Aside::new(path)?;
+    let mut out = BufWriter::new(OpenOptions::new().write(true).open(aside.path())?);
     content(&mut out)?;
     out.flush()?;
     drop(out);
-    old.map_or(Ok(()), |old: Permissions| fs::set_permissions(aside.path(), old))?;
-    aside.persist(&named).map_err(|failed| failed.error)?;
-    Ok(())
+    aside.finish()
+}
+
+/// Whether `path` is there and no file. (A folder is none either: who opens it to write is told so.)
+fn is_device(path: &Path) -> io::Result<bool> {
+    match fs::metadata(path) {
+        Ok(there) => Ok(!there.is_file()),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
+        Err(error) => Err(error),
+    }
+}
+
+/// A file that is written under a name of its own, by code that wants a name and gives no whole content, and then takes
+/// the place of another as [`replace`] has it. It has a folder to itself, for files that such code puts beside it.
+/// Dropped before [`Aside::finish`], it leaves nothing behind.
+#[derive(Debug)]
+pub struct Aside {
+    /// Removed with all that is in it when this is dropped.
+    _room: TempDir,
+    aside: PathBuf,
+    to: To,
+}
+
+/// Where it goes.
+#[derive(Debug)]
+enum To {
+    /// A file's name, with the permissions of the one that is there.
+    File(PathBuf, Option<Permissions>),
+    /// Something that is no file, into which it is copied.
+    Device(PathBuf),
+}
+
+impl Aside {
+    /// An empty file that will take the place of `path`.
+    ///
+    /// # Errors
+    /// When the file system refuses.
+    pub fn new(path: &Path) -> io::Result<Self> {
+        if is_device(path)? {
+            return Self::within(&std::env::temp_dir(), To::Device(path.to_owned()));
+        }
+        let old = fs::metadata(path).ok().map(|old| old.permissions());
+        let named = if old.is_some() { fs::canonicalize(path)? } else { path.to_owned() };
+        let folder = match named.parent() {
+            Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
+            _ => PathBuf::from("."),
+        };
+        Self::within(&folder, To::File(named, old))
+    }
+
+    fn within(folder: &Path, to: To) -> io::Result<Self> {
+        let room = tempfile::Builder::new().prefix(".afu-").tempdir_in(folder).map_err(without_path)?;
+        let aside = room.path().join("aside");
+        // Made by hand rather than by tempfile, which would give it to its owner alone.
+        File::create_new(&aside)?;
+        Ok(Self { _room: room, aside, to })
+    }
+
+    /// Its name until then.
+    pub fn path(&self) -> &Path {
+        &self.aside
+    }
+
+    /// Puts it in its place.
+    ///
+    /// # Errors
+    /// When the file system refuses; an old file is then as it was.
+    pub fn finish(self) -> io::Result<()> {
+        match self.to {
+            To::File(named, old) => {
+                old.map_or(Ok(()), |old| fs::set_permissions(&self.aside, old))?;
+                fs::rename(&self.aside, named)
+            }
+            To::Device(path) => {
+                let mut device = OpenOptions::new().write(true).open(path)?;
+                io::copy(&mut File::open(&self.aside)?, &mut device).map(drop)
+            }
+        }
+    }
 }
 
 /// The same error without the name of a temporary file, which nobody knows.

@@ -21,10 +21,10 @@
 //! what refuses writes.
 //!
 //! **The shell.** SPL2's shell finds the job after its longest pause and two reads. While the job runs it polls the
-//! control memory, at most once in that pause and at most once for each line of the job (a poll that delays no line
-//! takes no time). If a poll takes no more than half the pause, twice as many fit into the job without polls as into
-//! the pauses of the job with them; if it takes more, there are fewer lines than that. Its writes are counters, fence
-//! and status. Almost-full and acknowledgements that are held back are refusals.
+//! control memory. A poll that delays no line takes no time, so there are no more of them than lines of the job; and
+//! each follows a pause. Polls that take up to half a pause at most double the job, so that they are no more than the
+//! pauses in twice the time that the job takes without them. If each takes longer, the job has fewer lines than that.
+//! The shell's writes are counters, fence and status. Almost-full and acknowledgements that are held back are refusals.
 
 use crate::afu::Capability;
 use crate::afu::spl2::map;

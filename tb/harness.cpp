@@ -3,7 +3,10 @@
 
 #include "harness.h"
 
+#include <cerrno>
+#include <csignal>
 #include <cstring>
+#include <ios>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -18,6 +21,7 @@ using Waveform = VerilatedVcdC;
 #elif AFU_TRACE == 2
 #include "verilated_fst_c.h"
 using Waveform = VerilatedFstC;
+extern "C" bool afu_fst_failed(); // fst.cpp
 #endif
 
 namespace {
@@ -30,6 +34,11 @@ std::string where(const char *file, int line, const char *scope) {
 }
 
 thread_local std::string creation_error;
+
+// The waveform's writer failed, not the model.
+struct waveform_error : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
 
 } // namespace
 
@@ -57,22 +66,50 @@ struct afu_instance {
     uint64_t half_period_ps = 1;
     uint64_t now_ps = 0;
 
+    // Runs what writes the waveform. A writer that has failed would fail again in its destructor, which must not throw:
+    // it is given up as it is, and never destroyed.
+    template <class Body> void writing(Body body) {
+        std::string why;
+        errno = 0;
+        try {
+            body();
+#if AFU_TRACE == 2
+            if (!afu_fst_failed()) return;
+            why = "not everything could be written: the disk may be full";
+#else
+            return;
+#endif
+        } catch (const std::ios_base::failure &e) {
+            why = errno ? std::strerror(errno) : e.what();
+        } catch (const std::exception &e) {
+            why = e.what();
+        } catch (...) {
+            why = "unknown C++ exception";
+        }
+        tracing = false;
+        static_cast<void>(waveform.release());
+        throw waveform_error(why);
+    }
+
     void dump() {
         if (!tracing) return;
-        waveform->dump(now_ps);
+        writing([&] { waveform->dump(now_ps); });
         now_ps += half_period_ps;
     }
 #else
     void dump() {}
 #endif
 
-    // Runs `body`; turns what it throws into -1 and a text. What Verilator's runtime finds through the thread, such as
+    // Runs `body`; turns what it throws into -1 or AFU_WAVEFORM, and a text. What Verilator's runtime finds through the thread, such as
     // who is to blame for a $stop, must be this instance and not the last one the thread made, which may be gone.
     template <class Body> int guarded(Body body) {
         if (Verilated::threadContextp() != context.get()) Verilated::threadContextp(context.get());
         try {
             body();
             return 0;
+        } catch (const waveform_error &e) {
+            error_text = e.what();
+            return AFU_WAVEFORM;
         } catch (const std::exception &e) {
             error_text = e.what();
         } catch (...) {
@@ -130,7 +167,7 @@ void destroy(afu_instance *instance) {
     if (!instance) return;
 #if AFU_TRACE
     instance->guarded([&] {
-        if (instance->tracing) instance->waveform->close();
+        if (instance->tracing) instance->writing([&] { instance->waveform->close(); });
     });
 #endif
     if (!instance->failed) instance->guarded([&] { instance->model->final(); });
@@ -172,14 +209,19 @@ int trace_open(afu_instance *instance, const char *path, uint64_t half_period_ps
     return instance->guarded([&] {
         if (instance->tracing) throw std::runtime_error("a waveform is already being written");
         if (half_period_ps == 0) throw std::runtime_error("the half period must not be zero");
-        if (!instance->waveform) {
-            instance->waveform = std::make_unique<Waveform>();
-            instance->model->trace(instance->waveform.get(), 99);
-        }
-        instance->waveform->set_time_unit("1ps");
-        instance->waveform->set_time_resolution("1ps");
-        instance->waveform->open(path);
-        if (!instance->waveform->isOpen()) throw std::runtime_error(std::string("cannot write ") + path);
+        // A file beyond a limit of its size is an error of the write, as on a full disk, and not the process's end.
+        const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+        if (handler != SIG_DFL) std::signal(SIGXFSZ, handler);
+        instance->writing([&] {
+            if (!instance->waveform) {
+                instance->waveform = std::make_unique<Waveform>();
+                instance->model->trace(instance->waveform.get(), 99);
+            }
+            instance->waveform->set_time_unit("1ps");
+            instance->waveform->set_time_resolution("1ps");
+            instance->waveform->open(path);
+            if (!instance->waveform->isOpen()) throw std::runtime_error("the file cannot be made");
+        });
         instance->tracing = true;
         instance->half_period_ps = half_period_ps;
     });
@@ -188,8 +230,8 @@ int trace_open(afu_instance *instance, const char *path, uint64_t half_period_ps
 int trace_close(afu_instance *instance) {
     return instance->guarded([&] {
         if (!instance->tracing) throw std::runtime_error("no waveform is being written");
+        instance->writing([&] { instance->waveform->close(); });
         instance->tracing = false;
-        instance->waveform->close();
     });
 }
 #else

@@ -5,7 +5,8 @@
  * Bits above a port's width are zero and must be kept so.
  *
  * No C++ exception crosses this border: what returns int returns 0, or -1 with a text from `error`. After an error
- * of `evaluate` or `clock` ($fatal, $stop, $finish, a Verilator check) the instance only repeats that error.
+ * of `evaluate` or `clock` ($fatal, $stop, $finish, a Verilator check) the instance only repeats that error. Where it was
+ * the waveform that could not be written, it returns AFU_WAVEFORM instead of -1, and the waveform is given up.
  * Each instance has a VerilatedContext of its own, so different threads may run different instances.
  */
 #ifndef AFU_HARNESS_H
@@ -18,7 +19,7 @@ extern "C" {
 #endif
 
 /* Changes with every change of this file that a caller would notice. */
-#define AFU_ABI 1u
+#define AFU_ABI 2u
 
 #define AFU_INPUT 0u
 #define AFU_OUTPUT 1u
@@ -26,6 +27,8 @@ extern "C" {
 #define AFU_TRACE_OFF 0u
 #define AFU_TRACE_VCD 1u
 #define AFU_TRACE_FST 2u
+
+#define AFU_WAVEFORM (-2)
 
 typedef struct afu_port {
     const char *name;   /* as in the Verilog */

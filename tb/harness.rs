@@ -1,9 +1,10 @@
-pub const AFU_ABI: u32 = 1;
+pub const AFU_ABI: u32 = 2;
 pub const AFU_INPUT: u32 = 0;
 pub const AFU_OUTPUT: u32 = 1;
 pub const AFU_TRACE_OFF: u32 = 0;
 pub const AFU_TRACE_VCD: u32 = 1;
 pub const AFU_TRACE_FST: u32 = 2;
+pub const AFU_WAVEFORM: i32 = -2;
 #[repr(C)]
 #[derive(Debug, Copy, Clone)]
 pub struct afu_port {

@@ -158,6 +158,32 @@ fn a_waveform_can_follow_another_and_without_tracing_says_so() {
     assert!(error.contains("built without waveforms"), "{error}");
 }
 
+/// What cannot be written is an error with its file's name, leaves nothing, and ends no process.
+#[test]
+fn a_waveform_on_a_full_disk_is_an_error_and_no_file() {
+    use std::os::unix::fs::{FileTypeExt, symlink};
+    for (trace, name) in [(Trace::Vcd, "wave.vcd"), (Trace::Fst, "wave.fst")] {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(name);
+        symlink("/dev/full", &path).unwrap();
+        let Ok(model) = Model::build(&counter(""), trace) else { continue }; // without the libraries of FST
+        let instance = model.instance(0).unwrap();
+        instance.trace_open(&path, 500).unwrap();
+        count_to(&instance, 100);
+        let error = instance.trace_close().unwrap_err().to_string();
+        assert!(error.contains(name) && error.contains("No space left on device"), "{error}");
+        assert!(fs::metadata(&path).unwrap().file_type().is_char_device(), "{name} is what it was");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "{name}");
+        // The model goes on, and a waveform that fits can follow.
+        fs::remove_file(&path).unwrap();
+        instance.trace_open(&path, 500).unwrap();
+        instance.clock("clk").unwrap().tick(100).unwrap();
+        assert!(!path.exists(), "{name} is there whole or not at all");
+        instance.trace_close().unwrap();
+        assert!(fs::metadata(&path).unwrap().len() > 100, "{name}");
+    }
+}
+
 #[test]
 fn fst_is_written_where_its_libraries_are() {
     let folder = tempfile::tempdir().unwrap();

@@ -19,7 +19,7 @@ const HOUSE: &[(&str, &[&str])] = &[
     ("afu", &["config", "pipeline", "operator", "kernel", "hdl", "number"]),
     ("link", &["number"]),
     ("patience", &["link", "afu", "config"]),
-    ("cosim", &["config", "patience", "afu", "link", "pairs", "kernel", "number"]),
+    ("cosim", &["config", "patience", "afu", "link", "pairs", "kernel", "number", "files"]),
     ("host", &["cosim", "patience", "link", "afu", "config", "kernel", "number"]),
     ("verify", &["host", "cosim", "link", "pairs", "afu", "config", "kernel", "number"]),
     ("tools", &["cosim"]),

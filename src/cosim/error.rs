@@ -64,7 +64,7 @@ pub enum SimulationError {
         /// What there is.
         found: String,
     },
-    /// A waveform could not be opened or closed.
+    /// A waveform could not be begun, written or ended.
     #[error("waveform {}: {why}", path.display())]
     Waveform {
         /// The file.

@@ -1,14 +1,16 @@
 //! One module with its state.
 
+use std::cell::RefCell;
 use std::ffi::{CStr, CString, c_int};
 use std::os::unix::ffi::OsStrExt;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::ptr::NonNull;
 use std::slice;
 
 use super::abi::{Api, raw};
 use super::error::SimulationError;
 use super::port::{Port, Wide};
+use crate::files::Aside;
 
 /// A simulated module: its ports are memory ([`Port`], [`Wide`]), its clock is [`Clock::tick`].
 ///
@@ -17,6 +19,15 @@ use super::port::{Port, Wide};
 pub struct Instance {
     api: Api,
     handle: NonNull<raw::afu_instance>,
+    /// The waveform that is being written.
+    waveform: RefCell<Option<Waveform>>,
+}
+
+/// A waveform that is being written, aside from where it will stand.
+#[derive(Debug)]
+struct Waveform {
+    path: PathBuf,
+    aside: Aside,
 }
 
 // SAFETY: an instance has a VerilatedContext of its own and refers to nothing of the thread that made it; it is not
@@ -35,7 +46,7 @@ impl Instance {
         // SAFETY: a function of a loaded model, which takes any seed.
         let handle = NonNull::new(unsafe { (api.create)(seed) });
         let handle = handle.ok_or_else(|| SimulationError::Stopped(message(api, std::ptr::null_mut())))?;
-        Ok(Self { api, handle })
+        Ok(Self { api, handle, waveform: RefCell::new(None) })
     }
 
     fn ports(&self) -> &[raw::afu_port] {
@@ -161,31 +172,46 @@ impl Instance {
     }
 
     /// Writes a waveform of all that follows to `path`, with the time axis of a clock of this half period. The model
-    /// must have been built with a [`Trace`](super::Trace). After [`Instance::trace_close`] another may follow.
+    /// must have been built with a [`Trace`](super::Trace). The file is there once [`Instance::trace_close`] has ended
+    /// it, and not before; then another may follow.
     ///
     /// # Errors
     /// When the model was built without, one is open already, or the file cannot be written.
     pub fn trace_open(&self, path: &Path, half_period_ps: u64) -> Result<(), SimulationError> {
         let fail = |why: String| SimulationError::Waveform { path: path.to_owned(), why };
-        let text = CString::new(path.as_os_str().as_bytes()).map_err(|e| fail(e.to_string()))?;
+        let aside = Aside::new(path).map_err(|e| fail(e.to_string()))?;
+        let text = CString::new(aside.path().as_os_str().as_bytes()).map_err(|e| fail(e.to_string()))?;
         // SAFETY: the handle is live and the text ends with a zero.
         match unsafe { (self.api.trace_open)(self.handle.as_ptr(), text.as_ptr(), half_period_ps) } {
-            0 => Ok(()),
+            0 => {
+                self.waveform.replace(Some(Waveform { path: path.to_owned(), aside }));
+                Ok(())
+            }
             _ => Err(fail(message(self.api, self.handle.as_ptr()))),
         }
     }
 
-    /// Ends the waveform.
+    /// Ends the waveform and puts its file in its place.
     ///
     /// # Errors
-    /// When none is open.
+    /// When none is open, or the file could not be written: then there is none.
     pub fn trace_close(&self) -> Result<(), SimulationError> {
         // SAFETY: the handle is live.
-        self.checked(unsafe { (self.api.trace_close)(self.handle.as_ptr()) })
+        self.checked(unsafe { (self.api.trace_close)(self.handle.as_ptr()) })?;
+        let Some(Waveform { path, aside }) = self.waveform.take() else { return Ok(()) };
+        aside.finish().map_err(|error| SimulationError::Waveform { path, why: error.to_string() })
     }
 
     fn checked(&self, result: c_int) -> Result<(), SimulationError> {
-        if result == 0 { Ok(()) } else { Err(SimulationError::Stopped(message(self.api, self.handle.as_ptr()))) }
+        if result == 0 {
+            return Ok(());
+        }
+        let why = message(self.api, self.handle.as_ptr());
+        // Taken, its file goes too.
+        match self.waveform.borrow_mut().take_if(|_| result == raw::AFU_WAVEFORM) {
+            Some(Waveform { path, .. }) => Err(SimulationError::Waveform { path, why }),
+            None => Err(SimulationError::Stopped(why)),
+        }
     }
 }
 
@@ -197,7 +223,7 @@ impl Clock<'_> {
     /// When the module ends itself.
     #[inline]
     pub fn tick(self, cycles: u64) -> Result<(), SimulationError> {
-        let Instance { api, handle } = self.instance;
+        let Instance { api, handle, .. } = self.instance;
         // SAFETY: the handle is live and the index is that of one of its ports.
         self.instance.checked(unsafe { (api.clock)(handle.as_ptr(), self.index, cycles) })
     }

@@ -12,8 +12,11 @@ use super::instance::Instance;
 use super::source::Source;
 use super::verilate::{self, Design, Harness, Trace};
 
-const HARNESS: Harness<'static> =
-    Harness { header: include_str!("../../tb/harness.h"), source: include_str!("../../tb/harness.cpp") };
+const HARNESS: Harness<'static> = Harness {
+    header: include_str!("../../tb/harness.h"),
+    source: include_str!("../../tb/harness.cpp"),
+    fst: include_str!("../../tb/fst.cpp"),
+};
 
 /// The code of one module, of which any number of [`Instance`]s can be made. It stays loaded until the process ends:
 /// Verilator's code has thread-local and static state which unloading would pull from under it.

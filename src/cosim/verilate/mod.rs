@@ -61,6 +61,8 @@ pub struct Harness<'a> {
     pub header: &'a str,
     /// `tb/harness.cpp`.
     pub source: &'a str,
+    /// `tb/fst.cpp`, which stands in the place of the runtime's own writer of FST files.
+    pub fst: &'a str,
 }
 
 /// What to verilate.
@@ -124,8 +126,9 @@ pub fn read_file_list(list: &Path) -> Result<Vec<File>, Error> {
 /// The key a model is cached by: everything that could change its bytes.
 fn key(design: &Design, tool: &Tool, compiler: &Compiler, kind: &str) -> String {
     let (rtl, arguments) = (rtl_sha256(design.files), verilator_arguments(design, design.files).join(" "));
-    let harness = [design.harness.header, design.harness.source];
-    key_of(&[RECIPE, kind, tool.sha256(), compiler.identity(), &rtl, harness[0], harness[1], &arguments])
+    let Harness { header, source, fst } = design.harness;
+    let fst = if design.trace == Trace::Fst { fst } else { "" };
+    key_of(&[RECIPE, kind, tool.sha256(), compiler.identity(), &rtl, header, source, fst, &arguments])
 }
 
 fn key_of(parts: &[&str]) -> String {
@@ -223,7 +226,7 @@ fn objects(
     write(&generated.join("harness.h"), design.harness.header)?;
     write(&generated.join("harness.cpp"), design.harness.source)?;
 
-    let mut objects = runtime(&classes.runtime, design.trace, tool, compiler, cache)?;
+    let mut objects = runtime(&classes.runtime, design, tool, compiler, cache)?;
     let mut flags = compile::model_flags(tool, design.trace);
     flags.push(format!("-DAFU_TRACE={}", design.trace.number()));
     flags.push(format!("-DAFU_RTL_SHA256=\"{}\"", rtl_sha256(design.files)));
@@ -259,18 +262,28 @@ fn run_verilator(
     Err(Error::Refused { top: design.top.to_owned(), text: tool::readable(&output) })
 }
 
+/// The runtime's writer of FST files.
+const FST_WRITER: &str = "verilated_fst_c";
+
 /// Verilator's own runtime, compiled once for every model of one Verilator, compiler and trace.
 fn runtime(
     names: &[String],
-    trace: Trace,
+    design: &Design,
     tool: &Tool,
     compiler: &Compiler,
     cache: &Path,
 ) -> Result<Vec<PathBuf>, Error> {
-    let flags = compile::runtime_flags(tool, trace);
-    let parts = [RECIPE, "runtime", tool.sha256(), compiler.identity(), &names.join(" "), &flags.join(" ")];
+    let flags = compile::runtime_flags(tool, design.trace);
+    let fst = if names.iter().any(|name| name == FST_WRITER) { design.harness.fst } else { "" };
+    let parts = [RECIPE, "runtime", tool.sha256(), compiler.identity(), &names.join(" "), &flags.join(" "), fst];
     let folder = cache::once(cache, &key_of(&parts), |aside| {
-        let sources: Vec<PathBuf> = names.iter().map(|name| tool.include().join(format!("{name}.cpp"))).collect();
+        let of_ours = aside.join(format!("{FST_WRITER}_checked.cpp"));
+        let source = |name: &String| match name.as_str() {
+            FST_WRITER => of_ours.clone(),
+            name => tool.include().join(format!("{name}.cpp")),
+        };
+        write(&of_ours, fst)?;
+        let sources: Vec<PathBuf> = names.iter().map(source).collect();
         compiler.compile_all(&sources, &flags, aside).map(drop)
     })?;
     cache::files_in(&folder, "o")
