@@ -8,16 +8,16 @@
 //! together no more than a line a cycle ([`Capability::computing_cycles`]).
 //!
 //! **Requests.** A line that is read or written takes 1 ÷ rate cycles of its direction's bandwidth and of the bandwidth
-//! that both share. An AFU keeps [`WINDOW`] requests of a direction in flight, or as many as the link takes. All of
+//! that both share. An AFU keeps `WINDOW` requests of a direction in flight, or as many as the link takes. All of
 //! them are answered within the link's longest latency (tail and stragglers included) and the time of so many lines.
 //! So *n* lines take at most ⌈n ÷ window⌉ times that latency beside their bandwidth. Between two windows the AFU takes
-//! [`TURNAROUND`] cycles to ask again, and may miss a turn of its SCPUs. Its results wait in a memory that holds all
+//! `TURNAROUND` cycles to ask again, and may miss a turn of its SCPUs. Its results wait in a memory that holds all
 //! that its SCPUs do, so its own latency counts once. One window more is what an earlier job may have left in flight.
 //!
 //! **Refusals.** A direction that stalls does so at random: in each cycle outside a stall one begins with chance *c*.
 //! The number of stalls before *n* open cycles is a sum of *n* geometric variables, so by Chernoff's bound, for any *s*
-//! from 1 to 1 ÷ c, it is *k* or more with a chance of at most ((1 − c) ÷ (1 − c·s))ⁿ · s⁻ᵏ. [`refused`] takes the *k*
-//! for which that chance is [`RARE`], and each stall at its longest. Reads wait for what refuses reads, and writes for
+//! from 1 to 1 ÷ c, it is *k* or more with a chance of at most ((1 − c) ÷ (1 − c·s))ⁿ · s⁻ᵏ. `refused` takes the *k*
+//! for which that chance is `RARE`, and each stall at its longest. Reads wait for what refuses reads, and writes for
 //! what refuses writes.
 //!
 //! **The shell.** SPL2's shell finds the job after its longest pause and two reads. While the job runs it polls the

@@ -24,16 +24,28 @@ fn plan() -> Plan {
 
 /// The study in a folder, stopped by force after so many pieces of work; and how many cosims it began.
 fn study(folder: &Path, stop_after: usize) -> (Option<Results>, usize) {
-    let (mut done, mut begun) = (0, 0);
+    let (mut done, mut begun, mut configurations) = (0, 0, 0);
+    let (mut planned, mut worked) = (0.0, 0.0);
     let ran = catch_unwind(AssertUnwindSafe(|| {
         run(&plan(), Some((folder, false)), |work| match work {
-            Work::Begun(what) => begun += usize::from(what.ends_with(": cosim")),
+            Work::Begun(what) => {
+                begun += usize::from(what.ends_with(": cosim"));
+                assert!(worked < planned, "the bar is full while there is work: {what}");
+            }
             Work::Done(_) if done == stop_after => panic!("pulled the plug"),
-            Work::Done(_) => done += 1,
-            Work::Planned(_) => {}
+            Work::Done(seconds) => (done, worked) = (done + 1, worked + seconds),
+            Work::Planned(seconds) => planned += seconds,
+            Work::Configuration(line) => {
+                configurations += 1;
+                assert!(line.starts_with("e8f3z") && line.contains(" cycles, line in to line out"), "{line}");
+            }
         })
         .expect("a study that ends")
     }));
+    if ran.is_ok() {
+        assert!((worked - planned).abs() < 1e-3, "what was planned was done: {planned}, {worked}");
+        assert_eq!(configurations, 2);
+    }
     (ran.ok(), begun)
 }
 

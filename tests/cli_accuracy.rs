@@ -14,6 +14,14 @@ fn a_row_a_profile_with_errors_and_times() {
     let output = told.get_output();
     let text = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(text.contains("paper") && text.contains("e8f11") && text.contains("delay model"), "{text}");
+    for name in ["paper", "e8f11"] {
+        let begins = format!("accuracy: {name}: ");
+        assert_eq!(
+            text.lines().filter(|line| line.starts_with(&begins)).count(),
+            1,
+            "no terminal, a line each: {text}"
+        );
+    }
 
     let results: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
     assert_eq!(results["schema"], "contact-afu/accuracy/1");

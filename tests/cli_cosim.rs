@@ -184,6 +184,7 @@ fn several_sets_are_several_jobs_over_any_link() {
     let done = afu(room.path(), &arguments).success();
     let table = String::from_utf8(done.get_output().stdout.clone()).expect("UTF-8");
     assert!(table.contains("diamond:3") && table.contains("random:500"), "{table}");
+    assert!(table.ends_with("\nPASS: 2 jobs, 632 pairs, every bit as in the reference\n"), "{table}");
     let report = json(room.path(), "out.json");
     assert_eq!(report["pairs"], 132 + 500);
     assert_eq!((&report["jobs"][0]["pairs"], &report["jobs"][1]["pairs"]), (&132.into(), &500.into()));
@@ -214,8 +215,19 @@ fn a_planted_fault_is_found_told_and_kept() {
         assert!(told.contains(word), "{word} in {told}");
     }
     assert!(told.contains("replay: afu cosim --rtl rtl --scpus 2 --pairs diamond:3"), "{told}");
+    let table = String::from_utf8(failed.get_output().stdout.clone()).expect("UTF-8");
+    assert!(table.ends_with("\nFAIL: 1 of 1 jobs: diamond:3\n"), "{table}");
     let report = json(room.path(), "out.json");
     assert_eq!((&report["passed"], &report["mismatches"]), (&false.into(), &132.into()));
+    let differ = "132 of 132 records differ from the reference";
+    assert_eq!(report["failures"], serde_json::json!([format!("diamond:3: {differ}")]));
+    let job = &report["jobs"][0];
+    assert_eq!(job["failures"], serde_json::json!([differ]));
+    assert_eq!(job["first_mismatches"].as_array().map(Vec::len), Some(10));
+    let first = &job["first_mismatches"][0];
+    assert!(first["cycle"].as_u64().is_some_and(|cycle| cycle > 50), "{first}");
+    let words = serde_json::json!([{"word": 6, "field": "depth", "expected": "00000000", "got": "00000001"}]);
+    assert_eq!((&first["pair"], &first["words"]), (&0.into(), &words));
     let junit = fs::read_to_string(room.path().join("out.xml")).expect("written");
     assert!(junit.contains("132 of 132 records differ"), "{junit}");
 
@@ -248,8 +260,27 @@ fn a_job_that_does_not_finish_is_exit_1_and_says_what_it_waits_for() {
     assert!(reason.contains("waiting for the AFU (0 reads and 0 writes without a response)"), "{reason}");
     let report = json(room.path(), "out.json");
     assert_eq!((&report["passed"], &report["jobs"][0]["passed"]), (&false.into(), &false.into()));
+    let failure = report["failures"][0].as_str().expect("text");
+    assert!(failure.starts_with("diamond:3: the job did not finish after "), "{failure}");
     let junit = fs::read_to_string(room.path().join("out.xml")).expect("written");
     assert!(junit.contains("did not finish"), "{junit}");
+}
+
+/// On a terminal, a pseudo one here: how long a model takes, and that the host works when the bar is full.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_terminal_sees_what_is_going_on() {
+    let room = room();
+    let program = assert_cmd::cargo::cargo_bin("afu");
+    let command = format!("{} cosim --scpus 2 --pairs diamond:3", program.display());
+    let shown =
+        Command::new("script").args(["-qec", &command, "/dev/null"]).current_dir(room.path()).assert().success();
+    let shown = String::from_utf8_lossy(&shown.get_output().stdout).into_owned();
+    for words in
+        ["making the model of the AFU (Verilator and C++ compiler), 0s", "comparing every bit with the reference, 0s"]
+    {
+        assert!(shown.contains(words), "{words}: {shown}");
+    }
 }
 
 #[test]
@@ -260,6 +291,37 @@ fn without_verilator_it_is_exit_3_and_says_the_command() {
     // Not the built-in AFU.
     let assert = command.args(["cosim", "--scpus", "63", "--pairs", "diamond:2"]).assert().code(3);
     assert!(said(&assert).contains("Verilator is missing") && said(&assert).contains("install"), "{}", said(&assert));
+}
+
+/// Faults once: a VCD's destructor threw (status 134), one writer of FST files called `abort`, the other kept silent.
+#[cfg(unix)]
+#[test]
+fn a_waveform_that_cannot_be_written_is_exit_4_and_leaves_no_file() {
+    for name in ["wave.vcd", "wave.fst"] {
+        let room = room();
+        let arguments = ["cosim", "--scpus", "1", "--profile", "e8f3z", "--contact", "hit", "--pairs", "diamond:3"];
+        let arguments = [&arguments[..], &["--trace", name]].concat();
+        // Without a limit first, which makes the model.
+        let whole = afu(room.path(), &arguments);
+        if whole.get_output().status.code() != Some(0) {
+            assert!(name == "wave.fst", "{}", said(&whole));
+            continue; // without the libraries of FST
+        }
+        let bytes = fs::metadata(room.path().join(name)).expect("written").len();
+        fs::remove_file(room.path().join(name)).expect("removed");
+        // KiB that a file may have: less than the header needs, half, all but the end.
+        for limit in [4, bytes / 2048, bytes / 1024] {
+            let program = assert_cmd::cargo::cargo_bin("afu");
+            let limited = format!("ulimit -f {limit}; exec \"$0\" \"$@\"");
+            let mut command = Command::new("bash");
+            command.current_dir(room.path()).args(["-c", &limited]).arg(program).args(&arguments);
+            let failed = command.assert().code(4);
+            let said = said(&failed);
+            let last = said.lines().last().unwrap_or_default();
+            assert!(last.starts_with("afu: ") && last.contains(name), "{limit}: {said}");
+            assert_eq!(fs::read_dir(room.path()).expect("there").count(), 0, "{name}, {limit}: no half file");
+        }
+    }
 }
 
 #[test]

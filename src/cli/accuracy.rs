@@ -89,6 +89,7 @@ pub fn run(options: &Accuracy) -> Result<(), Failure> {
             Work::Planned(more) => planned += more,
             Work::Begun(what) => bar.set_prefix(what),
             Work::Done(seconds) => done += seconds,
+            Work::Configuration(line) => progress::line(&format!("accuracy: {line}")),
         }
         bar.set_length(planned as u64);
         bar.set_position(done as u64);

@@ -11,14 +11,14 @@ use contact_afu::link::LinkModel;
 use contact_afu::report::cosim::{Job, Run};
 use contact_afu::report::tally::Tally;
 use contact_afu::report::{junit, mismatch};
-use contact_afu::verify::{Bench, Origin, Verdict, corpus};
+use contact_afu::verify::{Bench, Origin, Progress, Verdict, corpus};
 use contact_afu::{pairs, tools};
 
 use super::failure::{Classify, Failure, Kind};
 use super::machine::{One, warn_of_unused_scpus};
 use super::{link, output, progress, replay};
 
-/// Mismatches that are told one by one, for each job.
+/// Mismatches that are told one by one, for each job, as in the JSON.
 const TOLD: usize = 10;
 /// Where mismatching pairs go that no `--replay` takes.
 const CORPUS: &str = "afu-corpus.csv";
@@ -102,7 +102,7 @@ pub fn run(options: &Cosim) -> Result<(), Failure> {
     }
 
     let stdout_taken = [&options.json, &options.junit].into_iter().flatten().any(|path| output::is_stdout(path));
-    output::show(&run.table(), stdout_taken)?;
+    output::show(&format!("{}\n{}", run.table(), run.verdict()), stdout_taken)?;
     if let Some(path) = &options.json {
         output::json(path, &run.json())?;
     }
@@ -177,17 +177,21 @@ impl Cosim {
         link: &LinkModel,
     ) -> Result<(Job, Option<Verdict>), Failure> {
         let bar = progress::bar(name, "pairs", pairs.len() as u64);
-        let done = bench.run_with(pairs, link, self.seed, self.trace.as_deref(), |done| bar.set_position(done));
+        let done = bench.run_with(pairs, link, self.seed, self.trace.as_deref(), |done| match done {
+            Progress::Simulated(pairs) => bar.set_position(pairs),
+            Progress::Comparing => progress::behind(&bar, "comparing every bit with the reference"),
+        });
         bar.finish_and_clear();
         let name = name.to_owned();
         match done {
             Ok(verdict) => {
                 let tally = Tally::of(&verdict, bench.config());
-                Ok((Job { name, tally, failures: verdict.unmet.clone() }, Some(verdict)))
+                let mismatches = verdict.mismatches.iter().take(TOLD).copied().collect();
+                Ok((Job { name, tally, failures: verdict.unmet.clone(), mismatches }, Some(verdict)))
             }
             Err(error) if error.is_the_job_s() => {
                 let tally = Tally { pairs: pairs.len() as u64, ..Tally::default() };
-                Ok((Job { name, tally, failures: vec![error.to_string()] }, None))
+                Ok((Job { name, tally, failures: vec![error.to_string()], mismatches: Vec::new() }, None))
             }
             Err(error) => Err(error.into()),
         }

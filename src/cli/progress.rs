@@ -1,5 +1,7 @@
-//! What long work shows on standard error: a bar, on a terminal only.
+//! What long work shows on standard error: a bar on a terminal, lines elsewhere.
 
+#[cfg(feature = "cosim")]
+use std::io::{self, IsTerminal};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -16,6 +18,23 @@ pub fn bar(title: &str, unit: &str, length: u64) -> ProgressBar {
     bar
 }
 
+/// Shows work behind a full bar, whose length nobody knows: nothing stands still.
+#[cfg(feature = "cosim")]
+pub fn behind(bar: &ProgressBar, what: &str) {
+    bar.set_style(working());
+    bar.set_message(format!("{}: {what}", bar.prefix()));
+    bar.reset_elapsed();
+    bar.enable_steady_tick(TICK);
+}
+
+/// Says something where there is no terminal to show a bar.
+#[cfg(feature = "cosim")]
+pub fn line(what: &str) {
+    if !io::stderr().is_terminal() {
+        eprintln!("{what}");
+    }
+}
+
 /// A bar over work whose length is guessed, and so is told only as a share.
 #[cfg(feature = "cosim")]
 pub fn share(title: &str) -> ProgressBar {
@@ -24,13 +43,22 @@ pub fn share(title: &str) -> ProgressBar {
         bar.set_style(style.progress_chars("=> "));
     }
     bar.set_prefix(title.to_owned());
+    bar.enable_steady_tick(TICK);
     bar
 }
 
-/// A turning sign for work whose length nobody knows.
+const TICK: Duration = Duration::from_millis(200);
+
+/// A spinner with a message and the time since it began.
+fn working() -> ProgressStyle {
+    ProgressStyle::with_template("{spinner} {msg}, {elapsed}").unwrap_or_else(|_| ProgressStyle::default_spinner())
+}
+
+/// A spinner for work whose length nobody knows.
 pub fn spinner(title: &str) -> ProgressBar {
     let spinner = ProgressBar::new_spinner();
+    spinner.set_style(working());
     spinner.set_message(title.to_owned());
-    spinner.enable_steady_tick(Duration::from_millis(200));
+    spinner.enable_steady_tick(TICK);
     spinner
 }

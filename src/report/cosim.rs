@@ -4,9 +4,12 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use super::mismatch::{CONTACT_FIELDS, differences};
 use super::table::{figure, grouped, table};
 use super::tally::{Flows, Tally};
 use crate::config::{Config, Results};
+use crate::kernel::PAIR_FIELDS;
+use crate::verify::Mismatch;
 
 /// The JSON's schema. Within a number keys are only added.
 pub const SCHEMA: &str = "contact-afu/cosim/1";
@@ -20,9 +23,18 @@ pub struct Job {
     pub tally: Tally,
     /// What else went wrong: unmet checks, or why the job did not finish. Empty in a good job.
     pub failures: Vec<String>,
+    /// The first records that differ from the reference's.
+    pub mismatches: Vec<Mismatch>,
 }
 
 impl Job {
+    /// Everything that went wrong, in words.
+    pub fn all_failures(&self) -> Vec<String> {
+        let Tally { pairs, mismatches, .. } = self.tally;
+        let differ = format!("{mismatches} of {pairs} records differ from the reference");
+        Some(differ).filter(|_| mismatches > 0).into_iter().chain(self.failures.iter().cloned()).collect()
+    }
+
     /// Whether every record is right and nothing else went wrong.
     pub fn passed(&self) -> bool {
         self.tally.mismatches == 0 && self.failures.is_empty()
@@ -59,6 +71,7 @@ struct Document<'a> {
     config: &'a Config,
     clock_mhz: f64,
     passed: bool,
+    failures: Vec<String>,
     #[serde(flatten)]
     all: Figures<'a>,
     jobs: Vec<JobFigures<'a>>,
@@ -68,9 +81,50 @@ struct Document<'a> {
 struct JobFigures<'a> {
     name: &'a str,
     passed: bool,
-    failures: &'a [String],
+    failures: Vec<String>,
+    first_mismatches: Vec<MismatchFigures>,
     #[serde(flatten)]
     figures: Figures<'a>,
+}
+
+/// A record that differs, its words in hex.
+#[derive(Serialize)]
+struct MismatchFigures {
+    /// The pair's number in its job, from 0.
+    pair: usize,
+    /// The cycle of the job in which its line was last written.
+    cycle: Option<u64>,
+    /// What went in, field by field.
+    sent: BTreeMap<&'static str, String>,
+    /// The words that differ.
+    words: Vec<WordFigures>,
+}
+
+#[derive(Serialize)]
+struct WordFigures {
+    /// Its place in a contact record.
+    word: usize,
+    field: &'static str,
+    expected: String,
+    got: Option<String>,
+}
+
+impl From<&Mismatch> for MismatchFigures {
+    fn from(mismatch: &Mismatch) -> Self {
+        let hex = |bits: u32| format!("{bits:08x}");
+        let word = |(word, expected, got): (usize, u32, Option<u32>)| WordFigures {
+            word,
+            field: CONTACT_FIELDS[word],
+            expected: hex(expected),
+            got: got.map(hex),
+        };
+        Self {
+            pair: mismatch.number,
+            cycle: mismatch.cycle,
+            sent: PAIR_FIELDS.into_iter().zip(mismatch.pair.0.map(hex)).collect(),
+            words: differences(mismatch).map(word).collect(),
+        }
+    }
 }
 
 #[derive(Serialize)]
@@ -108,6 +162,25 @@ impl Run {
         self.jobs.iter().all(Job::passed)
     }
 
+    /// Everything that went wrong, each with its job's name.
+    fn failures(&self) -> Vec<String> {
+        let of =
+            |job: &Job| job.all_failures().into_iter().map(|text| format!("{}: {text}", job.name)).collect::<Vec<_>>();
+        self.jobs.iter().flat_map(of).collect()
+    }
+
+    /// How it went: a line that begins with PASS or FAIL.
+    pub fn verdict(&self) -> String {
+        let (jobs, pairs) = (self.jobs.len(), grouped(self.total().pairs));
+        let bad: Vec<&str> = self.jobs.iter().filter(|job| !job.passed()).map(|job| job.name.as_str()).collect();
+        if bad.is_empty() {
+            let jobs = if jobs == 1 { "1 job".to_owned() } else { format!("{jobs} jobs") };
+            format!("PASS: {jobs}, {pairs} pairs, every bit as in the reference")
+        } else {
+            format!("FAIL: {} of {jobs} jobs: {}", bad.len(), bad.join(", "))
+        }
+    }
+
     /// The report for programs. The figures at the top are those of all jobs together; `jobs` has each.
     pub fn json(&self) -> impl Serialize {
         Document {
@@ -120,13 +193,20 @@ impl Run {
             config: &self.config,
             clock_mhz: self.config.clock_mhz,
             passed: self.passed(),
+            failures: self.failures(),
             all: self.figures(&self.total()),
             jobs: self.jobs.iter().map(|job| self.job_figures(job)).collect(),
         }
     }
 
     fn job_figures<'a>(&'a self, job: &'a Job) -> JobFigures<'a> {
-        JobFigures { name: &job.name, passed: job.passed(), failures: &job.failures, figures: self.figures(&job.tally) }
+        JobFigures {
+            name: &job.name,
+            passed: job.passed(),
+            failures: job.all_failures(),
+            first_mismatches: job.mismatches.iter().map(MismatchFigures::from).collect(),
+            figures: self.figures(&job.tally),
+        }
     }
 
     fn figures(&self, tally: &Tally) -> Figures<'_> {
@@ -198,6 +278,7 @@ fn percent(share: Option<f64>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::kernel::{ContactRecord, PairRecord};
     use expect_test::expect;
 
     fn run() -> Run {
@@ -214,8 +295,13 @@ mod tests {
             host_seconds: 0.25,
         };
         let jobs = vec![
-            Job { name: "diamond:10".into(), tally, failures: vec![] },
-            Job { name: "empty.csv".into(), tally: Tally { cycles: 9, ..Tally::default() }, failures: vec![] },
+            Job { name: "diamond:10".into(), tally, failures: vec![], mismatches: vec![] },
+            Job {
+                name: "empty.csv".into(),
+                tally: Tally { cycles: 9, ..Tally::default() },
+                failures: vec![],
+                mismatches: vec![],
+            },
         ];
         Run {
             config: Config::default(),
@@ -253,6 +339,7 @@ mod tests {
             "link",
             "host_seconds",
             "passed",
+            "failures",
             "jobs",
         ] {
             assert!(keys.contains(&key), "{key} is missing from {keys:?}");
@@ -261,6 +348,34 @@ mod tests {
         assert_eq!(json["contacts"], 2_934);
         assert_eq!(json["jobs"][1]["cycles_per_pair"], serde_json::Value::Null);
         assert_eq!(json["jobs"][0]["link"]["limit_ns_per_pair"], 2.5);
+    }
+
+    #[test]
+    fn failures_are_text_and_mismatches_words() {
+        assert_eq!(run().verdict(), "PASS: 2 jobs, 12 354 pairs, every bit as in the reference");
+        let mut run = run();
+        let expected = ContactRecord([0, 0, 0, 0, 0, 0, 0x3f80_0000, 7]);
+        let wrong = ContactRecord([0, 0, 0, 0, 0, 0, 0x3f80_0001, 7]);
+        let pair = PairRecord::from_spheres([0.0, 0.0, 0.0, 0.5], [1.0, 0.0, -0.0, 0.5]);
+        let of = |number, cycle, got| Mismatch { number, cycle, pair, expected, got };
+        run.jobs[0].tally.mismatches = 2;
+        run.jobs[0].mismatches = vec![of(3, Some(99), Some(wrong)), of(4, None, None)];
+        run.jobs[1].failures = vec!["did not finish".to_owned()];
+        assert_eq!(run.verdict(), "FAIL: 2 of 2 jobs: diamond:10, empty.csv");
+        let json = serde_json::to_value(run.json()).expect("plain values");
+        assert_eq!(json["passed"], false);
+        let all = ["diamond:10: 2 of 12354 records differ from the reference", "empty.csv: did not finish"];
+        assert_eq!(json["failures"], serde_json::json!(all));
+        assert_eq!(json["jobs"][0]["failures"], serde_json::json!(["2 of 12354 records differ from the reference"]));
+        let [first, second] = [0, 1].map(|i| &json["jobs"][0]["first_mismatches"][i]);
+        assert_eq!(
+            (&first["pair"], &first["cycle"], &first["sent"]["x2"]),
+            (&3.into(), &99.into(), &"3f800000".into())
+        );
+        let word = serde_json::json!([{"word": 6, "field": "depth", "expected": "3f800000", "got": "3f800001"}]);
+        assert_eq!(first["words"], word);
+        assert_eq!((&second["cycle"], second["words"].as_array().map(Vec::len)), (&serde_json::Value::Null, Some(8)));
+        assert_eq!(second["words"][6]["got"], serde_json::Value::Null);
     }
 
     #[test]

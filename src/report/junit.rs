@@ -52,6 +52,7 @@ mod tests {
             name: name.to_owned(),
             tally: Tally { pairs: 5, mismatches, ..Tally::default() },
             failures: failures.iter().map(|text| (*text).to_owned()).collect(),
+            mismatches: vec![],
         };
         let run = Run {
             config: crate::config::Config::default(),

@@ -16,18 +16,26 @@ pub fn text(job: &str, mismatch: &Mismatch) -> String {
     for (name, bits) in PAIR_FIELDS.into_iter().zip(pair.0) {
         text.push_str(&format!("\n  {name:<9} {}", word(bits)));
     }
-    for (index, name) in CONTACT_FIELDS.into_iter().enumerate() {
+    for (index, _, _) in differences(mismatch) {
+        let name = CONTACT_FIELDS[index];
         let shown = |record: &ContactRecord| match name {
             "flags" => format!("{:08x} ({})", record.0[index], flow(record)),
             _ => word(record.0[index]),
         };
-        match got {
-            Some(got) if got.0[index] == expected.0[index] => {}
-            Some(got) => text.push_str(&format!("\n  {name:<9} expected {}, got {}", shown(expected), shown(got))),
-            None => text.push_str(&format!("\n  {name:<9} expected {}", shown(expected))),
+        text.push_str(&format!("\n  {name:<9} expected {}", shown(expected)));
+        if let Some(got) = got {
+            text.push_str(&format!(", got {}", shown(got)));
         }
     }
     text
+}
+
+/// The words of a contact record that differ: its place, what was expected, and what there was, if anything.
+pub fn differences(mismatch: &Mismatch) -> impl Iterator<Item = (usize, u32, Option<u32>)> {
+    let Mismatch { expected, got, .. } = *mismatch;
+    let words = expected.0.into_iter().enumerate();
+    let words = words.map(move |(word, expected)| (word, expected, got.map(|got| got.0[word])));
+    words.filter(|&(_, expected, got)| got != Some(expected))
 }
 
 fn flow(record: &ContactRecord) -> &'static str {

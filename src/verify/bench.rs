@@ -18,6 +18,15 @@ use crate::link::{Link, LinkModel, Traffic};
 const SCPUS: &str = "SCPUS";
 /// Bits of a line: what links carry.
 const LINE_BITS: u32 = 512;
+/// How far a job has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Progress {
+    /// So many pairs have been simulated.
+    Simulated(u64),
+    /// The simulation has ended; the host compares with the reference.
+    Comparing,
+}
+
 /// Cycles between two calls for progress.
 const PROGRESS_CYCLES: u64 = 4096;
 
@@ -130,7 +139,7 @@ impl Bench {
         self.run_with(pairs, link, seed, None, |_| {})
     }
 
-    /// [`Bench::run`] that writes a waveform and tells, now and then, how many pairs are done.
+    /// [`Bench::run`] that writes a waveform and tells, now and then, how far it has come.
     ///
     /// # Errors
     /// As `run`, and when the waveform cannot be written.
@@ -140,7 +149,7 @@ impl Bench {
         link: &LinkModel,
         seed: u64,
         waveform: Option<&Path>,
-        mut progress: impl FnMut(u64),
+        mut progress: impl FnMut(Progress),
     ) -> Result<Verdict, VerifyError> {
         let count = u32::try_from(pairs.len()).map_err(|_| VerifyError::Pairs(pairs.len()))?;
         self.layout.check(pairs)?;
@@ -158,19 +167,22 @@ impl Bench {
         }
         let link = Link::new(link.clone(), seed)?;
         let mut tell = |traffic: Traffic| {
-            progress(match self.config.results {
+            let pairs = match self.config.results {
                 Results::All => traffic.write_responses * u64::from(self.layout.contacts_per_line()),
                 Results::Hits => traffic.read_responses * u64::from(self.layout.pairs_per_line()),
-            });
+            };
+            progress(Progress::Simulated(pairs.min(count.into())));
         };
         let outcome = match self.config.shell {
-            Shell::Spl2 => spl2(&instance, link, seed, &job, &mut tell)?,
-            _ => line(&instance, link, &job, &mut tell)?,
+            Shell::Spl2 => spl2(&instance, link, seed, &job, &mut tell),
+            _ => line(&instance, link, &job, &mut tell),
         };
-        if waveform.is_some() {
-            instance.trace_close().map_err(CosimError::from)?;
-        }
+        // Of a job that failed the waveform is wanted most.
+        let closed = if waveform.is_some() { instance.trace_close() } else { Ok(()) };
+        let outcome = outcome?;
+        closed.map_err(CosimError::from)?;
         let seconds = begun.elapsed().as_secs_f64();
+        progress(Progress::Comparing);
         Ok(check(&self.layout, self.config.contact, pairs, &self.reference.run_all(pairs), outcome, seconds))
     }
 }

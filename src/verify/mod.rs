@@ -8,7 +8,7 @@ mod engine;
 mod error;
 
 pub use account::{Part, account};
-pub use bench::{Bench, Origin, rtl_sha256};
+pub use bench::{Bench, Origin, Progress, rtl_sha256};
 pub use check::{Mismatch, Verdict};
 pub use engine::{BenchEngine, Differs, Totals};
 pub use error::VerifyError;

@@ -47,6 +47,8 @@ pub enum Work {
     Begun(String),
     /// So many of them are done.
     Done(f64),
+    /// A configuration's times and area are known: a line on it.
+    Configuration(String),
 }
 
 /// Guesses: a pair's answer and its judgement; a model; a netlist; place and route.
@@ -54,6 +56,9 @@ const PAIR_SECONDS: f64 = 5e-6;
 const MODEL_SECONDS: f64 = 25.0;
 const NETLIST_SECONDS: f64 = 45.0;
 const ROUTE_SECONDS: f64 = 600.0;
+/// The diamond, and software on this machine: a configuration each.
+const DRIFT_SECONDS: f64 = 0.5;
+const SOFTWARE_SECONDS: f64 = 0.5;
 /// Points on fronts, before any is known.
 const ON_FRONTS: f64 = 8.0;
 /// Arithmetics that answer a set before their rows are kept: the truth about the set is found anew for each so many.
@@ -91,8 +96,12 @@ pub fn run(plan: &Plan, folder: Option<(&Path, bool)>, mut progress: impl FnMut(
         add(plan, &more, &mut results, &mut store, &mut progress)?;
     }
     route(plan, routes, &mut results, &mut store, &mut progress)?;
+    let (drifts, timings) =
+        (DRIFT_SECONDS * results.points.len() as f64, SOFTWARE_SECONDS * results.points.len() as f64);
+    progress(Work::Planned(drifts + timings));
     progress(Work::Begun("the diamond".to_owned()));
     drift(&mut results)?;
+    progress(Work::Done(drifts));
     // Last of all, when nothing else runs.
     progress(Work::Begun("software".to_owned()));
     let pairs = plan.sets.iter().rfind(|set| set.is_scene).map_or(&[][..], |set| &set.pairs);
@@ -100,6 +109,7 @@ pub fn run(plan: &Plan, folder: Option<(&Path, bool)>, mut progress: impl FnMut(
     for point in &mut results.points {
         point.software_ns = software::of_config(&point.config, pairs);
     }
+    progress(Work::Done(timings));
     Ok(results)
 }
 
@@ -260,6 +270,17 @@ struct Cost {
     missing: Option<String>,
 }
 
+impl Cost {
+    fn line(&self, name: &str) -> String {
+        let mut line = format!("{name}: {} cycles, line in to line out", self.cycles.lone);
+        if let Some(hardware) = &self.hardware {
+            line += &format!(", {} LUTs", hardware.area.luts);
+            line += &hardware.routed_mhz.map_or_else(String::new, |clock| format!(", {clock:.0} MHz after routing"));
+        }
+        line
+    }
+}
+
 /// What workers tell.
 enum News {
     Begun(String),
@@ -306,7 +327,9 @@ fn costs(
                     store.save().inspect_err(|_| stop())?;
                 }
                 News::Ended(index, cost) => {
-                    costs[index] = Some((*cost).inspect_err(|_| stop())?);
+                    let cost = (*cost).inspect_err(|_| stop())?;
+                    progress(Work::Configuration(cost.line(&name(configs[index]))));
+                    costs[index] = Some(cost);
                     progress(Work::Done(if seeds.is_empty() {
                         cost_seconds(plan)
                     } else {
