@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // afu_top_bench
-// a self-checking test bench of afu_top, in any simulator of Verilog-2005; in the folder above:
+// a self-checking test bench of afu_top, for any Verilog-2005 simulator. From the folder above:
 //
 //   iverilog -g2005 -o bench -s afu_top_bench -y . sim/afu_top_bench.v
 //   vvp -n bench

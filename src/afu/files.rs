@@ -102,6 +102,10 @@ impl Afu {
         let layout = self.layout();
         let hashes: serde_json::Map<String, Value> =
             files.iter().map(|(name, text)| (name.clone(), Value::String(sha256(text.as_bytes())))).collect();
+        let mut kernel = KernelReport::of(self.kernel());
+        for operator in &mut kernel.operators {
+            operator.module = spec.config.prefixed(&operator.module);
+        }
         let mut manifest = json!({
             "schema": MANIFEST_SCHEMA,
             "version": env!("CARGO_PKG_VERSION"),
@@ -118,7 +122,7 @@ impl Afu {
                 "contacts_per_line": layout.contacts_per_line(),
             },
             "latency_cycles": self.kernel().latency,
-            "kernel": KernelReport::of(self.kernel()),
+            "kernel": kernel,
             "rtl_sha256": self.rtl_sha256(),
             "files": hashes,
         });

@@ -45,8 +45,8 @@ impl Afu {
         if let Some(multiple) = spec.full_rate().filter(|multiple| *multiple < MAX_SCPUS) {
             let _ = write!(
                 out,
-                "{multiple} SCPUs at interval {} take a full line of pairs per cycle; above {multiple} only a multiple of \
-                 {multiple} is built, the next smaller one. ",
+                "{multiple} SCPUs at interval {} take a full line of pairs per cycle; above {multiple} the number built is \
+                 rounded down to a multiple of {multiple}. ",
                 spec.config.interval
             );
         }
@@ -69,7 +69,7 @@ Everything is sampled at the rising edge of `clk`, at the end of its cycle. Rese
 
 - `start` is taken in a cycle in which `busy` is low, and with it `source`, {inputs}, `count`, `mode`, `epoch` and `watchdog`. In \
              other cycles these may have any level.
-- `abort_job` is looked at in every cycle of a job.
+- `abort_job` is sampled in every cycle of a job.
 - A request is made in a cycle in which its `valid` and `ready` are both high. Until then `valid` stays high, and address, tag \
              and data stay as they are. `ready` may be high before `valid`, and may depend on it.
 - A response is taken in every cycle in which its `valid` is high, from the cycle after its request on, at the earliest. Tag, \
@@ -122,7 +122,7 @@ Everything is sampled at the rising edge of `clk`, at the end of its cycle. Rese
         let mut out = format!(
             "## Timing
 
-A job of one pair in contact. `#` is high, `_` is low; a row's sign stands for the whole cycle.
+A job of one pair in contact: `#` is high, `_` is low, for the whole cycle.
 
 ```text
 {:<13}",
@@ -184,11 +184,11 @@ A job of one pair in contact. `#` is high, `_` is low; a row's sign stands for t
 const SPL2: &str = "
 ## Sampling
 
-Everything is sampled at the rising edge of `clk`, at the end of its cycle. `reset_n` low and `spl_reset` high, each for at least \
-one cycle, and `spl_enable` are sampled so too. The outputs in the table are those after a cycle with `reset_n` low.
+Everything is sampled at the rising edge of `clk`, at the end of its cycle. So are `reset_n`, \
+`spl_reset` and `spl_enable`; each reset needs at least one cycle. The table has the levels after a cycle with `reset_n` low.
 
 - A request stands for one cycle and is taken in it. In the second cycle after almost-full rises, and while it stays high, there \
-is none: so at most two come once it is high.
+is none: at most two requests come once it is high. SPL has room for four.
 - A header or data whose valid is low may have any level.
 - Responses are taken in every cycle in which their valid is high.
 
@@ -246,8 +246,8 @@ fn meaning(name: &str) -> &'static str {
         "reset_n" => "the system's reset, active low; at least one cycle",
         "spl_enable" => "low: everything but the registers rests, as in reset",
         "spl_reset" => "reset, active high: a job that runs is forgotten",
-        "spl_tx_rd_almostfull" => "no read is put into the port's register while it is high",
-        "spl_tx_wr_almostfull" => "no write is put into the port's register while it is high",
+        "spl_tx_rd_almostfull" => "SPL's queue of reads is almost full: at most two reads follow",
+        "spl_tx_wr_almostfull" => "SPL's queue of writes is almost full: at most two writes follow",
         "afu_tx_rd_valid" => "a read request, taken in this cycle",
         "afu_tx_rd_hdr" => "98:93 lines (1), 92:67 and 45:14 line address, 66 virtual, 55:52 type (4), 13:0 mdata",
         "afu_tx_wr_valid" => "a write request or a fence, taken in this cycle",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // @BENCH@
-// a self-checking test bench of @TOP@, in any simulator of Verilog-2005; in the folder above:
+// a self-checking test bench of @TOP@, for any Verilog-2005 simulator. From the folder above:
 //
 //   iverilog -g2005 -o bench -s @BENCH@ -y . sim/@BENCH@.v
 //   vvp -n bench
