@@ -76,6 +76,7 @@ module afu_top #(
   wire registers_dsm_valid;
   wire [57:0] registers_context_line;
   wire registers_context_valid;
+  wire registers_context_written;
   wire registers_wr_valid;
   wire [57:0] registers_wr_address;
   wire [511:0] registers_wr_line;
@@ -157,6 +158,7 @@ module afu_top #(
     .dsm_valid          (registers_dsm_valid),
     .context_line       (registers_context_line),
     .context_valid      (registers_context_valid),
+    .context_written    (registers_context_written),
     .rd_granted         (own_read_granted),
     .read_number        (own_read_number),
     .rsp_valid          (spl_rx_rd_valid),
@@ -191,21 +193,22 @@ module afu_top #(
   );
 
   spl2_registers registers (
-    .clk           (clk),
-    .power_on      (power_on),
-    .spl_reset     (spl_reset),
-    .cfg_valid     (spl_rx_cfg_valid),
-    .cfg_offset    (spl_rx_hdr0[13:0]),
-    .cfg_data      (spl_rx_data[31:0]),
-    .wr_granted    (register_granted),
-    .capability    (capability),
-    .dsm_line      (registers_dsm_line),
-    .dsm_valid     (registers_dsm_valid),
-    .context_line  (registers_context_line),
-    .context_valid (registers_context_valid),
-    .wr_valid      (registers_wr_valid),
-    .wr_address    (registers_wr_address),
-    .wr_line       (registers_wr_line)
+    .clk             (clk),
+    .power_on        (power_on),
+    .spl_reset       (spl_reset),
+    .cfg_valid       (spl_rx_cfg_valid),
+    .cfg_offset      (spl_rx_hdr0[13:0]),
+    .cfg_data        (spl_rx_data[31:0]),
+    .wr_granted      (register_granted),
+    .capability      (capability),
+    .dsm_line        (registers_dsm_line),
+    .dsm_valid       (registers_dsm_valid),
+    .context_line    (registers_context_line),
+    .context_valid   (registers_context_valid),
+    .context_written (registers_context_written),
+    .wr_valid        (registers_wr_valid),
+    .wr_address      (registers_wr_address),
+    .wr_line         (registers_wr_line)
   );
 
   contact_afu #(

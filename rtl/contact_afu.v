@@ -114,14 +114,14 @@ module contact_afu #(
   wire control_may_enter;
   wire collector_line_valid;
   wire [511:0] collector_line;
-  wire collector_response;
+  wire collector_answered;
   wire read_failed;
-  wire collector_asking;
+  wire collector_unexpected;
   wire collector_idle;
   wire line_left;
-  wire dispatcher_response;
+  wire dispatcher_answered;
   wire write_failed;
-  wire dispatcher_asking;
+  wire dispatcher_unexpected;
   wire dispatcher_idle;
   wire dispatched;
   wire packer_line_valid;
@@ -148,9 +148,9 @@ module contact_afu #(
   reg slots_invalid_1;
 
   // ---- logic ----
-  wire response = collector_response | dispatcher_response;
+  wire unexpected = collector_unexpected | dispatcher_unexpected;
+  wire response = collector_answered | dispatcher_answered;
   wire link_idle = collector_idle & dispatcher_idle;
-  wire asking = collector_asking | dispatcher_asking;
   wire settled = cycles_since_reset == 7'd114;
   wire [1:0] group_out = settled ? travelled[8:7] : 2'd0;
   wire [8:0] travels = {feeder_issue_group, feeder_issue_turn};
@@ -205,9 +205,9 @@ module contact_afu #(
     .abort_job        (abort_job),
     .read_failed      (read_failed),
     .write_failed     (write_failed),
+    .unexpected       (unexpected),
     .response         (response),
     .link_idle        (link_idle),
-    .asking           (asking),
     .packer_done      (packer_done),
     .dispatched       (dispatched),
     .entered          (entered),
@@ -251,9 +251,9 @@ module contact_afu #(
     .rd_req_tag     (rd_req_tag),
     .line_valid     (collector_line_valid),
     .line           (collector_line),
-    .response       (collector_response),
+    .answered       (collector_answered),
     .failed         (read_failed),
-    .asking         (collector_asking),
+    .unexpected     (collector_unexpected),
     .idle           (collector_idle)
   );
 
@@ -275,9 +275,9 @@ module contact_afu #(
     .wr_req_tag     (wr_req_tag),
     .wr_req_data    (wr_req_data),
     .line_left      (line_left),
-    .response       (dispatcher_response),
+    .answered       (dispatcher_answered),
     .failed         (write_failed),
-    .asking         (dispatcher_asking),
+    .unexpected     (dispatcher_unexpected),
     .idle           (dispatcher_idle),
     .empty          (dispatched)
   );

@@ -25,9 +25,9 @@ module contact_afu_collector (
   output reg  [9:0]   rd_req_tag,
   output reg          line_valid,
   output wire [511:0] line,
-  output wire         response,
-  output wire         failed,
-  output wire         asking,
+  output reg          answered,
+  output reg          failed,
+  output reg          unexpected,
   output wire         idle
 );
 
@@ -41,7 +41,8 @@ module contact_afu_collector (
   reg [63:0] came;
   reg two_valid;
   reg [5:0] arrived_age;
-  reg arrived;
+  reg [63:0] awaited;
+  reg leftover_request;
   reg [5:0] oldest;
   reg [5:0] head;
   reg [6:0] outstanding;
@@ -49,16 +50,19 @@ module contact_afu_collector (
   // ---- logic ----
   wire port_free = ~rd_req_valid | rd_req_ready;
   wire issue = may_ask & port_free;
+  wire request_stays = rd_req_valid & ~rd_req_ready;
   wire may_ask_next = run & (issue ? |lines_to_request[31:1] : |lines_to_request) & ~(~taken & (reserved[6] | (&reserved[5:0] & issue)));
   wire start_or_issue = start | issue;
   wire oldest_goes = came[0] & ~two_valid;
-  wire [63:0] marked = came | (arrived ? (64'd1 << arrived_age) : 64'd0);
-  wire [3:0] response_epoch = rd_rsp_tag[9:6];
-  assign response = rd_rsp_valid & (response_epoch == epoch);
+  wire [63:0] marked = came | (answered ? (64'd1 << arrived_age) : 64'd0);
   wire [5:0] response_slot = rd_rsp_tag[5:0];
+  wire [3:0] response_epoch = rd_rsp_tag[9:6];
+  wire is_current = rd_rsp_valid & (response_epoch == epoch);
+  wire [63:0] answers = is_current ? (64'd1 << response_slot) : 64'd0;
+  wire is_awaited = |(awaited & answers);
+  wire accepted = rd_req_valid & rd_req_ready & ~leftover_request;
+  wire [63:0] asked = accepted ? (64'd1 << rd_req_tag[5:0]) : 64'd0;
   wire [5:0] next_oldest = oldest + {5'd0, oldest_goes};
-  assign failed = response & rd_rsp_error;
-  assign asking = rd_req_valid | may_ask;
   assign idle = ~|outstanding & ~rd_req_valid & ~may_ask;
 
   // ---- at the clock edge ----
@@ -79,12 +83,16 @@ module contact_afu_collector (
       line_valid <= 1'b0;
       came <= 64'd0;
       two_valid <= 1'b0;
-      arrived <= 1'b0;
+      answered <= 1'b0;
+      awaited <= 64'd0;
+      leftover_request <= 1'b0;
       oldest <= 6'd0;
       head <= 6'd0;
+      failed <= 1'b0;
+      unexpected <= 1'b0;
       outstanding <= 7'd0;
     end else begin
-      rd_req_valid <= issue | (rd_req_valid & ~rd_req_ready);
+      rd_req_valid <= issue | request_stays;
       may_ask <= may_ask_next;
       if (start_or_issue) lines_to_request <= start ? lines : (lines_to_request - 32'd1);
       taken <= take & ~start;
@@ -93,16 +101,20 @@ module contact_afu_collector (
       line_valid <= ~start & (oldest_goes | two_valid | (line_valid & ~take));
       came <= start ? 64'd0 : (oldest_goes ? {1'b0, marked[63:1]} : marked);
       two_valid <= ~start & ~take & (two_valid | (line_valid & oldest_goes));
-      arrived <= response & ~start;
+      answered <= is_awaited & ~start;
+      awaited <= start ? 64'd0 : ((awaited & ~answers) | asked);
+      leftover_request <= request_stays & (start | leftover_request);
       oldest <= start ? 6'd0 : next_oldest;
       if (start | take) head <= start ? 6'd0 : (head + 6'd1);
-      if (start | (issue ^ response)) outstanding <= start ? 7'd0 : (issue ? (outstanding + 7'd1) : (outstanding - 7'd1));
+      failed <= is_awaited & rd_rsp_error & ~start;
+      unexpected <= run & is_current & ~is_awaited & ~start;
+      if (start | (issue ^ answered)) outstanding <= start ? 7'd0 : (issue ? (outstanding + 7'd1) : (outstanding - 7'd1));
     end
   end
 
   line_memory_64x512 reorder (
     .clk         (clk),
-    .write       (response),
+    .write       (is_current),
     .write_index (response_slot),
     .write_word  (rd_rsp_data),
     .read_index  (head),

@@ -19,9 +19,9 @@ module contact_afu_control (
   input  wire        abort_job,
   input  wire        read_failed,
   input  wire        write_failed,
+  input  wire        unexpected,
   input  wire        response,
   input  wire        link_idle,
-  input  wire        asking,
   input  wire        packer_done,
   input  wire        dispatched,
   input  wire [1:0]  entered,
@@ -51,16 +51,16 @@ module contact_afu_control (
   reg draining;
   reg read_failed_heard;
   reg write_failed_heard;
+  reg unexpected_heard;
   reg expired;
   reg complete;
   reg stopped;
   reg [9:0] pairs_inside;
   reg link_idle_heard;
   reg given_up;
-  reg asking_heard;
+  reg response_heard;
   reg [31:0] job_watchdog;
   reg [31:0] silence;
-  reg response_heard;
   reg [31:0] job_lines;
   reg [9:0] room;
   reg [9:0] room_change;
@@ -70,15 +70,16 @@ module contact_afu_control (
   wire accept = start & ~busy;
   wire mode_any = |mode;
   wire refuses = accept & mode_any;
-  wire [3:0] cause = abort_job ? 4'd1 : (read_failed_heard ? 4'd2 : (write_failed_heard ? 4'd3 : (expired ? 4'd4 : 4'd0)));
+  wire [3:0] cause = abort_job ? 4'd1 : (read_failed_heard ? 4'd2 : (write_failed_heard ? 4'd3 : ((unexpected_heard & ~begin_job) ? 4'd7 : (expired ? 4'd4 : 4'd0))));
   assign run = running & ~begin_job;
   wire completes = run & complete;
   wire failing = running & |cause & ~completes;
   wire none_inside = ~|pairs_inside & ~|entered;
-  wire drained = draining & stopped & none_inside & (link_idle_heard | (given_up & ~asking_heard));
-  wire gives_up = busy & expired;
+  wire drained = draining & stopped & none_inside & (link_idle_heard | given_up);
+  wire gives_up = busy & expired & ~completes;
   wire [9:0] entered_wide = {8'd0, entered};
   wire not_waiting = response_heard | link_idle_heard;
+  wire has_watchdog = |job_watchdog;
   wire [3:0] failed = failing ? cause : error;
   wire [3:0] ended = gives_up ? 4'd4 : failed;
   wire [32:0] rounded_count = {1'b0, count} + 33'd1;
@@ -98,16 +99,16 @@ module contact_afu_control (
       draining <= 1'b0;
       read_failed_heard <= 1'b0;
       write_failed_heard <= 1'b0;
+      unexpected_heard <= 1'b0;
       expired <= 1'b0;
       complete <= 1'b0;
       stopped <= 1'b0;
       pairs_inside <= 10'd0;
       link_idle_heard <= 1'b0;
       given_up <= 1'b0;
-      asking_heard <= 1'b0;
+      response_heard <= 1'b0;
       job_watchdog <= 32'd0;
       silence <= 32'd0;
-      response_heard <= 1'b0;
       cycles_input <= 64'd0;
       cycles_output <= 64'd0;
       done <= 1'b0;
@@ -125,16 +126,16 @@ module contact_afu_control (
       draining <= refuses | failing | (draining & ~drained);
       read_failed_heard <= read_failed;
       write_failed_heard <= write_failed;
-      expired <= busy & |job_watchdog & (silence >= job_watchdog);
+      unexpected_heard <= unexpected;
+      expired <= busy & ~not_waiting & has_watchdog & (job_watchdog < silence);
       complete <= run & packer_done & dispatched & link_idle;
       stopped <= draining;
       pairs_inside <= (pairs_inside + entered_wide) - {8'd0, emerged};
       link_idle_heard <= link_idle;
       given_up <= ~accept & (given_up | gives_up);
-      asking_heard <= asking;
-      if (accept) job_watchdog <= watchdog;
-      silence <= (not_waiting | ~busy) ? 32'd0 : (silence + 32'd1);
       response_heard <= response;
+      if (accept | (draining & ~has_watchdog)) job_watchdog <= draining ? 32'h10000 : watchdog;
+      silence <= (not_waiting | ~busy | failing) ? 32'd0 : (silence + 32'd1);
       if (begin_job | (waits_for_input & running)) cycles_input <= begin_job ? 64'd0 : (cycles_input + 64'd1);
       if (begin_job | (waits_for_output & running)) cycles_output <= begin_job ? 64'd0 : (cycles_output + 64'd1);
       done <= ~accept & (done | completes | drained);

@@ -24,9 +24,9 @@ module contact_afu_dispatcher (
   output reg  [9:0]   wr_req_tag,
   output wire [511:0] wr_req_data,
   output reg          line_left,
-  output wire         response,
-  output wire         failed,
-  output wire         asking,
+  output reg          answered,
+  output reg          failed,
+  output reg          unexpected,
   output wire         idle,
   output wire         empty
 );
@@ -39,10 +39,11 @@ module contact_afu_dispatcher (
   reg [63:0] came;
   reg [6:0] reserved;
   reg [5:0] arrived_age;
-  reg arrived;
+  reg [63:0] awaited;
+  reg leftover_request;
+  reg [5:0] next_slot;
   reg [5:0] oldest;
   reg [57:0] next_address;
-  reg [5:0] next_slot;
   reg [7:0] tail;
   reg [7:0] head;
   reg [6:0] outstanding;
@@ -51,25 +52,28 @@ module contact_afu_dispatcher (
   wire has_line = may_send & read_valid;
   wire port_free = ~wr_req_valid | wr_req_ready;
   wire goes = has_line & port_free;
+  wire request_stays = wr_req_valid & ~wr_req_ready;
   wire read = ~read_valid | goes;
   wire take = read & ready;
   wire oldest_goes = came[0];
-  wire [63:0] marked = came | (arrived ? (64'd1 << arrived_age) : 64'd0);
+  wire [63:0] marked = came | (answered ? (64'd1 << arrived_age) : 64'd0);
   wire [3:0] response_epoch = wr_rsp_tag[9:6];
-  assign response = wr_rsp_valid & (response_epoch == epoch);
-  wire [5:0] next_oldest = oldest + {5'd0, oldest_goes};
+  wire is_current = wr_rsp_valid & (response_epoch == epoch);
+  wire [63:0] answers = is_current ? (64'd1 << wr_rsp_tag[5:0]) : 64'd0;
+  wire is_awaited = |(awaited & answers);
+  wire accepted = wr_req_valid & wr_req_ready & ~leftover_request;
+  wire [63:0] asked = accepted ? (64'd1 << wr_req_tag[5:0]) : 64'd0;
   wire start_or_goes = start | goes;
-  assign failed = response & wr_rsp_error;
-  assign asking = wr_req_valid | has_line;
+  wire [5:0] next_oldest = oldest + {5'd0, oldest_goes};
   assign idle = ~|outstanding & ~wr_req_valid & ~has_line;
   assign empty = ~|stored & ~read_valid;
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
     arrived_age <= wr_rsp_tag[5:0] - next_oldest;
+    if (goes) wr_req_tag <= {epoch, next_slot};
     if (goes) wr_req_address <= next_address;
     if (start_or_goes) next_address <= start ? destination : (next_address + 58'd1);
-    if (goes) wr_req_tag <= {epoch, next_slot};
   end
   always @(posedge clk) begin
     if (rst) begin
@@ -80,28 +84,36 @@ module contact_afu_dispatcher (
       stored <= 9'd0;
       came <= 64'd0;
       reserved <= 7'd0;
-      arrived <= 1'b0;
-      oldest <= 6'd0;
+      answered <= 1'b0;
+      awaited <= 64'd0;
+      leftover_request <= 1'b0;
       next_slot <= 6'd0;
+      oldest <= 6'd0;
       tail <= 8'd0;
       head <= 8'd0;
       line_left <= 1'b0;
+      failed <= 1'b0;
+      unexpected <= 1'b0;
       outstanding <= 7'd0;
     end else begin
-      wr_req_valid <= goes | (wr_req_valid & ~wr_req_ready);
+      wr_req_valid <= goes | request_stays;
       may_send <= run & ~(~oldest_goes & (reserved[6] | (&reserved[5:0] & goes)));
       read_valid <= ~start & (take | (read_valid & ~goes));
       ready <= ~start & (line_valid | (|stored[8:1] | (stored[0] & ~take)));
       if (start | (line_valid ^ take)) stored <= start ? 9'd0 : (line_valid ? (stored + 9'd1) : (stored - 9'd1));
       came <= start ? 64'd0 : (oldest_goes ? {1'b0, marked[63:1]} : marked);
       if (start | (goes ^ oldest_goes)) reserved <= start ? 7'd0 : (goes ? (reserved + 7'd1) : (reserved - 7'd1));
-      arrived <= response & ~start;
-      oldest <= start ? 6'd0 : next_oldest;
+      answered <= is_awaited & ~start;
+      awaited <= start ? 64'd0 : ((awaited & ~answers) | asked);
+      leftover_request <= request_stays & (start | leftover_request);
       if (start_or_goes) next_slot <= start ? 6'd0 : (next_slot + 6'd1);
+      oldest <= start ? 6'd0 : next_oldest;
       if (start | line_valid) tail <= start ? 8'd0 : (tail + 8'd1);
       if (start | take) head <= start ? 8'd0 : (head + 8'd1);
       line_left <= take & ~start;
-      if (start | (goes ^ response)) outstanding <= start ? 7'd0 : (goes ? (outstanding + 7'd1) : (outstanding - 7'd1));
+      failed <= is_awaited & wr_rsp_error & ~start;
+      unexpected <= run & is_current & ~is_awaited & ~start;
+      if (start | (goes ^ answered)) outstanding <= start ? 7'd0 : (goes ? (outstanding + 7'd1) : (outstanding - 7'd1));
     end
   end
 

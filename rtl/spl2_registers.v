@@ -19,6 +19,7 @@ module spl2_registers (
   output reg          dsm_valid,
   output reg  [57:0]  context_line,
   output reg          context_valid,
+  output wire         context_written,
   output wire         wr_valid,
   output wire [57:0]  wr_address,
   output wire [511:0] wr_line
@@ -71,6 +72,7 @@ module spl2_registers (
     if (scratch) scratch_value <= cfg_data_heard;
   end
 
+  assign context_written = context_base_low;
   assign wr_valid = due;
   assign wr_line = line;
 

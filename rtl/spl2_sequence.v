@@ -13,6 +13,7 @@ module spl2_sequence (
   input  wire         dsm_valid,
   input  wire [57:0]  context_line,
   input  wire         context_valid,
+  input  wire         context_written,
   input  wire         rd_granted,
   input  wire [11:0]  read_number,
   input  wire         rsp_valid,
@@ -50,33 +51,35 @@ module spl2_sequence (
   reg asks;
   reg at_context;
   reg at_poll;
-  reg at_run;
+  reg context_due;
   reg waiting;
+  reg at_run;
   reg [9:0] pause;
   reg answered;
   reg has_start_word;
   reg some_job;
   reg is_other;
-  reg [31:0] job_sequence;
-  reg [511:0] compared;
-  reg is_own;
-  reg [11:0] expected;
-  reg [16:0] age;
+  reg at_status;
+  reg at_fence;
+  reg at_latency;
+  reg at_performance;
+  reg refused;
   reg at_start;
   reg not_buffer_lines_wide_below_source_lines_d1;
   reg not_buffer_lines_wide_below_d1;
   reg [31:0] buffer_lines;
   reg [32:0] destination_lines;
   reg [31:0] job_count;
+  reg [511:0] compared;
   reg [32:0] source_lines;
   reg at_compare;
   reg at_measure;
-  reg at_status;
-  reg at_latency;
-  reg at_performance;
-  reg at_fence;
-  reg refused;
+  reg [31:0] job_sequence;
+  reg is_own;
+  reg [11:0] expected;
+  reg [16:0] age;
   reg at_idle;
+  reg [57:0] job_context_line;
   reg [57:0] source_line;
   reg [57:0] destination_line;
   reg [3:0] job_mode;
@@ -93,24 +96,27 @@ module spl2_sequence (
   reg write_seen;
 
   // ---- logic ----
+  wire switches = at_poll & context_due & ~waiting & ~rd_granted & ~asks;
   wire pause_any = |pause;
+  wire may_ask = ~waiting & ~rd_granted & ~pause_any;
   wire is_new = ~some_job | is_other;
   wire got_job = at_poll & answered & has_start_word & is_new;
   wire runs = got_job | at_run;
-  wire overdue = waiting & age[16];
-  wire fits = not_buffer_lines_wide_below_source_lines_d1 & not_buffer_lines_wide_below_d1;
-  assign start = at_start & fits;
-  wire [32:0] buffer_lines_wide = {1'b0, buffer_lines};
-  wire [32:0] job_count_wide_plus_1 = {1'b0, job_count} + 33'd1;
-  wire [32:0] job_count_wide_plus_1_32_1_wide = {1'b0, job_count_wide_plus_1[32:1]};
-  wire got_context = at_context & answered;
   wire to_dsm = at_latency | at_performance;
   wire gave_up = core_error == 4'd4;
   wire ran = ~refused;
   wire fences = at_fence & ~(gave_up & ran);
   wire written = wr_granted | (to_dsm & ~dsm_valid) | (at_fence & ~fences);
+  wire fits = not_buffer_lines_wide_below_source_lines_d1 & not_buffer_lines_wide_below_d1;
   wire at_start_and_not_fits = at_start & ~fits;
-  wire [57:0] address = at_context ? context_line : source_line;
+  wire [32:0] buffer_lines_wide = {1'b0, buffer_lines};
+  wire [32:0] job_count_wide_plus_1 = {1'b0, job_count} + 33'd1;
+  wire [32:0] job_count_wide_plus_1_32_1_wide = {1'b0, job_count_wide_plus_1[32:1]};
+  wire got_context = at_context & answered;
+  assign start = at_start & fits;
+  wire overdue = waiting & age[16];
+  wire reads_context = (at_idle & context_valid) | switches;
+  wire [57:0] address = at_context ? job_context_line : source_line;
   wire [57:0] first_pairs = source_line + 58'd1;
   wire aborts = answered & has_abort & runs;
   wire [511:0] latency_line = {416'd0, {job_sequence, first_write, first_read}};
@@ -124,17 +130,18 @@ module spl2_sequence (
   always @(posedge clk) begin
     has_start_word <= rsp_data[31:0] == 32'h406cccff;
     is_other <= rsp_data[127:96] != job_sequence;
-    if (got_job) job_sequence <= compared[127:96];
-    compared <= rsp_data;
-    is_own <= rsp_valid & ((rsp_mdata[13:12] == 2'd1) & (rsp_mdata[11:0] == expected));
-    if (rd_granted) expected <= read_number;
-    age <= rd_granted ? 17'd0 : (age + 17'd1);
     not_buffer_lines_wide_below_source_lines_d1 <= buffer_lines_wide >= source_lines;
     not_buffer_lines_wide_below_d1 <= buffer_lines_wide >= destination_lines;
     if (got_context) buffer_lines <= compared[223:192];
     destination_lines <= job_count_wide_plus_1_32_1_wide;
     if (got_job) job_count <= compared[63:32];
+    compared <= rsp_data;
     source_lines <= job_count_wide_plus_1_32_1_wide + 33'd1;
+    if (got_job) job_sequence <= compared[127:96];
+    is_own <= rsp_valid & ((rsp_mdata[13:12] == 2'd1) & (rsp_mdata[11:0] == expected));
+    if (rd_granted) expected <= read_number;
+    age <= rd_granted ? 17'd0 : (age + 17'd1);
+    if (reads_context) job_context_line <= context_line;
     if (got_context) source_line <= compared[127:70];
     if (got_context) destination_line <= compared[191:134];
     if (got_job) job_mode <= compared[67:64] | {3'd0, |compared[95:68]};
@@ -142,7 +149,7 @@ module spl2_sequence (
     has_abort <= |rsp_data[159:128];
     wr_fence <= at_fence;
     wr_virtual <= ~to_dsm;
-    wr_address <= to_dsm ? (at_latency ? {dsm_line[57:6], 6'd4} : {dsm_line[57:6], 6'd5}) : (context_line + 58'd1);
+    wr_address <= to_dsm ? (at_latency ? {dsm_line[57:6], 6'd4} : {dsm_line[57:6], 6'd5}) : (job_context_line + 58'd1);
     wr_data <= written_line;
     if (at_start | ~write_seen) first_write <= (write_now & ~at_start) ? since_start : 32'd0;
     if (at_start | ~read_seen) first_read <= (read_now & ~at_start) ? since_start : 32'd0;
@@ -155,41 +162,43 @@ module spl2_sequence (
       asks <= 1'b0;
       at_context <= 1'b0;
       at_poll <= 1'b0;
-      at_run <= 1'b0;
+      context_due <= 1'b0;
       waiting <= 1'b0;
+      at_run <= 1'b0;
       pause <= 10'd0;
       answered <= 1'b0;
       some_job <= 1'b0;
+      at_status <= 1'b0;
+      at_fence <= 1'b0;
+      at_latency <= 1'b0;
+      at_performance <= 1'b0;
+      refused <= 1'b0;
       at_start <= 1'b0;
       at_compare <= 1'b0;
       at_measure <= 1'b0;
-      at_status <= 1'b0;
-      at_latency <= 1'b0;
-      at_performance <= 1'b0;
-      at_fence <= 1'b0;
-      refused <= 1'b0;
       at_idle <= 1'b1;
       abort <= 1'b0;
       writes <= 1'b0;
       read_seen <= 1'b0;
       write_seen <= 1'b0;
     end else begin
-      asks <= (at_context | at_poll | at_run) & ~waiting & ~rd_granted & ~pause_any;
-      at_context <= (at_idle & context_valid) | (at_context & ~answered);
-      at_poll <= got_context | (at_status & written) | (at_poll & ~got_job);
-      at_run <= start | (at_run & ~core_done);
+      asks <= (at_context | (at_poll & ~switches) | at_run) & may_ask;
+      at_context <= reads_context | (at_context & ~answered);
+      at_poll <= got_context | (at_status & written) | (at_poll & ~got_job & ~switches);
+      context_due <= context_written | (context_due & ~reads_context);
       waiting <= rd_granted | (waiting & ~answered & ~overdue);
-      pause <= (answered & ~at_context) ? (runs ? 10'd512 : 10'd32) : (pause_any ? (pause - 10'd1) : pause);
+      at_run <= start | (at_run & ~core_done);
+      pause <= ~at_status ? ((answered & ~at_context) ? (runs ? 10'd512 : 10'd32) : (pause_any ? (pause - 10'd1) : pause)) : 10'd0;
       answered <= is_own & waiting & ~answered;
       some_job <= some_job | got_job;
+      at_status <= (at_fence & written) | (at_status & ~written);
+      at_fence <= (at_performance & written) | (at_fence & ~written);
+      at_latency <= at_start_and_not_fits | (at_run & core_done) | (at_latency & ~written);
+      at_performance <= (at_latency & written) | (at_performance & ~written);
+      refused <= at_start_and_not_fits | (refused & ~at_start);
       at_start <= at_compare;
       at_compare <= at_measure;
       at_measure <= got_job;
-      at_status <= (at_fence & written) | (at_status & ~written);
-      at_latency <= at_start_and_not_fits | (at_run & core_done) | (at_latency & ~written);
-      at_performance <= (at_latency & written) | (at_performance & ~written);
-      at_fence <= (at_performance & written) | (at_fence & ~written);
-      refused <= at_start_and_not_fits | (refused & ~at_start);
       at_idle <= at_idle & ~context_valid;
       abort <= aborts | (abort & ~got_job);
       writes <= ((to_dsm & dsm_valid) | fences | at_status) & ~written;
@@ -209,8 +218,8 @@ module spl2_sequence (
   assign wr_valid = writes;
 
   // Bits that nothing needs.
-  wire unused = &{1'b0, compared[31:0], compared[133:128], compared[511:224],
-    job_count_wide_plus_1[0], dsm_line[5:0]};
+  wire unused = &{1'b0, job_count_wide_plus_1[0], compared[31:0], compared[133:128],
+    compared[511:224], dsm_line[5:0]};
 
 endmodule
 

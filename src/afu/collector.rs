@@ -9,6 +9,7 @@ use std::sync::Arc;
 
 use crate::hdl::{Errors, Graph, Module};
 
+use super::awaited::{Port, awaited};
 use super::counter::{Countdown, all_used, up_down};
 use super::in_order::{self, Arrival, goes_in_order};
 use super::lines::{Access, line_memory};
@@ -62,19 +63,21 @@ pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, Errors> {
     up_down(reserved, start, issue, taken);
     may_ask.next(run & some_left & !all_used(reserved, issue, taken));
 
-    // Responses: into the slot the tag names.
+    // Responses: into the slot the tag names. One that no request waits for overwrites a line there and ends the job.
     let response_epoch = response_tag.high(EPOCH_BITS).named("response_epoch");
-    let response = (response_valid & response_epoch.equals(epoch)).named("response");
+    let response = (response_valid & response_epoch.equals(epoch)).named("is_current");
     let response_slot = response_tag.low(slot_bits).named("response_slot");
+    let arrival = Arrival { valid: response, slot: response_slot };
+    let port = Port { valid: request_valid.value(), ready: request_ready, slot: request_tag.low(slot_bits) };
+    let answers = awaited(&graph, slots, [start, run], &port, &arrival, response_error);
     let outstanding = graph.register("outstanding", slot_bits + 1, 0);
-    up_down(outstanding, start, issue, response);
+    up_down(outstanding, start, issue, answers.answered);
 
     // Lines are offered in order, up to two ahead of the one that is taken: so whether there is one never waits for
     // what is taken.
     let line_valid = graph.register("line_valid", 1, 0);
     let two_valid = graph.register("two_valid", 1, 0);
-    let arrival = Arrival { valid: response, slot: response_slot };
-    let offers = goes_in_order(&graph, slots, start, &arrival, !*two_valid);
+    let offers = goes_in_order(&graph, slots, start, response_slot, answers.answered, !*two_valid);
     two_valid.next(!start & !take & (*two_valid | (*line_valid & offers)));
     line_valid.next(!start & (offers | *two_valid | (*line_valid & !take)));
     let head = graph.register("head", slot_bits, 0);
@@ -95,9 +98,9 @@ pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, Errors> {
     graph.output("rd_req_tag", request_tag.value());
     graph.output("line_valid", line_valid.value());
     graph.output("line", line);
-    graph.output("response", response);
-    graph.output("failed", response & response_error);
-    graph.output("asking", *request_valid | *may_ask);
+    graph.output("answered", answers.answered);
+    graph.output("failed", answers.failed);
+    graph.output("unexpected", answers.unexpected);
     graph.output("idle", !outstanding.any() & !*request_valid & !*may_ask);
     graph.finish()
 }

@@ -1,5 +1,7 @@
-//! Control: takes a job, watches it, ends it. A job ends done when the last write is acknowledged; on an abort, an
-//! error response or the watchdog it stops asking, waits for what is outstanding, and ends with an error.
+//! Control: takes a job, watches it, ends it. A job ends done when the last write is acknowledged. On an abort, an
+//! error response or a response that no request waits for it stops asking, waits for what is outstanding, and ends with
+//! an error. It waits no longer than the watchdog allows, or than [`DRAIN_CYCLES`] without one: then it gives up what is
+//! outstanding. A request that the link has not accepted by then stays on the port until it is, next jobs or not.
 
 use std::sync::Arc;
 
@@ -23,6 +25,8 @@ pub enum JobError {
     Mode = 5,
     /// More lines of contacts than the destination has room for: those beyond were not written, but all were counted.
     Overflow = 6,
+    /// A response that no request of this job waits for.
+    Response = 7,
     /// More pairs than the host's buffers have lines for: told by a shell that knows their length.
     Room = 8,
 }
@@ -31,6 +35,8 @@ pub enum JobError {
 pub(super) const ERROR_BITS: u32 = 4;
 /// Bits of the port `mode`.
 pub(super) const MODE_BITS: u32 = 4;
+/// Cycles without a response after which a job that is to end ends, if it has no watchdog.
+pub const DRAIN_CYCLES: u32 = 1 << 16;
 /// Bits of a cycle counter.
 const CYCLE_BITS: u32 = 64;
 
@@ -56,10 +62,9 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, Errors>
     let abort = graph.input("abort_job", 1);
     // What comes from afar is heard a cycle later.
     let heard = |name: &str| graph.input(name, 1).registered(&format!("{name}_heard"));
-    let [read_failed, write_failed] = ["read_failed", "write_failed"].map(heard);
+    let [read_failed, write_failed, unexpected] = ["read_failed", "write_failed", "unexpected"].map(heard);
     let response = heard("response");
     let link_idle_now = graph.input("link_idle", 1);
-    let asking = heard("asking");
     let packed = graph.input("packer_done", 1);
     let dispatched = graph.input("dispatched", 1);
     let entered = graph.input("entered", spec.group_bits());
@@ -91,7 +96,9 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, Errors>
     let job_epoch = graph.register("job_epoch", EPOCH_BITS, 0);
     job_epoch.next_if(accept, epoch);
     let job_watchdog = graph.register("job_watchdog", COUNT_BITS, 0);
-    job_watchdog.next_if(accept, watchdog);
+    let has_watchdog = job_watchdog.any().named("has_watchdog");
+    let drain_cycles = watchdog.same(u128::from(DRAIN_CYCLES));
+    job_watchdog.next_if(accept | (*draining & !has_watchdog), draining.select(drain_cycles, watchdog));
     let per_line = layout.pairs_per_line();
     let shift = per_line.ilog2();
     let rounded = count.extend(COUNT_BITS + 1).plus(u128::from(per_line - 1)).named("rounded_count");
@@ -118,13 +125,15 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, Errors>
     let inside = graph.register("pairs_inside", room_bits, 0);
     inside.next(inside.value() + entered.extend(room_bits) - emerged.extend(room_bits));
 
-    // Watchdog: cycles since the last response while one is owed.
+    // Watchdog: cycles since the last response while one is outstanding; they begin again when the job is to end. A
+    // response in time is never too late because it is heard a cycle later.
     let silence = graph.register("silence", COUNT_BITS, 0);
     let link_idle = link_idle_now.registered("link_idle_heard");
     let quiet = (response | link_idle).named("not_waiting");
-    silence.next((quiet | !busy).select(silence.same(0), silence.plus(1)));
+    let failing = graph.wire("failing", 1);
+    silence.next((quiet | !busy | failing).select(silence.same(0), silence.plus(1)));
     let expired = graph.register("expired", 1, 0);
-    expired.next(busy & job_watchdog.any() & silence.at_least(*job_watchdog));
+    expired.next(busy & !quiet & has_watchdog & silence.greater_than(*job_watchdog));
 
     // The end.
     let complete = (run & packed & dispatched & link_idle_now).registered("complete");
@@ -134,6 +143,8 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, Errors>
         (abort, JobError::Aborted),
         (read_failed, JobError::Read),
         (write_failed, JobError::Write),
+        // What comes as a job completes is not heard before the next one begins.
+        (unexpected & !*begin, JobError::Response),
         (*expired, JobError::Watchdog),
     ];
     let mut cause = graph.constant(ERROR_BITS, 0);
@@ -141,16 +152,15 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, Errors>
         cause = condition.select(graph.constant(ERROR_BITS, code as u128), cause);
     }
     let cause = cause.named("cause");
-    let failing = (*running & cause.any() & !complete).named("failing");
+    failing.drive(*running & cause.any() & !complete);
     // Whatever else went wrong, this is what the host must know: late responses may still come, and late writes.
-    let gives_up = (busy & *expired).named("gives_up");
+    let gives_up = (busy & *expired & !complete).named("gives_up");
     let given_up = graph.register("given_up", 1, 0);
     given_up.next(!accept & (*given_up | gives_up));
-    // What runs hears a cycle later that it should not; a request on the port stays until it is accepted, even if
-    // nobody waits for its response any more.
+    // What runs hears a cycle later that it should not.
     let stopped = draining.registered("stopped");
     let empty = (!inside.any() & !entered.any()).named("none_inside");
-    let drained = (*draining & stopped & empty & (link_idle | (*given_up & !asking))).named("drained");
+    let drained = (*draining & stopped & empty & (link_idle | *given_up)).named("drained");
     running.next((accept & !refuses) | (*running & !complete & !failing));
     draining.next(refuses | failing | (*draining & !drained));
     done.next(!accept & (*done | complete | drained));

@@ -10,6 +10,7 @@ use std::sync::Arc;
 use crate::config::Results;
 use crate::hdl::{Errors, Graph, Module};
 
+use super::awaited::{self, Port, awaited};
 use super::counter::{Countdown, all_used, up_down};
 use super::in_order::{Arrival, goes_in_order};
 use super::lines::{Access, line_memory};
@@ -18,7 +19,7 @@ use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, Spec};
 /// From a line to its write request: stored, at the head, registered.
 pub(super) const CYCLES_TO_REQUEST: u32 = 3;
 /// From an acknowledgement to its being counted.
-pub(super) const CYCLES_TO_IDLE: u32 = 1;
+pub(super) const CYCLES_TO_IDLE: u32 = awaited::CYCLES_TO_ANSWER + 1;
 
 /// Builds the module `contact_afu_dispatcher`, with room for `depth` (a power of two) lines.
 pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, Errors> {
@@ -95,13 +96,15 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, Errors>
 
     // Acknowledgements, in any order.
     let response_epoch = response_tag.high(EPOCH_BITS).named("response_epoch");
-    let response = (response_valid & response_epoch.equals(epoch)).named("response");
+    let response = (response_valid & response_epoch.equals(epoch)).named("is_current");
     let arrival = Arrival { valid: response, slot: response_tag.low(slot_bits) };
-    let freed = goes_in_order(&graph, slots, start, &arrival, graph.constant(1, 1));
+    let port = Port { valid: request_valid.value(), ready: request_ready, slot: request_tag.low(slot_bits) };
+    let answers = awaited(&graph, slots, [start, run], &port, &arrival, response_error);
+    let freed = goes_in_order(&graph, slots, start, arrival.slot, answers.answered, graph.constant(1, 1));
     up_down(reserved, start, send, freed);
     may_send.next(run & !all_used(reserved, send, freed));
     let outstanding = graph.register("outstanding", slot_bits + 1, 0);
-    up_down(outstanding, start, send, response);
+    up_down(outstanding, start, send, answers.answered);
 
     graph.output("wr_req_valid", request_valid.value());
     graph.output("wr_req_address", request_address.value());
@@ -110,9 +113,9 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, Errors>
     if !bounded {
         graph.output("line_left", (take & !start).registered("line_left"));
     }
-    graph.output("response", response);
-    graph.output("failed", response & response_error);
-    graph.output("asking", *request_valid | has_line);
+    graph.output("answered", answers.answered);
+    graph.output("failed", answers.failed);
+    graph.output("unexpected", answers.unexpected);
     graph.output("idle", !outstanding.any() & !*request_valid & !has_line);
     graph.output("empty", !stored.any() & !*read_valid);
     graph.finish()

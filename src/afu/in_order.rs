@@ -2,10 +2,10 @@
 
 use crate::hdl::{Graph, Signal};
 
-/// From a response to what it answers being known to have come.
-pub(super) const CYCLES_TO_COME: u32 = 2;
+/// From a response to what it answers being known to have come: [`awaited`](super::awaited) registers that it came.
+pub(super) const CYCLES_TO_COME: u32 = super::awaited::CYCLES_TO_ANSWER + 1;
 
-/// A response that arrived, to the request in `slot`.
+/// A response to the request in `slot`.
 pub(super) struct Arrival<'g> {
     pub(super) valid: Signal<'g>,
     pub(super) slot: Signal<'g>,
@@ -14,25 +14,27 @@ pub(super) struct Arrival<'g> {
 /// Whether the oldest of `slots` (a power of two) slots, used in turn from 0 at `start` on, is answered and goes: in a
 /// cycle in which `may_go` is set. A slot is used again only after it went.
 ///
-/// The marks lie by age and move up when the oldest goes, so that nobody looks for the oldest among all slots.
+/// `answered` is set a cycle after a response came that a request waits for; `slot` is the response's in the cycle in
+/// which it came. The marks lie by age and move up when the oldest goes, so that nobody looks for the oldest among all
+/// slots.
 pub(super) fn goes_in_order<'g>(
     graph: &'g Graph,
     slots: u32,
     start: Signal<'g>,
-    arrival: &Arrival<'g>,
+    slot: Signal<'g>,
+    answered: Signal<'g>,
     may_go: Signal<'g>,
 ) -> Signal<'g> {
-    let oldest = graph.register("oldest", arrival.slot.width(), 0);
+    let oldest = graph.register("oldest", slot.width(), 0);
     let came = graph.register("came", slots, 0);
     let goes = (came.bit(0) & may_go).named("oldest_goes");
     let next_oldest = (oldest.value() + goes.extend(oldest.width())).named("next_oldest");
     oldest.next(start.select(oldest.same(0), next_oldest));
 
     // An arrival's age is counted first, and marked a cycle later.
-    let arrived = (arrival.valid & !start).registered("arrived");
-    let age = graph.data_register("arrived_age", arrival.slot.width());
-    age.next(arrival.slot - next_oldest);
-    let marked = (*came | age.one_hot().gate(arrived)).named("marked");
+    let age = graph.data_register("arrived_age", slot.width());
+    age.next(slot - next_oldest);
+    let marked = (*came | age.one_hot().gate(answered)).named("marked");
     let moved = marked.drop_low(1).extend(slots);
     came.next(start.select(came.same(0), goes.select(moved, marked)));
     goes

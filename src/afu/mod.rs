@@ -3,6 +3,7 @@
 //! Data flows one way: collector → feeder → slots (one SCPU each) → packer → dispatcher. Control watches. Where only
 //! contacts come back, sieve and backlog stand before the packer.
 
+mod awaited;
 mod backlog;
 mod bench;
 mod capability;
@@ -33,7 +34,7 @@ mod timing;
 mod top;
 
 pub use capability::Capability;
-pub use control::JobError;
+pub use control::{DRAIN_CYCLES, JobError};
 pub use files::file_list;
 pub use generate::{Afu, BuildError, top_name};
 pub use layout::{Layout, OtherRadius};

@@ -74,6 +74,9 @@ Everything is sampled at the rising edge of `clk`, at the end of its cycle. Rese
              and data stay as they are. `ready` may be high before `valid`, and may depend on it.
 - A response is taken in every cycle in which its `valid` is high, from the cycle after its request on, at the earliest. Tag, \
              data and error of a response that is not valid may have any level.
+- A response with the job's epoch that no request waits for ends the job with error 7.
+- With error 4 the job gives up what is outstanding. A request that stands on the port then stays there, as it is, until it is \
+             accepted: memory may still be read or written once where that job's lines are. A reset withdraws it.
 - A tag is the job's `epoch` in bits {}:{slot_bits}, and a number of 0 to {} below. At most {} reads and {} writes are outstanding.
 
 ## A job
@@ -213,11 +216,20 @@ fn meaning(name: &str) -> &'static str {
         "count" => "pairs of the job; 0 is a job",
         "mode" => "0; anything else ends the job with error 5",
         "epoch" => "upper part of the job's tags: change it from job to job, so that late responses are known",
-        "watchdog" => "cycles without a response, with one owed, that end the job with error 4; 0: never",
-        "abort_job" => "high ends the job with error 1, when what is outstanding has been answered",
+        "watchdog" => {
+            "cycles without a response, while a request stands on the port or waits for its response, that end the job with \
+             error 4; 0: never, but for an aborted or failed job, which ends after 65 536 such cycles"
+        }
+        "abort_job" => {
+            "high ends the job with error 1, when every outstanding request has its response; `watchdog` says what ends it \
+             if one never comes"
+        }
         "busy" => "a job is running or ending",
         "done" => "the last job has ended; low from the next start on",
-        "error" => "how: 0 well, 1 aborted, 2 read error, 3 write error, 4 watchdog, 5 unknown mode",
+        "error" => {
+            "how: 0 well, 1 aborted, 2 read error, 3 write error, 4 watchdog, 5 unknown mode, 7 a response that no request \
+             waits for"
+        }
         "contacts" => "contacts of the job so far",
         "invalid" => "invalid pairs of the job so far",
         "first_invalid" => "number of the first invalid pair, all ones if there is none",

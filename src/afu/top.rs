@@ -60,7 +60,7 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, E
     // What flows back: control hears of all the others.
     let wire = |name: &str, width: u32| graph.wire(name, width);
     let (read_failed, write_failed) = (wire("read_failed", 1), wire("write_failed", 1));
-    let (response, link_idle, asking) = (wire("response", 1), wire("link_idle", 1), wire("asking", 1));
+    let (response, unexpected, link_idle) = (wire("response", 1), wire("unexpected", 1), wire("link_idle", 1));
     let (packed, dispatched) = (wire("packer_done", 1), wire("dispatched", 1));
     let (entered, emerged) = (wire("entered", group_bits), wire("emerged", group_bits));
     let (line_left, take) = if only_hits {
@@ -82,9 +82,9 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, E
         ("abort_job", abort),
         ("read_failed", read_failed),
         ("write_failed", write_failed),
+        ("unexpected", unexpected),
         ("response", response),
         ("link_idle", link_idle),
-        ("asking", asking),
         ("packer_done", packed),
         ("dispatched", dispatched),
         ("entered", entered),
@@ -183,8 +183,8 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, E
     overflowed.into_iter().for_each(|wire| wire.drive(dispatcher.output("overflowed")));
     read_failed.drive(collector.output("failed"));
     write_failed.drive(dispatcher.output("failed"));
-    response.drive(collector.output("response") | dispatcher.output("response"));
-    asking.drive(collector.output("asking") | dispatcher.output("asking"));
+    response.drive(collector.output("answered") | dispatcher.output("answered"));
+    unexpected.drive(collector.output("unexpected") | dispatcher.output("unexpected"));
     link_idle.drive(collector.output("idle") & dispatcher.output("idle"));
     packed.drive(packer.output("done"));
     dispatched.drive(dispatcher.output("empty"));

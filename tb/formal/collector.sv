@@ -2,8 +2,9 @@
 // The collector alone, by induction: every slot of the reorder memory is free, asked for, or filled, never two of these;
 // no tag is used again before its line has left; lines leave in order, each once; requests are stable and in order.
 //
-// Assumed, and proven elsewhere: a line is taken only when it is there (credits.sv: takes_a_line). Assumed, and shown
-// elsewhere for so many cycles only: a job begins only when no request stands on the port (line_port.sv: rd_in_job).
+// The link may answer what nobody asked for. A request that was given up may stand on the port when the next job begins.
+//
+// Assumed, and proven elsewhere: a line is taken only when it is there (credits.sv: takes_a_line).
 `default_nettype none
 
 module collector (
@@ -27,18 +28,21 @@ module collector (
   wire        line_valid;
   wire [31:0] line;
   wire        idle;
+  wire        unexpected;
   contact_afu_collector dut (
     .clk(clk), .rst(rst), .start(start), .run(run), .source(source), .lines(lines), .epoch(epoch), .take(take),
     .rd_req_ready(rd_req_ready), .rd_rsp_valid(rd_rsp_valid), .rd_rsp_tag(rd_rsp_tag), .rd_rsp_data(rd_rsp_data),
     .rd_rsp_error(rd_rsp_error),
     .rd_req_valid(rd_req_valid), .rd_req_address(rd_req_address), .rd_req_tag(rd_req_tag),
-    .line_valid(line_valid), .line(line), .response(), .failed(), .asking(), .idle(idle)
+    .line_valid(line_valid), .line(line), .answered(), .failed(), .unexpected(unexpected), .idle(idle)
   );
   (* hierconn *) wire [2:0]  \dut.reserved ;
   (* hierconn *) wire [2:0]  \dut.outstanding ;
   (* hierconn *) wire [3:0]  \dut.came ;
   (* hierconn *) wire [1:0]  \dut.oldest ;
-  (* hierconn *) wire        \dut.arrived ;
+  (* hierconn *) wire        \dut.answered ;
+  (* hierconn *) wire [3:0]  \dut.awaited ;
+  (* hierconn *) wire        \dut.leftover_request ;
   (* hierconn *) wire [1:0]  \dut.arrived_age ;
   (* hierconn *) wire        \dut.two_valid ;
   (* hierconn *) wire        \dut.taken ;
@@ -57,9 +61,13 @@ module collector (
   reg [31:0] accepted;
   reg [3:0]  waiting;
   wire mine = rd_rsp_valid & begun & ~start & (rd_rsp_tag[5:2] == job_epoch);
-  wire [3:0] asks = rd_req_valid & rd_req_ready ? 4'd1 << rd_req_tag[1:0] : 4'd0;
-  wire [3:0] answered = mine ? 4'd1 << rd_rsp_tag[1:0] : 4'd0;
-  wire [3:0] on_port = rd_req_valid ? 4'd1 << rd_req_tag[1:0] : 4'd0;
+  // A request of an earlier job, given up while it stood on the port, may still stand there.
+  reg        left;
+  wire       asked = rd_req_valid & ~left;
+  wire [3:0] asks = asked & rd_req_ready ? 4'd1 << rd_req_tag[1:0] : 4'd0;
+  wire [3:0] answers = mine ? 4'd1 << rd_rsp_tag[1:0] : 4'd0;
+  wire [3:0] on_port = asked ? 4'd1 << rd_req_tag[1:0] : 4'd0;
+  reg        surprised;
   always @(posedge clk) begin
     after_reset <= after_reset | rst;
     ran <= run;
@@ -70,16 +78,17 @@ module collector (
       job_epoch <= epoch;
     end
     accepted <= start ? 32'd0 : accepted + {31'd0, |asks};
-    waiting <= start ? 4'd0 : (waiting | asks) & ~answered;
+    waiting <= start ? 4'd0 : (waiting & ~answers) | asks;
+    surprised <= mine & run & (waiting & answers) == 4'd0;
+    left <= rd_req_valid & ~rd_req_ready & ~rst & (start | left);
   end
 
   always @* begin
     assume (after_reset | rst);
     assume (~run | (begun & ~start));
-    assume (~start | ~(rd_req_valid | ran));
+    assume (~start | ~ran);
     assume (~take | line_valid);
     if (begun & ~start) assume (epoch == job_epoch);
-    if (mine) assume ((waiting & answered) != 4'd0);
   end
 
   `include "slots.svh"
@@ -88,7 +97,7 @@ module collector (
   wire [2:0] offers = {1'b0, \dut.two_valid , line_valid & ~\dut.two_valid };
   wire [3:0] offered = slots(\dut.head , offers);
   wire [3:0] come = aged(\dut.came , \dut.oldest );
-  wire [3:0] coming = aged(\dut.arrived ? 4'd1 << \dut.arrived_age : 4'd0, \dut.oldest );
+  wire [3:0] coming = aged(\dut.answered ? 4'd1 << \dut.arrived_age : 4'd0, \dut.oldest );
   wire [3:0] filled = offered | come | coming;
   always @* if (begun & ~start & ~rst & after_reset) begin
     never_more: assert (\dut.reserved <= 3'd4);
@@ -100,13 +109,16 @@ module collector (
     taken_is_reserved: assert (~\dut.taken | \dut.reserved != 3'd0);
     asks_while_any: assert (~\dut.may_ask | (\dut.lines_to_request != 32'd0 & \dut.reserved != 3'd4));
     counted: assert (\dut.outstanding == {2'd0, on_port[0] | waiting[0]} + {2'd0, on_port[1] | waiting[1]}
-      + {2'd0, on_port[2] | waiting[2]} + {2'd0, on_port[3] | waiting[3]});
-    idle_is_right: assert (idle == ((on_port | waiting) == 4'd0 & ~\dut.may_ask ));
+      + {2'd0, on_port[2] | waiting[2]} + {2'd0, on_port[3] | waiting[3]} + {2'd0, \dut.answered });
+    leftover_is_right: assert (\dut.leftover_request == left);
+    awaited_is_right: assert (\dut.awaited == waiting);
+    surprise_is_told: assert (unexpected == surprised);
+    idle_is_right: assert (idle == ((on_port | waiting) == 4'd0 & ~rd_req_valid & ~\dut.answered & ~\dut.may_ask ));
     only_filled: assert (~line_valid | ~(on_port[\dut.head ] | waiting[\dut.head ]));
-    of_this_job: assert (~rd_req_valid | rd_req_tag[5:2] == job_epoch);
-    in_order: assert (\dut.next_address == job_source + {26'd0, accepted} + {57'd0, rd_req_valid});
-    address: assert (~rd_req_valid | rd_req_address == job_source + {26'd0, accepted});
-    each_once: assert ({1'b0, accepted} + {32'd0, rd_req_valid} + {1'b0, \dut.lines_to_request } == {1'b0, job_lines});
+    of_this_job: assert (~asked | rd_req_tag[5:2] == job_epoch);
+    in_order: assert (\dut.next_address == job_source + {26'd0, accepted} + {57'd0, asked});
+    address: assert (~asked | rd_req_address == job_source + {26'd0, accepted});
+    each_once: assert ({1'b0, accepted} + {32'd0, asked} + {1'b0, \dut.lines_to_request } == {1'b0, job_lines});
   end
 
   reg        held = 1'b0;

@@ -32,6 +32,7 @@ module credits (
   localparam RANKS = `LATENCY + 3;
 
   wire busy;
+  wire [3:0] error;
   wire rd_req_valid;
   wire wr_req_valid;
   contact_afu #(.SCPUS(32'd2)) dut (
@@ -41,7 +42,7 @@ module credits (
     .rd_req_ready(rd_req_ready), .rd_rsp_valid(rd_rsp_valid), .rd_rsp_tag(rd_rsp_tag), .rd_rsp_data(rd_rsp_data),
     .rd_rsp_error(rd_rsp_error),
     .wr_req_ready(wr_req_ready), .wr_rsp_valid(wr_rsp_valid), .wr_rsp_tag(wr_rsp_tag), .wr_rsp_error(wr_rsp_error),
-    .busy(busy), .done(), .error(), .contacts(), .invalid(), .first_invalid(),
+    .busy(busy), .done(), .error(error), .contacts(), .invalid(), .first_invalid(),
     .cycles_busy(), .cycles_input(), .cycles_output(), .capability(),
     .rd_req_valid(rd_req_valid), .rd_req_address(), .rd_req_tag(),
     .wr_req_valid(wr_req_valid), .wr_req_address(), .wr_req_tag(), .wr_req_data()
@@ -49,6 +50,7 @@ module credits (
   (* hierconn *) wire                       \dut.control.begin_job ;
   (* hierconn *) wire                       \dut.control.running ;
   (* hierconn *) wire                       \dut.control.draining ;
+  (* hierconn *) wire                       \dut.control.completes ;
   (* hierconn *) wire [31:0]                \dut.control.job_count ;
   (* hierconn *) wire [31:0]                \dut.control.job_lines ;
   (* hierconn *) wire                       \dut.control.last_place ;
@@ -84,11 +86,13 @@ module credits (
   reg flushed;
   reg ran = 1'b0;
   reg ran_before = 1'b0;
+  reg completed = 1'b0;
   always @(posedge clk) begin
     after_reset <= after_reset | rst;
     begun <= ~rst & (begun | \dut.control.begin_job );
     ran <= \dut.control.running & ~rst;
     ran_before <= ran & ~rst;
+    completed <= \dut.control.completes & ~rst;
     ranks <= rst ? {2 * RANKS{1'b0}} : {ranks[2*RANKS-3:0], \dut.control.entered };
     flushed <= ~\dut.control.begin_job & (flushed | \dut.packer.flushes );
   end
@@ -115,6 +119,7 @@ module credits (
     inside_is_right: assert (\dut.control.pairs_inside == inside);
     one_or_other: assert (~(\dut.control.running & \dut.control.draining ));
     only_in_a_job: assert (\dut.control.entered == 2'd0 | (ran_before & begun));
+    complete_is_good: assert (~completed | error == 4'd0);
     begins_first: assert (~busy | begun | \dut.control.begin_job );
     begins_rested: assert (~\dut.control.begin_job | ~ran);
     begins_empty: assert (~\dut.control.begin_job | (busy & inside == 8'd0 & \dut.control.entered == 2'd0));

@@ -2,8 +2,9 @@
 // The dispatcher alone, by induction: its memory never holds more than it can, no tag is used again before its
 // acknowledgement, no acknowledgement is lost or counted twice, requests are stable and in order of lines.
 //
-// Assumed, and proven elsewhere: a line comes only when there is room (credits.sv: fits). Assumed, and shown elsewhere
-// for so many cycles only: a job begins only when no request stands on the port (line_port.sv: wr_in_job).
+// The link may answer what nobody asked for. A request that was given up may stand on the port when the next job begins.
+//
+// Assumed, and proven elsewhere: a line comes only when there is room (credits.sv: fits).
 `default_nettype none
 
 module dispatcher (
@@ -27,13 +28,14 @@ module dispatcher (
   wire [5:0]  wr_req_tag;
   wire [31:0] wr_req_data;
   wire        idle;
+  wire        unexpected;
   wire        empty;
   contact_afu_dispatcher dut (
     .clk(clk), .rst(rst), .start(start), .run(run), .destination(destination), .epoch(epoch),
     .line_valid(line_valid), .line(line),
     .wr_req_ready(wr_req_ready), .wr_rsp_valid(wr_rsp_valid), .wr_rsp_tag(wr_rsp_tag), .wr_rsp_error(wr_rsp_error),
     .wr_req_valid(wr_req_valid), .wr_req_address(wr_req_address), .wr_req_tag(wr_req_tag), .wr_req_data(wr_req_data),
-    .line_left(), .response(), .failed(), .asking(), .idle(idle), .empty(empty)
+    .line_left(), .answered(), .failed(), .unexpected(unexpected), .idle(idle), .empty(empty)
   );
   (* hierconn *) wire [$clog2(`LINES):0]   \dut.stored ;
   (* hierconn *) wire [$clog2(`LINES)-1:0] \dut.head ;
@@ -45,7 +47,9 @@ module dispatcher (
   (* hierconn *) wire [2:0]  \dut.reserved ;
   (* hierconn *) wire [3:0]  \dut.came ;
   (* hierconn *) wire [1:0]  \dut.oldest ;
-  (* hierconn *) wire        \dut.arrived ;
+  (* hierconn *) wire        \dut.answered ;
+  (* hierconn *) wire [3:0]  \dut.awaited ;
+  (* hierconn *) wire        \dut.leftover_request ;
   (* hierconn *) wire [1:0]  \dut.arrived_age ;
   (* hierconn *) wire [1:0]  \dut.next_slot ;
   (* hierconn *) wire [2:0]  \dut.outstanding ;
@@ -60,9 +64,13 @@ module dispatcher (
   reg [57:0] accepted;
   reg [3:0]  waiting;
   wire mine = wr_rsp_valid & begun & ~start & (wr_rsp_tag[5:2] == job_epoch);
-  wire [3:0] asks = wr_req_valid & wr_req_ready ? 4'd1 << wr_req_tag[1:0] : 4'd0;
-  wire [3:0] answered = mine ? 4'd1 << wr_rsp_tag[1:0] : 4'd0;
-  wire [3:0] on_port = wr_req_valid ? 4'd1 << wr_req_tag[1:0] : 4'd0;
+  // A request of an earlier job, given up while it stood on the port, may still stand there.
+  reg        left;
+  wire       asked = wr_req_valid & ~left;
+  wire [3:0] asks = asked & wr_req_ready ? 4'd1 << wr_req_tag[1:0] : 4'd0;
+  wire [3:0] answers = mine ? 4'd1 << wr_rsp_tag[1:0] : 4'd0;
+  wire [3:0] on_port = asked ? 4'd1 << wr_req_tag[1:0] : 4'd0;
+  reg        surprised;
   always @(posedge clk) begin
     after_reset <= after_reset | rst;
     ran <= run;
@@ -72,37 +80,41 @@ module dispatcher (
       job_epoch <= epoch;
     end
     accepted <= start ? 58'd0 : accepted + {57'd0, |asks};
-    waiting <= start ? 4'd0 : (waiting | asks) & ~answered;
+    waiting <= start ? 4'd0 : (waiting & ~answers) | asks;
+    surprised <= mine & run & (waiting & answers) == 4'd0;
+    left <= wr_req_valid & ~wr_req_ready & ~rst & (start | left);
   end
 
   always @* begin
     assume (after_reset | rst);
     assume (~run | (begun & ~start));
-    assume (~start | ~(wr_req_valid | ran));
+    assume (~start | ~ran);
     if (begun & ~start) assume (epoch == job_epoch);
-    if (mine) assume ((waiting & answered) != 4'd0);
     assume (~line_valid | (begun & ~start & (\dut.stored != LINES | \dut.take )));
   end
 
   `include "slots.svh"
   wire [3:0] come = aged(\dut.came , \dut.oldest );
-  wire [3:0] coming = aged(\dut.arrived ? 4'd1 << \dut.arrived_age : 4'd0, \dut.oldest );
+  wire [3:0] coming = aged(\dut.answered ? 4'd1 << \dut.arrived_age : 4'd0, \dut.oldest );
   wire [3:0] busy = on_port | waiting | come | coming;
   always @* if (begun & ~start & ~rst & after_reset) begin
     fifo_fits: assert (\dut.stored <= LINES);
     fifo_counts: assert (\dut.tail - \dut.head == \dut.stored [$clog2(`LINES)-1:0]);
     ready_is_right: assert (\dut.ready == (\dut.stored != 0));
-    tag_free: assert ((on_port & waiting) == 4'd0 & (~wr_req_valid | wr_req_tag[5:2] == job_epoch));
+    tag_free: assert ((on_port & waiting) == 4'd0 & (~asked | wr_req_tag[5:2] == job_epoch));
     never_more: assert (\dut.reserved <= 3'd4);
     slots_in_order: assert (\dut.next_slot - \dut.oldest == \dut.reserved [1:0]);
     slots_are_right: assert (busy == slots(\dut.oldest , \dut.reserved ));
     come_once: assert (((on_port | waiting) & (come | coming)) == 4'd0 & (come & coming) == 4'd0);
     none_lost: assert (\dut.outstanding == {2'd0, on_port[0] | waiting[0]} + {2'd0, on_port[1] | waiting[1]}
-      + {2'd0, on_port[2] | waiting[2]} + {2'd0, on_port[3] | waiting[3]});
-    idle_is_right: assert (idle == ((on_port | waiting) == 4'd0 & ~(\dut.may_send & \dut.read_valid )));
+      + {2'd0, on_port[2] | waiting[2]} + {2'd0, on_port[3] | waiting[3]} + {2'd0, \dut.answered });
+    leftover_is_right: assert (\dut.leftover_request == left);
+    awaited_is_right: assert (\dut.awaited == waiting);
+    surprise_is_told: assert (unexpected == surprised);
+    idle_is_right: assert (idle == ((on_port | waiting) == 4'd0 & ~wr_req_valid & ~\dut.answered & ~(\dut.may_send & \dut.read_valid )));
     sends_a_free_slot: assert (~\dut.may_send | \dut.reserved != 3'd4);
-    in_order: assert (\dut.next_address == job_destination + accepted + {57'd0, wr_req_valid});
-    address: assert (~wr_req_valid | wr_req_address == job_destination + accepted);
+    in_order: assert (\dut.next_address == job_destination + accepted + {57'd0, asked});
+    address: assert (~asked | wr_req_address == job_destination + accepted);
   end
 
   reg        held = 1'b0;

@@ -3,7 +3,8 @@
 // accelerator then does is asserted. Data is followed by one symbolic pair: its number and its words are any, and stay.
 //
 // The link answers requests in any order and whenever it likes, with or without an error. It may also bring responses
-// to jobs before the last reset or given up by the watchdog: their tags have an epoch of another job.
+// to jobs before the last reset or given up by the watchdog, and responses that nobody asked for, with any tag and any
+// data. A request that was given up while it stood on the port stays there; it is not the next job's.
 // The host resets, starts and aborts whenever it likes; each job's epoch differs from that of the job before.
 //
 // Defines: PAIRS, most pairs of a job (1 to 15); PROMPT, a link that leaves no request and no response waiting for more
@@ -65,6 +66,7 @@ module line_port (
     .rd_req_valid(rd_req_valid), .rd_req_address(rd_req_address), .rd_req_tag(rd_req_tag),
     .wr_req_valid(wr_req_valid), .wr_req_address(wr_req_address), .wr_req_tag(wr_req_tag), .wr_req_data(wr_req_data)
   );
+  (* hierconn *) wire \dut.control.run ;
 
   // ---- what is known of the job ----
   reg [7:0] age = 8'd0;
@@ -96,14 +98,28 @@ module line_port (
   reg [3:0]  wr_waiting;
   reg        followed_waiting;
   reg [1:0]  followed_tag;
-  wire rd_accepted = rd_req_valid & rd_req_ready & ~rst;
-  wire wr_accepted = wr_req_valid & wr_req_ready & ~rst;
+  reg        rd_left = 1'b0;
+  reg        wr_left = 1'b0;
+  wire       gave_up = done & error == 4'd4;
+  wire       rd_asked = rd_req_valid & ~rd_left & ~gave_up;
+  wire       wr_asked = wr_req_valid & ~wr_left & ~gave_up;
+  always @(posedge clk) begin
+    rd_left <= rd_req_valid & ~rd_req_ready & ~rst & (gave_up | rd_left);
+    wr_left <= wr_req_valid & ~wr_req_ready & ~rst & (gave_up | wr_left);
+  end
+  wire rd_accepted = rd_asked & rd_req_ready & ~rst;
+  wire wr_accepted = wr_asked & wr_req_ready & ~rst;
   wire [3:0] rd_asks = rd_accepted ? (4'd1 << rd_req_tag[1:0]) : 4'd0;
   wire [3:0] wr_asks = wr_accepted ? (4'd1 << wr_req_tag[1:0]) : 4'd0;
   wire rd_mine = rd_rsp_valid & (known | accept) & (rd_rsp_tag[5:2] == epoch_now);
   wire wr_mine = wr_rsp_valid & (known | accept) & (wr_rsp_tag[5:2] == epoch_now);
   wire [3:0] rd_answered = rd_mine ? (4'd1 << rd_rsp_tag[1:0]) : 4'd0;
   wire [3:0] wr_answered = wr_mine ? (4'd1 << wr_rsp_tag[1:0]) : 4'd0;
+  // Somebody answered what nobody asked for: while the job ran, and long enough before its end to be told.
+  wire surprise = (rd_mine & (rd_waiting & rd_answered) == 4'd0) | (wr_mine & (wr_waiting & wr_answered) == 4'd0);
+  reg [3:0] surprised;
+  always @(posedge clk)
+    surprised <= rst | accept ? 4'd0 : {surprised[3] | (surprised[2] & ~done), surprised[1:0], surprise & \dut.control.run };
   wire follows = rd_accepted & (rd_lines == followed_line);
   always @(posedge clk) begin
     if (rst | accept) begin
@@ -115,8 +131,8 @@ module line_port (
     end else begin
       rd_lines <= rd_lines + {3'd0, rd_accepted};
       wr_lines <= wr_lines + {3'd0, wr_accepted};
-      rd_waiting <= (rd_waiting | rd_asks) & ~rd_answered;
-      wr_waiting <= (wr_waiting | wr_asks) & ~wr_answered;
+      rd_waiting <= (rd_waiting & ~rd_answered) | rd_asks;
+      wr_waiting <= (wr_waiting & ~wr_answered) | wr_asks;
       followed_waiting <= follows | (followed_waiting & ~(rd_mine & (rd_rsp_tag[1:0] == followed_tag)));
     end
     if (follows) followed_tag <= rd_req_tag[1:0];
@@ -128,9 +144,6 @@ module line_port (
     assume (count <= `PAIRS);
     assume (followed <= `PAIRS);
     if (accept & ever) assume (epoch != last_epoch);
-    // A response is to a request of this job, or has the epoch of another.
-    if (rd_mine) assume ((rd_waiting & rd_answered) != 4'd0 & ~accept);
-    if (wr_mine) assume ((wr_waiting & wr_answered) != 4'd0 & ~accept);
     // The followed pair's line holds its words.
     if (rd_mine & ~rd_rsp_error & followed_waiting & (rd_rsp_tag[1:0] == followed_tag))
       assume ((followed[0] ? rd_rsp_data[31:16] : rd_rsp_data[15:0]) == words);
@@ -144,12 +157,12 @@ module line_port (
   wire [15:0] written = followed[0] ? wr_req_data[31:16] : wr_req_data[15:0];
   always @* if (age != 8'd0 & ~rst) begin
     // Requests: of this job, in order of lines, each once; no tag that still waits.
-    if (rd_req_valid) begin
+    if (rd_asked) begin
       rd_in_job: assert (busy & known);
       rd_in_order: assert (rd_req_address == {53'd0, source} + {54'd0, rd_lines} & rd_lines < lines);
       rd_tag_free: assert (rd_req_tag[5:2] == job_epoch & ((rd_waiting >> rd_req_tag[1:0]) & 4'd1) == 4'd0);
     end
-    if (wr_req_valid) begin
+    if (wr_asked) begin
       wr_in_job: assert (busy & known);
       wr_in_order: assert (wr_req_address == {53'd0, destination} + {54'd0, wr_lines} & wr_lines < lines);
       wr_tag_free: assert (wr_req_tag[5:2] == job_epoch & ((wr_waiting >> wr_req_tag[1:0]) & 4'd1) == 4'd0);
@@ -161,6 +174,7 @@ module line_port (
       done_known: assert (known & ~busy);
       done_acknowledged: assert (error == 4'd4 | (rd_waiting == 4'd0 & wr_waiting == 4'd0));
       if (error == 4'd0) begin
+        surprise_is_told: assert (~surprised[3]);
         done_all: assert (rd_lines == lines & wr_lines == lines);
         if (followed < job_count) begin
           done_counts: assert (~words[0] | contacts != 32'd0);

@@ -85,6 +85,11 @@ pub struct Bench {
     pub reads: Vec<(u64, u64)>,
     pub writes: VecDeque<u64>,
     pub written: Vec<(u64, Vec<u64>)>,
+    /// Whether the link accepts requests, and answers them.
+    pub accepts: bool,
+    pub answers: bool,
+    /// A response of the next cycle in place of the link's: port and tag.
+    pub forged: Option<(&'static str, u64)>,
 }
 
 impl Bench {
@@ -112,6 +117,9 @@ impl Bench {
             reads: Vec::new(),
             writes: VecDeque::new(),
             written: Vec::new(),
+            accepts: true,
+            answers: true,
+            forged: None,
         }
     }
 
@@ -132,9 +140,12 @@ impl Bench {
     /// One cycle of a link that answers in random order, at random times.
     pub fn cycle(&mut self) {
         let (read_ready, write_ready) = (self.eager(self.eagerness), self.eager(self.write_eagerness));
+        let (read_ready, write_ready) = (read_ready && self.accepts, write_ready && self.accepts);
+        let forged = self.forged.take();
         self.set("rd_req_ready", u64::from(read_ready));
         self.set("wr_req_ready", u64::from(write_ready));
-        let answer_read = self.eager(self.eagerness) && !self.reads.is_empty();
+        let answers = self.answers && forged.is_none();
+        let answer_read = self.eager(self.eagerness) && !self.reads.is_empty() && answers;
         self.set("rd_rsp_valid", u64::from(answer_read));
         if answer_read {
             let index = if self.eagerness == 8 { 0 } else { self.random.random_range(0..self.reads.len()) };
@@ -144,12 +155,16 @@ impl Bench {
             let line = self.line(address);
             self.run.write_words(pin, &line);
         }
-        let answer_write = self.eager(self.write_eagerness) && !self.writes.is_empty();
+        let answer_write = self.eager(self.write_eagerness) && !self.writes.is_empty() && answers;
         self.set("wr_rsp_valid", u64::from(answer_write));
         if answer_write {
             let index = if self.write_eagerness == 8 { 0 } else { self.random.random_range(0..self.writes.len()) };
             let tag = self.writes.remove(index).unwrap();
             self.set("wr_rsp_tag", tag);
+        }
+        if let Some((port, tag)) = forged {
+            self.set(&format!("{port}_rsp_valid"), 1);
+            self.set(&format!("{port}_rsp_tag"), tag);
         }
         if read_ready && self.get("rd_req_valid") == 1 {
             let request = (self.get("rd_req_address"), self.get("rd_req_tag"));

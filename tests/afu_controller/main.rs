@@ -3,6 +3,7 @@
 
 mod bench;
 mod hits;
+mod responses;
 
 use bench::Bench;
 use contact_afu::afu::Spec;

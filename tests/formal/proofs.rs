@@ -82,11 +82,11 @@ fn around(latency: u32) -> [Proof; 5] {
     [
         of("credits", "credits", Inductive(5 + latency)),
         of("any link, any host", "line_port", Bounded(12 + latency)).with(&["PAIRS=3"]),
-        of("one job", "line_port", Bounded(28 + latency)).with(one_job),
-        of("a job ends", "line_port", Bounded(36 + latency))
+        of("one job", "line_port", Bounded(29 + latency)).with(one_job),
+        of("a job ends", "line_port", Bounded(37 + latency))
             .with(&["PAIRS=2", "ONE_JOB", "PROMPT=1"])
-            .ends(31 + latency),
-        of("jobs are whole", "line_port", Reached(28 + latency)).with(one_job),
+            .ends(32 + latency),
+        of("jobs are whole", "line_port", Reached(29 + latency)).with(one_job),
     ]
 }
 

@@ -7,3 +7,4 @@ mod faults;
 mod matrix;
 mod places;
 mod recovery;
+mod sequence;

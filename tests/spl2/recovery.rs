@@ -95,7 +95,7 @@ fn abort_at_any_time_and_the_next_job_is_right() {
                     aborted += 1;
                 }
                 _ => {
-                    spoilt.check(&outcome, &what);
+                    spoilt.check_after(&outcome, moment.max(outcome.cycles), &what);
                     complete += 1;
                 }
             }

@@ -212,8 +212,13 @@ pub mod control {
     /// Abort.
     pub const ABORT: Field = field(4, 32, "abort", "anything but 0 ends the running job with error 1");
     /// Watchdog.
-    pub const WATCHDOG: Field =
-        field(5, 32, "watchdog", "cycles without a response, with one owed, that end the job with error 4; 0: never");
+    pub const WATCHDOG: Field = field(
+        5,
+        32,
+        "watchdog",
+        "cycles without a response, while a request waits for one, that end the job with error 4; 0: never, but for an \
+         aborted job, which ends after 65 536 such cycles",
+    );
     /// All of them.
     pub const FIELDS: [Field; 6] = [START, COUNT, MODE, SEQUENCE, ABORT, WATCHDOG];
 }
@@ -230,8 +235,8 @@ pub mod status {
         bits: 4,
         name: "error",
         meaning: "how: 0 well, 1 aborted, 2 read error, 3 write error, 4 watchdog, 5 unknown mode, 6 more contacts \
-                  than the destination has lines for (where only contacts come back), 8 more pairs than the \
-                  buffers have lines for",
+                  than the destination has lines for (where only contacts come back), 7 a response that no \
+                  request waits for, 8 more pairs than the buffers have lines for",
     };
     /// The job.
     pub const SEQUENCE: Field = field(1, 32, "sequence", "of the job that has ended");

@@ -76,6 +76,7 @@ pub(super) fn afu_top(spec: &Spec, core: &Arc<Module>) -> Result<Arc<Module>, Er
         ("dsm_valid", registers.output("dsm_valid")),
         ("context_line", registers.output("context_line")),
         ("context_valid", registers.output("context_valid")),
+        ("context_written", registers.output("context_written")),
         ("rd_granted", own_read_granted),
         ("read_number", read_number),
         ("rsp_valid", rd_valid),

@@ -43,7 +43,8 @@ pub(super) fn registers(spec: &Spec) -> Result<Arc<Module>, Errors> {
         (line.value(), valid, commit)
     };
     let (dsm_line, dsm_valid, dsm_commit) = address(map::DSM_BASE_HIGH, map::DSM_BASE_LOW, "dsm");
-    let (context_line, context_valid, _) = address(map::CONTEXT_BASE_HIGH, map::CONTEXT_BASE_LOW, "context");
+    let (context_line, context_valid, context_commit) =
+        address(map::CONTEXT_BASE_HIGH, map::CONTEXT_BASE_LOW, "context");
 
     // Lines to be written: the identity before the scratch.
     let scratch_written = written(map::SCRATCH);
@@ -76,6 +77,7 @@ pub(super) fn registers(spec: &Spec) -> Result<Arc<Module>, Errors> {
     graph.output("dsm_valid", dsm_valid);
     graph.output("context_line", context_line);
     graph.output("context_valid", context_valid);
+    graph.output("context_written", context_commit);
     graph.output("wr_valid", due.value());
     graph.output("wr_address", dsm_page_line(dsm_line, number));
     graph.output("wr_line", identity_due.select(identity, scratch).named("line"));

@@ -25,8 +25,9 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, Errors> {
 
     let dsm_line = graph.input("dsm_line", ADDRESS_BITS);
     let dsm_valid = graph.input("dsm_valid", 1);
-    let context_line = graph.input("context_line", ADDRESS_BITS);
+    let written_context = graph.input("context_line", ADDRESS_BITS);
     let context_valid = graph.input("context_valid", 1);
+    let context_written = graph.input("context_written", 1);
     let read_granted = graph.input("rd_granted", 1);
     let read_number = graph.input("read_number", NUMBER_BITS);
     let response_valid = graph.input("rsp_valid", 1);
@@ -69,9 +70,18 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, Errors> {
     waiting.next(read_granted | (*waiting & !answered & !overdue));
     let pause_bits = map::RUNNING_POLL_CYCLES.max(map::IDLE_POLL_CYCLES).ilog2() + 1;
     let pause = graph.register("pause", pause_bits, 0);
-    let asks = ((at_context | at_poll | at_run) & !*waiting & !read_granted & !pause.any()).registered("asks");
+    let may_ask = (!*waiting & !read_granted & !pause.any()).named("may_ask");
+    let switches = graph.wire("switches", 1);
+    let asks = ((at_context | (at_poll & !switches) | at_run) & may_ask).registered("asks");
 
-    // The context.
+    // The context, read again between jobs when its address was written again: what a job reads and writes, its status
+    // included, is always of one context. Nothing that was asked for is on its way then.
+    let is_due = graph.register("context_due", 1, 0);
+    switches.drive(at_poll & *is_due & !*waiting & !read_granted & !asks);
+    let reads_context = ((*idle & context_valid) | switches).named("reads_context");
+    is_due.next(context_written | (*is_due & !reads_context));
+    let context_line = graph.data_register("job_context_line", ADDRESS_BITS);
+    context_line.next_if(reads_context, written_context);
     let got_context = (at_context & answered).named("got_context");
     let line_of = |field: map::Field| field.of(response).drop_low(BYTE_BITS);
     let source = graph.data_register("source_line", ADDRESS_BITS);
@@ -106,7 +116,9 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, Errors> {
     let poll_pause = |cycles: u32| constant(pause_bits, cycles.into());
     let next_pause = runs.select(poll_pause(map::RUNNING_POLL_CYCLES), poll_pause(map::IDLE_POLL_CYCLES));
     let counted = pause.any().select(pause.minus(1), *pause);
-    pause.next((answered & !at_context).select(next_pause, counted));
+    // The next job is looked for as soon as one has ended.
+    let set_pause = (answered & !at_context).select(next_pause, counted);
+    pause.next(set_pause.gate(!at_status));
 
     // Lines that the job takes, of each buffer.
     let layout = spec.layout();
@@ -189,8 +201,8 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, Errors> {
 
     // From state to state.
     idle.next(*idle & !context_valid);
-    context.next((*idle & context_valid) | (at_context & !answered));
-    poll.next(got_context | (at_status & written) | (at_poll & !got_job));
+    context.next(reads_context | (at_context & !answered));
+    poll.next(got_context | (at_status & written) | (at_poll & !got_job & !switches));
     measure.next(got_job);
     compare.next(*measure);
     begin.next(*compare);
@@ -205,7 +217,7 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, Errors> {
     writes.next(((to_dsm & dsm_valid) | fences | at_status) & !written);
 
     graph.output("rd_valid", asks);
-    graph.output("rd_address", at_context.select(context_line, source.value()).named("address"));
+    graph.output("rd_address", at_context.select(*context_line, source.value()).named("address"));
     graph.output("start", start);
     graph.output("source", source.plus(map::DATA_LINE.into()).named("first_pairs"));
     graph.output("destination", destination.value());

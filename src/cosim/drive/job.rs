@@ -141,6 +141,7 @@ impl Outcome {
             3 => Some(JobError::Write),
             4 => Some(JobError::Watchdog),
             6 => Some(JobError::Overflow),
+            7 => Some(JobError::Response),
             8 => Some(JobError::Room),
             _ => Some(JobError::Mode),
         }
