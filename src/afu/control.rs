@@ -1,7 +1,7 @@
 //! Control: takes a job, watches it, ends it. A job ends done when the last write is acknowledged. On an abort, an
 //! error response or a response that no request waits for it stops asking, waits for what is outstanding, and ends with
-//! an error. It waits no longer than the watchdog allows, or than [`DRAIN_CYCLES`] without one: then it gives up what is
-//! outstanding. A request that the link has not accepted by then stays on the port until it is, next jobs or not.
+//! an error. It waits no longer than the watchdog allows, or than [`DRAIN_CYCLES`] without one: then it gives up what
+//! is outstanding. A request that the link has not accepted by then stays on the port until it is, next jobs or not.
 
 use std::sync::Arc;
 

@@ -4,7 +4,11 @@
 //
 // The induction is longer than the pipeline, so that it needs no word about what is inside it.
 //
-// Defines: LATENCY, of an SCPU; LINES, lines the dispatcher keeps.
+// Where only hits come back, a pair's place is free again when it is known to be none, or when its hit has left the
+// backlog: so the backlog never holds more than it can, and no hit is lost between the sieve and the packer.
+//
+// Defines: LATENCY, of an SCPU; LINES, lines the dispatcher keeps; SCPUS, how many; EVERY_OTHER, 3 SCPUs at interval 2;
+// PER_LINE, only hits come back, so many per line; GATHERS, more than one.
 `default_nettype none
 
 module credits (
@@ -13,6 +17,9 @@ module credits (
   input wire        start,
   input wire [57:0] source,
   input wire [57:0] destination,
+`ifdef PER_LINE
+  input wire [31:0] destination_lines,
+`endif
   input wire [31:0] count,
   input wire [3:0]  mode,
   input wire [3:0]  epoch,
@@ -21,24 +28,36 @@ module credits (
   input wire        rd_req_ready,
   input wire        rd_rsp_valid,
   input wire [5:0]  rd_rsp_tag,
+`ifdef PER_LINE
+  input wire [63:0] rd_rsp_data,
+`else
   input wire [31:0] rd_rsp_data,
+`endif
   input wire        rd_rsp_error,
   input wire        wr_req_ready,
   input wire        wr_rsp_valid,
   input wire [5:0]  wr_rsp_tag,
   input wire        wr_rsp_error
 );
+`ifdef PER_LINE
+  localparam CAPACITY = `LATENCY <= 2 ? 16 : 32;
+`else
   localparam CAPACITY = 2 * `LINES;
+`endif
+  localparam ROOM_BITS = $clog2(CAPACITY) + 1;
   localparam RANKS = `LATENCY + 3;
 
   wire busy;
   wire [3:0] error;
   wire rd_req_valid;
   wire wr_req_valid;
-  contact_afu #(.SCPUS(32'd2)) dut (
+  contact_afu #(.SCPUS(`SCPUS)) dut (
     .clk(clk), .rst(rst),
     .start(start), .source(source), .destination(destination), .count(count), .mode(mode), .epoch(epoch),
     .watchdog(watchdog), .abort_job(abort_job),
+`ifdef PER_LINE
+    .destination_lines(destination_lines),
+`endif
     .rd_req_ready(rd_req_ready), .rd_rsp_valid(rd_rsp_valid), .rd_rsp_tag(rd_rsp_tag), .rd_rsp_data(rd_rsp_data),
     .rd_rsp_error(rd_rsp_error),
     .wr_req_ready(wr_req_ready), .wr_rsp_valid(wr_rsp_valid), .wr_rsp_tag(wr_rsp_tag), .wr_rsp_error(wr_rsp_error),
@@ -55,9 +74,9 @@ module credits (
   (* hierconn *) wire [31:0]                \dut.control.job_lines ;
   (* hierconn *) wire                       \dut.control.last_place ;
   (* hierconn *) wire                       \dut.control.may_enter ;
-  (* hierconn *) wire [$clog2(`LINES)+1:0]  \dut.control.room ;
-  (* hierconn *) wire [$clog2(`LINES)+1:0]  \dut.control.room_change ;
-  (* hierconn *) wire [$clog2(`LINES)+1:0]  \dut.control.pairs_inside ;
+  (* hierconn *) wire [ROOM_BITS-1:0]       \dut.control.room ;
+  (* hierconn *) wire [ROOM_BITS-1:0]       \dut.control.room_change ;
+  (* hierconn *) wire [ROOM_BITS-1:0]       \dut.control.pairs_inside ;
   (* hierconn *) wire [1:0]                 \dut.control.entered ;
   (* hierconn *) wire [1:0]                 \dut.group_done ;
   (* hierconn *) wire                       \dut.feeder.take ;
@@ -69,21 +88,49 @@ module credits (
   (* hierconn *) wire                       \dut.feeder.place ;
   (* hierconn *) wire                       \dut.feeder.last ;
   (* hierconn *) wire [6:0]                 \dut.feeder.turn ;
+  (* hierconn *) wire [$clog2(`LINES):0]    \dut.dispatcher.stored ;
+  (* hierconn *) wire                       \dut.dispatcher.take ;
+`ifdef PER_LINE
+  (* hierconn *) wire [1:0]                 \dut.sieve.group_here ;
+  (* hierconn *) wire [1:0]                 \dut.sieve.hits_rank_0 ;
+  (* hierconn *) wire [1:0]                 \dut.sieve.dropped_pairs ;
+  (* hierconn *) wire [31:0]                \dut.sieve.emerged ;
+  (* hierconn *) wire [31:0]                \dut.sieve.contact_count ;
+  (* hierconn *) wire [ROOM_BITS-1:0]       \dut.backlog.stored ;
+  (* hierconn *) wire [ROOM_BITS-1:0]       \dut.backlog.readable ;
+  (* hierconn *) wire [ROOM_BITS-2:0]       \dut.backlog.head ;
+  (* hierconn *) wire [ROOM_BITS-2:0]       \dut.backlog.tail ;
+  (* hierconn *) wire [`PER_LINE-1:0]       \dut.backlog.group_out ;
+  // Pairs that have come out of the slots and are not counted yet.
+  wire [1:0]  uncounted = \dut.sieve.group_here ;
+  wire [31:0] emerged = \dut.sieve.emerged ;
+`ifdef GATHERS
+  // Lines between the backlog and the dispatcher, the one in hand among them.
+  (* hierconn *) wire                       \dut.packer.place ;
+  (* hierconn *) wire                       \dut.packer.went ;
+  (* hierconn *) wire                       \dut.packer.goes ;
+  (* hierconn *) wire                       \dut.packer.line_valid ;
+  wire [2:0]  gathered = {2'd0, \dut.packer.place } + \dut.packer.went + \dut.packer.goes + \dut.packer.line_valid ;
+`else
+  wire [2:0]  gathered = 3'd0;
+`endif
+`else
   (* hierconn *) wire                       \dut.packer.place ;
   (* hierconn *) wire                       \dut.packer.line_valid ;
   (* hierconn *) wire                       \dut.packer.flushes ;
   (* hierconn *) wire                       \dut.packer.went ;
   (* hierconn *) wire                       \dut.packer.goes ;
   (* hierconn *) wire [31:0]                \dut.packer.emerged ;
-  (* hierconn *) wire [$clog2(`LINES):0]    \dut.dispatcher.stored ;
-  (* hierconn *) wire                       \dut.dispatcher.take ;
   (* hierconn *) wire                       \dut.dispatcher.line_left ;
+  wire [2:0]  gathered = 3'd0;
+  wire [1:0]  uncounted = 2'd0;
+  wire [31:0] emerged = \dut.packer.emerged ;
+`endif
 
   // Groups of pairs where they must be, each a rank further every cycle, and how many pairs that makes.
   reg [2*RANKS-1:0] ranks;
   reg after_reset = 1'b0;
   reg begun = 1'b0;
-  reg flushed;
   reg ran = 1'b0;
   reg ran_before = 1'b0;
   reg completed = 1'b0;
@@ -94,7 +141,6 @@ module credits (
     ran_before <= ran & ~rst;
     completed <= \dut.control.completes & ~rst;
     ranks <= rst ? {2 * RANKS{1'b0}} : {ranks[2*RANKS-3:0], \dut.control.entered };
-    flushed <= ~\dut.control.begin_job & (flushed | \dut.packer.flushes );
   end
   integer rank;
   reg [7:0] inside;
@@ -103,11 +149,8 @@ module credits (
     for (rank = 0; rank < RANKS; rank = rank + 1) inside = inside + {6'd0, ranks[2*rank +: 2]};
   end
 
-  // Lines that have left the line in hand for the dispatcher's memory, or its memory for the link, and pairs that the
-  // feeder still has to give.
-  wire [$clog2(`LINES)+1:0] leaving = {1'b0, \dut.dispatcher.stored } + \dut.packer.went + \dut.packer.goes
-    + \dut.packer.line_valid + \dut.dispatcher.line_left ;
-  wire [$clog2(`LINES)+1:0] next_room = \dut.control.room + \dut.control.room_change ;
+  // Pairs that the feeder still has to give.
+  wire [ROOM_BITS-1:0] next_room = \dut.control.room + \dut.control.room_change ;
   wire [33:0] in_lines = \dut.feeder.lines_left == 32'd0 ? 34'd0
     : {1'b0, \dut.feeder.lines_left , 1'b0} - {33'd0, ~\dut.control.last_place };
   wire [33:0] to_give = in_lines
@@ -119,7 +162,8 @@ module credits (
     inside_is_right: assert (\dut.control.pairs_inside == inside);
     one_or_other: assert (~(\dut.control.running & \dut.control.draining ));
     only_in_a_job: assert (\dut.control.entered == 2'd0 | (ran_before & begun));
-    complete_is_good: assert (~completed | error == 4'd0);
+    runs_without_error: assert (~\dut.control.running | error == 4'd0);
+    complete_is_good: assert (~completed | error == 4'd0 | error == 4'd6);
     begins_first: assert (~busy | begun | \dut.control.begin_job );
     begins_rested: assert (~\dut.control.begin_job | ~ran);
     begins_empty: assert (~\dut.control.begin_job | (busy & inside == 8'd0 & \dut.control.entered == 2'd0));
@@ -128,21 +172,68 @@ module credits (
     sends_a_line: assert (~\dut.dispatcher.take | \dut.dispatcher.stored != 0);
   end
   always @* if (begun & ~\dut.control.begin_job & ~rst) begin
-    turn_is_an_scpu: assert (\dut.feeder.turn < 7'd2);
+    turn_is_an_scpu: assert (\dut.feeder.turn < `SCPUS);
     lines_are_right: assert (\dut.control.job_lines == {1'b0, \dut.control.job_count [31:1]} + {31'd0, \dut.control.job_count [0]}
       & \dut.control.last_place == ~\dut.control.job_count [0]);
     flags_are_right: assert (\dut.feeder.any_lines_left == (\dut.feeder.lines_left != 32'd0)
       & \dut.feeder.one_lines_left == (\dut.feeder.lines_left == 32'd1));
     only_last_is_short: assert (~\dut.feeder.in_hand | \dut.feeder.last | \dut.feeder.lines_left == 32'd0);
-    each_once: assert (to_give + {26'd0, inside} + {32'd0, \dut.control.entered } + {2'd0, \dut.packer.emerged }
+    each_once: assert (to_give + {26'd0, inside} + {32'd0, \dut.control.entered } + {32'd0, uncounted} + {2'd0, emerged}
       == {2'd0, \dut.control.job_count });
-    last_line_once: assert (~flushed | (\dut.packer.emerged == \dut.control.job_count & ~\dut.packer.place ));
-    places_add_up: assert ({4'd0, next_room} + inside + {7'd0, \dut.packer.place } + {3'd0, leaving, 1'b0}
-      == CAPACITY + {7'd0, flushed});
     room_is_seen: assert (~\dut.control.may_enter | \dut.control.room >= 8);
     never_negative: assert (\dut.control.entered <= next_room);
+    lines_fit: assert (\dut.dispatcher.stored + gathered <= `LINES);
+  end
+
+`ifdef PER_LINE
+  // Pairs of a cycle are hits or none; hits that left the backlog.
+  reg [1:0]  were_here;
+  reg [31:0] left;
+  wire [2:0] sifted = {1'b0, \dut.sieve.hits_rank_0 } + {1'b0, \dut.sieve.dropped_pairs };
+  always @(posedge clk) begin
+    were_here <= rst | \dut.control.begin_job ? 2'd0 : \dut.sieve.group_here ;
+    left <= \dut.control.begin_job ? 32'd0 : left + \dut.backlog.group_out ;
+  end
+  always @* if (begun & ~\dut.control.begin_job & ~rst) begin
+    each_is_sifted: assert (sifted == {1'b0, were_here});
+    hits_add_up: assert ({3'd0, next_room} + inside + uncounted + sifted + \dut.backlog.stored + \dut.backlog.group_out
+      == CAPACITY);
+    no_hit_is_lost: assert (\dut.sieve.contact_count == left + \dut.sieve.hits_rank_0 + \dut.backlog.stored
+      + \dut.backlog.group_out );
+    backlog_fits: assert (\dut.backlog.stored <= CAPACITY);
+    backlog_counts: assert (\dut.backlog.tail - \dut.backlog.head == \dut.backlog.stored [ROOM_BITS-2:0]);
+    reads_what_is_there: assert (\dut.backlog.readable <= \dut.backlog.stored );
+  end
+`else
+  // Lines that have left the line in hand for the dispatcher's memory, or its memory for the link.
+  reg flushed;
+  always @(posedge clk) flushed <= ~\dut.control.begin_job & (flushed | \dut.packer.flushes );
+  wire [ROOM_BITS-1:0] leaving = {1'b0, \dut.dispatcher.stored } + \dut.packer.went + \dut.packer.goes
+    + \dut.packer.line_valid + \dut.dispatcher.line_left ;
+  always @* if (begun & ~\dut.control.begin_job & ~rst) begin
+    last_line_once: assert (~flushed | (emerged == \dut.control.job_count & ~\dut.packer.place ));
+    places_add_up: assert ({4'd0, next_room} + inside + {7'd0, \dut.packer.place } + {3'd0, leaving, 1'b0}
+      == CAPACITY + {7'd0, flushed});
     fits: assert (leaving - {3'd0, \dut.dispatcher.line_left } <= `LINES);
   end
+`endif
+
+  // An SCPU that takes a pair every other cycle never takes two in a row: SCPUs 0 and 1 have theirs in phase 0, SCPU 2
+  // in phase 1, and a turn's phase is that of its SCPU.
+`ifdef EVERY_OTHER
+  (* hierconn *) wire \dut.slots[0].unit.takes ;
+  (* hierconn *) wire \dut.slots[1].unit.takes ;
+  (* hierconn *) wire \dut.slots[2].unit.takes ;
+  (* hierconn *) wire \dut.feeder.phase ;
+  (* hierconn *) wire \dut.feeder.turn_phase ;
+  reg [2:0] took = 3'd0;
+  wire [2:0] takes = { \dut.slots[2].unit.takes , \dut.slots[1].unit.takes , \dut.slots[0].unit.takes };
+  always @(posedge clk) took <= rst ? 3'd0 : takes;
+  always @* if (begun & ~\dut.control.begin_job & ~rst) begin
+    phase_is_the_scpu_s: assert (\dut.feeder.turn_phase == \dut.feeder.turn [1]);
+    every_other_cycle: assert ((takes & took) == 3'd0);
+  end
+`endif
 endmodule
 
 `default_nettype wire

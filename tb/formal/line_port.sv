@@ -7,7 +7,7 @@
 // data. A request that was given up while it stood on the port stays there; it is not the next job's.
 // The host resets, starts and aborts whenever it likes; each job's epoch differs from that of the job before.
 //
-// Defines: PAIRS, most pairs of a job (1 to 15); PROMPT, a link that leaves no request and no response waiting for more
+// Defines: SCPUS, how many; PAIRS, most pairs of a job (1 to 15); PROMPT, a link that leaves no request and no response waiting for more
 // than so many cycles, over which each job must end within BOUND cycles; ONE_JOB, one job, in
 // the cycle after one reset.
 `default_nettype none
@@ -54,7 +54,7 @@ module line_port (
   wire [5:0]  wr_req_tag;
   wire [31:0] wr_req_data;
 
-  contact_afu #(.SCPUS(32'd2)) dut (
+  contact_afu #(.SCPUS(`SCPUS)) dut (
     .clk(clk), .rst(rst),
     .start(start), .source({53'd0, source}), .destination({53'd0, destination}), .count({28'd0, count}), .mode({3'd0, mode}), .epoch(epoch),
     .watchdog({27'd0, watchdog}), .abort_job(abort_job),

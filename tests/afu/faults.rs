@@ -109,7 +109,7 @@ const FAULTS: [Planted; 8] = [
     ("contact_afu.v", "slots_record_0_d1 <= ", Controller::LanesSwapped as u32, "slots_record_1"),
     ("contact_afu.v", "slots_record_1_d1 <= ", Controller::LanesSwapped as u32, "slots_record_0"),
     ("contact_afu_dispatcher.v", "assign idle = ", Controller::DoneEarly as u32, "~wr_req_valid"),
-    ("contact_afu_collector.v", "assign response = ", Controller::EpochIgnored as u32, "rd_rsp_valid"),
+    ("contact_afu_collector.v", "wire is_current = ", Controller::EpochIgnored as u32, "rd_rsp_valid"),
     ("contact_afu_control.v", "may_enter <= run", Controller::CreditsIgnored as u32, "run"),
     (
         "contact_afu_packer.v",

@@ -121,8 +121,8 @@ fn an_abort_ends_though_a_response_is_lost() {
     }
 }
 
-/// A link that accepts nothing any more: the job ends, its request stays on the port as it is, and the next job is right
-/// once the link accepts again.
+/// A link that accepts nothing any more: the job ends, its request stays on the port as it is, and the next job is
+/// right once the link accepts again.
 #[test]
 fn a_link_that_accepts_nothing_does_not_keep_a_job() {
     for (watchdog, aborts) in [(WATCHDOG, false), (WATCHDOG, true), (0, true)] {

@@ -1,38 +1,114 @@
-//! The accelerator as it is proven: the controller that the generator writes for users, with short lines, few tags,
+//! The accelerators as they are proven: the controller that the generator writes for users, with short lines, few tags,
 //! small buffers, and an SCPU that is a delay.
 
 use std::sync::Arc;
 
 use contact_afu::afu::{Afu, Spec};
-use contact_afu::config::Config;
+use contact_afu::config::{Config, Results};
 use contact_afu::hdl::{Graph, Module};
 
-/// Bits of a line, two pairs of eight words in it.
-const LINE_BITS: u32 = 32;
-const WORD_BITS: u32 = 2;
 const TAGS: u32 = 4;
 
-/// An SCPU that gives its pair back: a contact if bit 0 is set, invalid if bit 1 is set and bit 0 is not.
-fn scpu(latency: u32) -> Arc<Module> {
+/// An accelerator that is proven, but for the delay of its SCPUs. A line holds two pairs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Design {
+    /// Two SCPUs that each take a pair per cycle; every pair comes back, two in a line.
+    EachCycle,
+    /// Three SCPUs that each take a pair every other cycle.
+    EveryOther,
+    /// Only the numbers of pairs that touch come back, two in a line.
+    Hits,
+    /// Only pairs that touch come back, each a line: its number, and two words.
+    Records,
+}
+
+use Design::{EachCycle, EveryOther, Hits, Records};
+
+impl Design {
+    /// How a report tells it from [`EachCycle`].
+    pub fn label(self) -> &'static str {
+        match self {
+            EachCycle => "",
+            EveryOther => ", interval 2",
+            Hits => ", hits",
+            Records => ", hits with records",
+        }
+    }
+
+    fn only_hits(self) -> bool {
+        matches!(self, Hits | Records)
+    }
+
+    /// Macros by which a harness knows it, around SCPUs of that delay.
+    pub fn defines(self, latency: u32) -> Vec<String> {
+        // What the dispatcher keeps: `afu::results::Room`.
+        let lines = if latency <= 2 && !self.only_hits() { 8 } else { 16 };
+        let own: &[&str] = match self {
+            EachCycle => &["SCPUS=32'd2"],
+            EveryOther => &["SCPUS=32'd3", "EVERY_OTHER"],
+            Hits => &["SCPUS=32'd2", "PER_LINE=2", "GATHERS"],
+            Records => &["SCPUS=32'd2", "PER_LINE=1"],
+        };
+        let own = own.iter().map(|define| (*define).to_owned());
+        own.chain([format!("LATENCY={latency}"), format!("LINES={lines}")]).collect()
+    }
+
+    /// Of a pair's words, those that come back.
+    fn record_bits(self) -> u32 {
+        match self {
+            EachCycle | EveryOther => 16,
+            Hits => 0,
+            Records => 8,
+        }
+    }
+
+    fn spec(self) -> Spec {
+        let base = Config { scpus: 2, ..Config::default() };
+        let of_hits = |contact: &str| Config {
+            results: Results::Hits,
+            contact: contact.parse().expect("fields of a contact"),
+            ..base.clone()
+        };
+        let config = match self {
+            EachCycle => base,
+            EveryOther => Config { scpus: 3, interval: 2, ..base },
+            Hits => of_hits("hit"),
+            Records => of_hits("depth"),
+        };
+        // A pair has eight words; a hit's number has 32 bits.
+        let word_bits = if self.only_hits() { 4 } else { 2 };
+        Spec { line_bits: 16 * word_bits, word_bits, max_outstanding: TAGS, dispatch_cycles: 1, ..Spec::from(config) }
+    }
+
+    /// Verilog files, name and text, of the accelerator around SCPUs of that delay.
+    pub fn files(self, latency: u32) -> Vec<(String, String)> {
+        let spec = self.spec();
+        let scpu = scpu(&spec, latency, self.record_bits());
+        Afu::around_scpu(spec, scpu).expect("a sound accelerator").verilog()
+    }
+}
+
+/// An SCPU that gives its pair back, as far as a record holds it: a contact if bit 0 is set, invalid if bit 1 is set
+/// and bit 0 is not. At an interval of 2 it looks at the upper half of the pair a cycle later.
+fn scpu(spec: &Spec, latency: u32, record_bits: u32) -> Arc<Module> {
     let graph = Graph::new("scpu");
     graph.about(format!("in place of an SCPU: the pair itself, {latency} cycles later"));
-    let pair = graph.input("pair", LINE_BITS / 2);
-    graph.output("record", pair.delay(latency));
+    if spec.config.interval > 1 {
+        graph.input("take", 1);
+    }
+    let pair_bits = spec.layout().pair_bits();
+    let pair = graph.input("pair", pair_bits);
+    if record_bits > 0 {
+        let half = pair_bits / 2;
+        let record = match spec.config.interval {
+            1 => pair.delay(latency),
+            _ => pair.high(half).delay(latency - 1).concat(pair.low(half).delay(latency)),
+        };
+        graph.output("record", record.low(record_bits));
+    }
     graph.output("contact", pair.bit(0).delay(latency));
     graph.output("invalid_pair", (pair.bit(1) & !pair.bit(0)).delay(latency));
     let mut module = graph.finish().expect("a sound module");
     Arc::get_mut(&mut module).expect("the only owner").latency = latency;
     module
-}
-
-/// Verilog files, name and text, of the accelerator around an SCPU of that latency.
-pub fn files(latency: u32) -> Vec<(String, String)> {
-    let spec = Spec {
-        line_bits: LINE_BITS,
-        word_bits: WORD_BITS,
-        max_outstanding: TAGS,
-        dispatch_cycles: 1,
-        ..Spec::from(Config { scpus: 2, ..Config::default() })
-    };
-    Afu::around_scpu(spec, scpu(latency)).expect("a sound accelerator").verilog()
 }

@@ -14,7 +14,7 @@ use tools::Verdict;
 
 fn holds(proof: &Proof) {
     let began = std::time::Instant::now();
-    let verdict = tools::check(proof, None, &design::files(proof.latency));
+    let verdict = tools::check(proof, None, &proof.files());
     println!("{:<40} {verdict:?}, {:.0} s", proof.to_string(), began.elapsed().as_secs_f64());
     assert_eq!(verdict, Verdict::Proven, "{proof}");
 }

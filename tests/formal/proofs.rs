@@ -4,6 +4,8 @@ use std::fmt;
 use std::fs;
 use std::path::Path;
 
+use crate::design::Design;
+
 /// How a proof is made.
 #[derive(Clone, Copy, Debug)]
 pub enum Method {
@@ -21,6 +23,8 @@ pub enum Method {
 #[derive(Clone, Copy, Debug)]
 pub struct Proof {
     pub name: &'static str,
+    /// Of which accelerator.
+    pub design: Design,
     /// The file in `tb/formal`, and its module.
     pub harness: &'static str,
     /// Cycles of an SCPU.
@@ -35,21 +39,28 @@ pub struct Proof {
 }
 
 impl Proof {
-    /// The macros of the harness. Eight lines are what the dispatcher keeps around SCPUs of up to 2 cycles, else
-    /// sixteen.
+    /// The macros of the harness.
     pub fn defines(&self) -> Vec<String> {
-        let lines = if self.latency <= 2 { 8 } else { 16 };
         let bound = self.bound.map(|cycles| format!("BOUND={cycles}"));
         let own = self.defines.iter().map(|define| (*define).to_owned()).chain(bound);
-        [format!("LATENCY={}", self.latency), format!("LINES={lines}")].into_iter().chain(own).collect()
+        self.design.defines(self.latency).into_iter().chain(own).collect()
+    }
+
+    /// Verilog files, name and text, of the accelerator.
+    pub fn files(&self) -> Vec<(String, String)> {
+        self.design.files(self.latency)
     }
 
     const fn new(name: &'static str, harness: &'static str, latency: u32, method: Method) -> Self {
-        Self { name, harness, latency, defines: &[], bound: None, method, is_short: false }
+        Self { name, design: Design::EachCycle, harness, latency, defines: &[], bound: None, method, is_short: false }
     }
 
     const fn with(self, defines: &'static [&'static str]) -> Self {
         Self { defines, ..self }
+    }
+
+    const fn of(self, design: Design) -> Self {
+        Self { design, ..self }
     }
 
     const fn ends(self, cycles: u32) -> Self {
@@ -69,7 +80,7 @@ impl fmt::Display for Proof {
             Method::At(cycle) => ("in cycle", cycle),
             Method::Reached(cycles) => ("reached", cycles),
         };
-        write!(f, "{} (SCPU {}, {how} {cycles})", self.name, self.latency)
+        write!(f, "{} (SCPU {}{}, {how} {cycles})", self.name, self.latency, self.design.label())
     }
 }
 
@@ -90,13 +101,38 @@ fn around(latency: u32) -> [Proof; 5] {
     ]
 }
 
+/// Of SCPUs that take a pair every other cycle: what hands them pairs differs.
+fn every_other(latency: u32) -> [Proof; 3] {
+    let of = |name, harness, method| Proof::new(name, harness, latency, method).of(Design::EveryOther);
+    let one_job = &["PAIRS=3", "ONE_JOB"];
+    [
+        of("credits at interval 2", "credits", Inductive(6 + latency)),
+        of("one job at interval 2", "line_port", Bounded(31 + latency)).with(one_job),
+        of("jobs at interval 2 are whole", "line_port", Reached(31 + latency)).with(one_job),
+    ]
+}
+
+/// Where only hits come back: sieve, backlog, overflow.
+fn of_hits(latency: u32) -> [Proof; 6] {
+    let of = |name, design, harness, method| Proof::new(name, harness, latency, method).of(design);
+    [
+        of("credits of hits", Design::Hits, "credits", Inductive(9 + latency)),
+        of("credits of records", Design::Records, "credits", Inductive(9 + latency)),
+        of("one job of hits", Design::Hits, "hits_job", Bounded(33 + latency)),
+        of("one job of records", Design::Records, "hits_job", Bounded(33 + latency)),
+        of("jobs of hits are whole", Design::Hits, "hits_job", Reached(33 + latency)),
+        of("jobs of records are whole", Design::Records, "hits_job", Reached(33 + latency)),
+    ]
+}
+
 /// All of them. The collector and the dispatcher alone know nothing of SCPUs but how many lines are kept for them:
 /// twice as many from a delay of 3 on.
 pub fn proofs() -> Vec<Proof> {
     let alone = [("collector", 1), ("dispatcher", 1), ("dispatcher", 3)]
         .map(|(name, latency)| Proof::new(name, name, latency, Inductive(2)).short());
     let around = (1..=5).flat_map(around).map(|proof| Proof { is_short: proof.latency == 1, ..proof });
-    alone.into_iter().chain(around).collect()
+    let others = [1, 3].into_iter().flat_map(|latency| every_other(latency).into_iter().chain(of_hits(latency)));
+    alone.into_iter().chain(around).chain(others).collect()
 }
 
 /// The proof of that name, around the fastest SCPU.

@@ -45,7 +45,7 @@ pub enum ProtocolError {
         /// Whether they are reads.
         is_read: bool,
     },
-    /// A request without a job.
+    /// A request without a job. (One that a job gave up while it stood on the port stays there.)
     #[error("a {} request while no job runs", direction(*is_read))]
     Idle {
         /// Whether it is a read.
@@ -134,12 +134,24 @@ pub(super) struct Monitor {
     epoch: u8,
     /// Requests of the last cycle that were not accepted.
     pending: Requests,
+    /// Whether the last job gave up what was outstanding.
+    gave_up: bool,
+    /// Whether the read, or the write, on the port is one that a job gave up.
+    leftover: [bool; 2],
     violations: u64,
 }
 
 impl Default for Monitor {
     fn default() -> Self {
-        Self { reads: Half::new(true), writes: Half::new(false), epoch: 0, pending: Requests::default(), violations: 0 }
+        Self {
+            reads: Half::new(true),
+            writes: Half::new(false),
+            epoch: 0,
+            pending: Requests::default(),
+            gave_up: false,
+            leftover: [false; 2],
+            violations: 0,
+        }
     }
 }
 
@@ -149,12 +161,14 @@ impl Monitor {
         self.reads.forget();
         self.writes.forget();
         self.pending = Requests::default();
+        self.leftover = [false; 2];
     }
 
     /// A job of this epoch begins; memory counts violations anew.
     pub(super) fn begin(&mut self, epoch: u8) {
-        // What a job that gave up still waits for is no longer this one's.
-        self.forget();
+        // What a job that gave up still waits for is no longer this one's, a request on the port included.
+        self.reads.forget();
+        self.writes.forget();
         self.epoch = epoch;
         self.violations = 0;
     }
@@ -190,27 +204,35 @@ impl Monitor {
         memory: &Memory,
     ) -> Result<(), ProtocolError> {
         // A tag is free from the cycle after its response on.
-        if let Some(read) = &requests.read {
-            if !busy {
-                return Err(ProtocolError::Idle { is_read: true });
-            }
-            if replies.read_ready {
-                self.reads.accepted(cycle, read.tag, self.epoch)?;
-            }
+        let is_kept = [
+            self.pending.read.is_some() && self.pending.read == requests.read,
+            self.pending.write.is_some() && self.pending.write == requests.write,
+        ];
+        let [reads, writes] = &mut self.leftover;
+        for (leftover, is_kept) in [(reads, is_kept[0]), (writes, is_kept[1])] {
+            *leftover = is_kept && (*leftover || !busy && self.gave_up);
         }
-        if let Some(write) = &requests.write {
+        let [left_read, left_write] = self.leftover;
+        let tags = [
+            (requests.read.as_ref().map(|read| read.tag), left_read, replies.read_ready, &mut self.reads),
+            (requests.write.as_ref().map(|write| write.tag), left_write, replies.write_ready, &mut self.writes),
+        ];
+        for (tag, leftover, is_ready, half) in tags {
+            let Some(tag) = tag.filter(|_| !leftover) else { continue };
             if !busy {
-                return Err(ProtocolError::Idle { is_read: false });
+                return Err(ProtocolError::Idle { is_read: half.is_read });
             }
-            if replies.write_ready {
-                self.writes.accepted(cycle, write.tag, self.epoch)?;
+            if is_ready {
+                half.accepted(cycle, tag, self.epoch)?;
             }
         }
         self.check_stable(requests, replies)?;
         self.answered(replies);
+        // A request that was given up goes where its own job's went.
+        let is_late = left_read && replies.read_ready || left_write && replies.write_ready;
         if memory.violation_count() > self.violations {
             self.violations = memory.violation_count();
-            if let Some(&violation) = memory.violations().last() {
+            if let Some(&violation) = memory.violations().last().filter(|_| !is_late) {
                 return Err(violation.into());
             }
         }
@@ -237,7 +259,7 @@ impl Monitor {
 
     /// Checks the end of a job that had to write its destination up to the line address `end`.
     pub(super) fn at_done(
-        &self,
+        &mut self,
         cycle: u64,
         error: u8,
         busy: bool,
@@ -248,6 +270,7 @@ impl Monitor {
         if busy {
             return fail(ProtocolError::DoneAndBusy);
         }
+        self.gave_up = error == WATCHDOG;
         let (reads, writes) = (self.reads.outstanding, self.writes.outstanding);
         if error != WATCHDOG && (reads, writes) != (0, 0) {
             return fail(ProtocolError::DoneEarly { reads, writes });

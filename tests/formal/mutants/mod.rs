@@ -3,7 +3,6 @@
 mod parts;
 mod whole;
 
-use crate::design;
 use crate::proofs::{Method, Proof, proof};
 
 /// A change of one file.
@@ -33,7 +32,7 @@ impl Mutant {
 
     /// The accelerator with the change in it.
     pub fn files(&self) -> Vec<(String, String)> {
-        let mut files = design::files(proof(self.tried_in).latency);
+        let mut files = proof(self.tried_in).files();
         let (_, text) = files.iter_mut().find(|(name, _)| name == self.file).expect("a file of the accelerator");
         assert_eq!(text.matches(self.old).count(), 1, "{}: one `{}` in\n{text}", self.file, self.old);
         assert_ne!(self.old, self.new);
