@@ -125,11 +125,15 @@ impl Case {
         self.check_written(outcome, what);
         assert!(outcome.lines.iter().take(self.lines.len()).all(Option::is_some), "{what}: a line is missing");
         assert_eq!(status(outcome), self.status, "{what}: contacts, invalid, first invalid");
-        let bytes = |lines: &[Line]| 64 * lines.len() as u64;
-        let traffic = (outcome.bytes_read, outcome.bytes_written);
-        assert_eq!(traffic, (bytes(&self.source), bytes(&self.lines)), "{what}: each line once");
+        assert_eq!((outcome.bytes_read, outcome.bytes_written), self.traffic(), "{what}: each line once");
         assert_eq!(outcome.cycles_busy + 1, outcome.cycles, "{what}: busy from the cycle after the start on");
         assert!(outcome.cycles_input + outcome.cycles_output <= outcome.cycles_busy, "{what}: waiting for one thing");
+    }
+
+    /// Bytes read and written.
+    pub fn traffic(&self) -> (u64, u64) {
+        let bytes = |lines: &[Line]| 64 * lines.len() as u64;
+        (bytes(&self.source), bytes(&self.lines))
     }
 
     /// Whatever was written is right; how many lines were.

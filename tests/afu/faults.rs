@@ -30,7 +30,9 @@ fn verdict(config: &Config, file: &str, left: &str, right: impl Fn(&str) -> Stri
     assert!(files.iter().any(|(name, _)| name == file), "there is no {file}");
     for (name, text) in files {
         let text = if name == file { change(&text, left, &right) } else { text };
-        fs::write(folder.path().join(name), text).unwrap();
+        let path = folder.path().join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
     }
     let bench = Bench::of_folder(folder.path(), None, Trace::Off).unwrap();
     bench.run(&Set::Random(2_000).pairs(1), &LinkModel::shuffled(), 1).unwrap()
