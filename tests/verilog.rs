@@ -79,7 +79,7 @@ fn golden_top_asynchronous_reset() {
 #[test]
 fn a_memory_asks_for_what_the_family_has() {
     let graph = Graph::new("memories");
-    let (small, large) = (graph.input("few_words", 12).delay(20), graph.input("many_words", 12).delay(200));
+    let (small, large) = (graph.input("few_words", 12).delay(16), graph.input("many_words", 12).delay(300));
     graph.output("from_small", small);
     graph.output("from_large", large);
     let module = graph.finish().unwrap();
