@@ -7,8 +7,8 @@
 // Where only hits come back, a pair's place is free again when it is known to be none, or when its hit has left the
 // backlog: so the backlog never holds more than it can, and no hit is lost between the sieve and the packer.
 //
-// Defines: LATENCY, of an SCPU; LINES, lines the dispatcher keeps; SCPUS, how many; EVERY_OTHER, 3 SCPUs at interval 2;
-// PER_LINE, only hits come back, so many per line; GATHERS, more than one.
+// Defines: LATENCY, of an SCPU; LINES, lines the dispatcher keeps; SCPUS, how many; EVERY_OTHER, an interval of 2, and
+// THREE, of 3 SCPUs; PER_LINE, only hits come back, so many per line; GATHERS, more than one.
 `default_nettype none
 
 module credits (
@@ -223,11 +223,14 @@ module credits (
 `ifdef EVERY_OTHER
   (* hierconn *) wire \dut.slots[0].unit.takes ;
   (* hierconn *) wire \dut.slots[1].unit.takes ;
+`ifdef THREE
   (* hierconn *) wire \dut.slots[2].unit.takes ;
-  (* hierconn *) wire \dut.feeder.phase ;
+  wire [2:0] takes = { \dut.slots[2].unit.takes , \dut.slots[1].unit.takes , \dut.slots[0].unit.takes };
+`else
+  wire [2:0] takes = {1'b0, \dut.slots[1].unit.takes , \dut.slots[0].unit.takes };
+`endif
   (* hierconn *) wire \dut.feeder.turn_phase ;
   reg [2:0] took = 3'd0;
-  wire [2:0] takes = { \dut.slots[2].unit.takes , \dut.slots[1].unit.takes , \dut.slots[0].unit.takes };
   always @(posedge clk) took <= rst ? 3'd0 : takes;
   always @* if (begun & ~\dut.control.begin_job & ~rst) begin
     phase_is_the_scpu_s: assert (\dut.feeder.turn_phase == \dut.feeder.turn [1]);

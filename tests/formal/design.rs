@@ -14,15 +14,17 @@ const TAGS: u32 = 4;
 pub enum Design {
     /// Two SCPUs that each take a pair per cycle; every pair comes back, two in a line.
     EachCycle,
-    /// Three SCPUs that each take a pair every other cycle.
+    /// Two SCPUs that each take a pair every other cycle.
     EveryOther,
+    /// Three of these: their turns do not go round in one cycle.
+    ThreeEveryOther,
     /// Only the numbers of pairs that touch come back, two in a line.
     Hits,
     /// Only pairs that touch come back, each a line: its number, and two words.
     Records,
 }
 
-use Design::{EachCycle, EveryOther, Hits, Records};
+use Design::{EachCycle, EveryOther, Hits, Records, ThreeEveryOther};
 
 impl Design {
     /// How a report tells it from [`EachCycle`].
@@ -30,6 +32,7 @@ impl Design {
         match self {
             EachCycle => "",
             EveryOther => ", interval 2",
+            ThreeEveryOther => ", three at interval 2",
             Hits => ", hits",
             Records => ", hits with records",
         }
@@ -45,7 +48,8 @@ impl Design {
         let lines = if latency <= 2 && !self.only_hits() { 8 } else { 16 };
         let own: &[&str] = match self {
             EachCycle => &["SCPUS=32'd2"],
-            EveryOther => &["SCPUS=32'd3", "EVERY_OTHER"],
+            EveryOther => &["SCPUS=32'd2", "EVERY_OTHER"],
+            ThreeEveryOther => &["SCPUS=32'd3", "EVERY_OTHER", "THREE"],
             Hits => &["SCPUS=32'd2", "PER_LINE=2", "GATHERS"],
             Records => &["SCPUS=32'd2", "PER_LINE=1"],
         };
@@ -56,7 +60,7 @@ impl Design {
     /// Of a pair's words, those that come back.
     fn record_bits(self) -> u32 {
         match self {
-            EachCycle | EveryOther => 16,
+            EachCycle | EveryOther | ThreeEveryOther => 16,
             Hits => 0,
             Records => 8,
         }
@@ -71,7 +75,8 @@ impl Design {
         };
         let config = match self {
             EachCycle => base,
-            EveryOther => Config { scpus: 3, interval: 2, ..base },
+            EveryOther => Config { interval: 2, ..base },
+            ThreeEveryOther => Config { scpus: 3, interval: 2, ..base },
             Hits => of_hits("hit"),
             Records => of_hits("depth"),
         };

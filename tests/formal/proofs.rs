@@ -102,13 +102,15 @@ fn around(latency: u32) -> [Proof; 5] {
 }
 
 /// Of SCPUs that take a pair every other cycle: what hands them pairs differs.
-fn every_other(latency: u32) -> [Proof; 3] {
-    let of = |name, harness, method| Proof::new(name, harness, latency, method).of(Design::EveryOther);
+fn every_other(latency: u32) -> [Proof; 4] {
+    let of = |name, design, harness, method| Proof::new(name, harness, latency, method).of(design);
+    let three = Design::ThreeEveryOther;
     let one_job = &["PAIRS=3", "ONE_JOB"];
     [
-        of("credits at interval 2", "credits", Inductive(6 + latency)),
-        of("one job at interval 2", "line_port", Bounded(31 + latency)).with(one_job),
-        of("jobs at interval 2 are whole", "line_port", Reached(31 + latency)).with(one_job),
+        of("credits at interval 2", Design::EveryOther, "credits", Inductive(6 + latency)),
+        of("credits of three at interval 2", three, "credits", Inductive(6 + latency)),
+        of("one job at interval 2", three, "line_port", Bounded(31 + latency)).with(one_job),
+        of("jobs at interval 2 are whole", three, "line_port", Reached(31 + latency)).with(one_job),
     ]
 }
 

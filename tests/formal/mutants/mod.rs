@@ -1,5 +1,6 @@
 //! Faults of the controller, each a small change of generated Verilog, and the property that it breaks.
 
+mod others;
 mod parts;
 mod whole;
 
@@ -56,7 +57,7 @@ const SHORT: [&str; 6] = [
 
 /// All of them.
 pub fn all() -> Vec<Mutant> {
-    let tables = parts::TABLES.iter().chain(whole::TABLES);
+    let tables = parts::TABLES.iter().chain(whole::TABLES).chain(others::TABLES);
     let mutants = tables.flat_map(|(tried_in, file, rows)| {
         rows.iter().map(|&(what, old, new, cycle, breaks)| {
             let is_short = SHORT.contains(&what);
