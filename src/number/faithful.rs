@@ -14,7 +14,7 @@
 //! one and a half above ([`Faithful::lower`]): what is nearest is that number or the next, and the sign of what their
 //! middle leaves tells which ([`Faithful::nearest`]). So one table serves both kinds of root.
 //!
-//! `tests/faithful.rs` holds all of it for every significand of every fraction length there is.
+//! `tests/numbers/faithful.rs` holds all of it for every significand of every fraction length there is.
 
 use std::sync::OnceLock;
 

@@ -1,0 +1,111 @@
+//! Simulations with contacts from here and there, and how far they go apart.
+
+use contact_afu::kernel::Engine;
+use contact_afu::ode::{Collider, Ode, SpherePair, Touch, World};
+
+use super::scenes::{Build, Point, Scene, dot};
+
+/// Where contacts come from.
+pub enum Contacts<'a> {
+    /// ODE's own collider in `f64`.
+    Ode,
+    /// The same, after the positions and radii were rounded to binary32.
+    Rounded,
+    /// An engine in its place, which is given the same rounded numbers.
+    By(&'a mut dyn Engine),
+}
+
+/// A world after a step.
+#[derive(PartialEq)]
+pub struct State {
+    /// Kinetic energy, and the work that the forces have still to do.
+    pub energy: f64,
+    momentum: Point,
+    angular: Point,
+    positions: Vec<Point>,
+    pub contacts: usize,
+}
+
+fn distance(a: Point, b: Point) -> f64 {
+    let step = [0, 1, 2].map(|axis| a[axis] - b[axis]);
+    dot(step, step).sqrt()
+}
+
+fn narrow(v: f64) -> f64 {
+    f64::from(v as f32)
+}
+
+fn rounded(world: &World, pair: &mut SpherePair) -> Vec<Touch> {
+    let mut touches = Vec::new();
+    for [first, second] in world.candidates().unwrap() {
+        let [one, other] = [first, second].map(|sphere| {
+            let [x, y, z] = world.position(sphere);
+            [x, y, z, world.radius(sphere)].map(narrow)
+        });
+        pair.set(one, other).unwrap();
+        touches.extend(pair.collide().map(|contact| Touch { first, second, contact }));
+    }
+    touches
+}
+
+/// The states after each of so many steps.
+pub fn run(build: Build, steps: usize, mut contacts: Contacts<'_>) -> Vec<State> {
+    let own = !matches!(contacts, Contacts::By(_));
+    let ode = Ode::start(if own { Collider::Own } else { Collider::Engine }).unwrap();
+    let mut pair = own.then(|| SpherePair::new(&ode).unwrap());
+    let mut scene = build(&ode).unwrap();
+    let mut states = Vec::with_capacity(steps);
+    while states.len() < steps {
+        let touches = match (&mut contacts, &mut pair) {
+            (Contacts::By(engine), _) => scene.world.contacts_by(*engine).unwrap(),
+            (Contacts::Rounded, Some(pair)) => rounded(&scene.world, pair),
+            _ => scene.world.contacts().unwrap(),
+        };
+        scene.advance(&touches).unwrap();
+        states.push(State::of(&scene, touches.len()));
+    }
+    states
+}
+
+impl State {
+    fn of(scene: &Scene, contacts: usize) -> Self {
+        let motion = scene.world.motion();
+        let positions: Vec<Point> = scene.world.spheres().map(|sphere| scene.world.position(sphere)).collect();
+        Self {
+            energy: motion.energy + scene.potential(),
+            momentum: motion.momentum,
+            angular: motion.angular,
+            positions,
+            contacts,
+        }
+    }
+
+    fn is_finite(&self) -> bool {
+        let numbers = self.positions.iter().chain([&self.momentum, &self.angular]).flatten();
+        numbers.chain([&self.energy]).all(|v| v.is_finite())
+    }
+}
+
+/// The largest differences between two simulations, each over all their steps.
+#[derive(Clone, Copy, Debug)]
+pub struct Deviation {
+    pub energy: f64,
+    pub momentum: f64,
+    pub angular: f64,
+    /// Of a sphere's place.
+    pub place: f64,
+}
+
+pub fn deviation(found: &[State], exact: &[State]) -> Deviation {
+    assert!(found.len() == exact.len() && found.iter().all(State::is_finite));
+    let largest =
+        |apart: &dyn Fn(&State, &State) -> f64| found.iter().zip(exact).map(|(a, b)| apart(a, b)).fold(0.0, f64::max);
+    let places =
+        |a: &State, b: &State| a.positions.iter().zip(&b.positions).map(|(&a, &b)| distance(a, b)).fold(0.0, f64::max);
+    Deviation {
+        energy: largest(&|a, b| (a.energy - b.energy).abs()),
+        momentum: largest(&|a, b| distance(a.momentum, b.momentum)),
+        angular: largest(&|a, b| distance(a.angular, b.angular)),
+        place: largest(&places),
+    }
+}

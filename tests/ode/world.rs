@@ -1,0 +1,169 @@
+//! ODE itself behind its wrapper: its collider, its worlds, and what it must not be given.
+
+use contact_afu::kernel::{Fields, Pair, contact};
+use contact_afu::number::{Format, Soft};
+use contact_afu::ode::{Collider, Contact, Diamond, Error, Ode, SpherePair, Surface, Touch, World};
+use contact_afu::pairs::Set;
+use nalgebra::Vector3;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+const BINARY64: &str = "e11f52";
+
+/// The kernel's order of operations is ODE's: read in binary64 it gives the bits of ODE's own collider.
+#[test]
+fn the_kernel_read_in_binary64_is_odes_collider() {
+    let format: Format = BINARY64.parse().unwrap();
+    let ode = Ode::start(Collider::Own).unwrap();
+    let mut pair = SpherePair::new(&ode).unwrap();
+    let (mut touching, mut coincident, mut apart) = (0, 0, 0);
+    for record in Set::Random(30_000).pairs(5).into_iter().filter(|record| record.is_valid()) {
+        // A factor with a full significand: binary32 values would leave half of binary64 untried.
+        let factor = 1.0 + 1.0 / 3.0;
+        let [x1, y1, z1, r1, x2, y2, z2, r2] = record.values().map(|v| f64::from(v) * factor);
+        pair.set([x1, y1, z1, r1], [x2, y2, z2, r2]).unwrap();
+        let [x1, y1, z1, r1, x2, y2, z2, r2] =
+            [x1, y1, z1, r1, x2, y2, z2, r2].map(|v: f64| Soft::from_bits(format, v.to_bits().into()));
+        let spheres = Pair { p1: Vector3::new(x1, y1, z1), r1, p2: Vector3::new(x2, y2, z2), r2 };
+        let expected = contact(spheres, true, format, format, Fields::ALL);
+        match pair.collide() {
+            None => {
+                assert!(!expected.hit, "{record:?}");
+                apart += 1;
+            }
+            Some(Contact { position: [a, b, c], normal: [d, e, f], depth }) => {
+                assert!(expected.hit, "{record:?}");
+                let (p, n) = (expected.position, expected.normal);
+                let expected_bits = [p.x, p.y, p.z, n.x, n.y, n.z, expected.depth].map(|v| v.bits() as u64);
+                assert_eq!([a, b, c, d, e, f, depth].map(f64::to_bits), expected_bits, "{record:?}");
+                touching += 1;
+                coincident += usize::from(expected.grazing);
+            }
+        }
+    }
+    assert!(touching > 5_000 && coincident > 500 && apart > 5_000, "{touching} {coincident} {apart}");
+}
+
+#[test]
+fn a_force_moves_a_sphere_as_newton_says() {
+    let ode = Ode::start(Collider::Own).unwrap();
+    let mut world = World::new(&ode).unwrap();
+    let sphere = world.add_sphere([1.0, 2.0, 3.0], 0.5, 2.0).unwrap();
+    let mass = 2.0 * 4.0 / 3.0 * std::f64::consts::PI * 0.125;
+    world.add_force(sphere, [mass, 0.0, 0.0]).unwrap();
+    world.step(0.5).unwrap();
+    world.step(0.5).unwrap();
+    // Acceleration 1 through the first half second, then none: ODE takes the speed at a step's end for the step.
+    let [x, y, z] = world.position(sphere);
+    assert!((x - 1.5).abs() < 1e-12, "{x}");
+    assert_eq!(([y, z], world.radius(sphere)), ([2.0, 3.0], 0.5));
+}
+
+#[test]
+fn a_joint_parts_spheres_and_lasts_a_step() {
+    let ode = Ode::start(Collider::Own).unwrap();
+    let speed = |surface: Surface| {
+        let mut world = World::new(&ode).unwrap();
+        let [first, second] = [0.0, 1.0].map(|x| world.add_sphere([x, 0.0, 0.0], 0.5, 1.0).unwrap());
+        world.add_force(first, [1.0, 0.0, 0.0]).unwrap();
+        world.step(0.01).unwrap();
+        for touch in world.contacts().unwrap() {
+            world.join(&touch, &surface).unwrap();
+        }
+        let before = world.position(second)[0];
+        world.step(0.01).unwrap();
+        let pushed = world.position(second)[0] - before;
+        let before = world.position(second)[0];
+        world.step(0.01).unwrap();
+        let after = world.position(second)[0] - before;
+        assert!((after - pushed).abs() < 1e-12, "no joint is left: {pushed} {after}");
+        pushed / 0.01
+    };
+    let smooth = speed(Surface::SMOOTH);
+    let bouncing = speed(Surface { bounce: 1.0, ..Surface::SMOOTH });
+    assert!(smooth > 0.0 && bouncing > 1.5 * smooth, "{smooth} {bouncing}");
+}
+
+#[test]
+fn worlds_do_not_disturb_each_other() {
+    let ode = Ode::start(Collider::Own).unwrap();
+    let diamond = Diamond::new(4, 0.02);
+    let run = |others: usize| {
+        let mut simulations: Vec<_> = (0..=others).map(|_| diamond.build(&ode).unwrap()).collect();
+        for _ in 0..60 {
+            for simulation in &mut simulations {
+                let touches = simulation.world().contacts().unwrap();
+                simulation.advance(&touches).unwrap();
+            }
+        }
+        simulations[0].positions().map(|p| p.map(f64::to_bits)).collect::<Vec<_>>()
+    };
+    assert_eq!(run(0), run(2));
+}
+
+#[test]
+fn a_panic_in_the_near_callback_comes_out_of_ode_whole() {
+    let ode = Ode::start(Collider::Own).unwrap();
+    let simulation = Diamond::new(3, 0.0).build(&ode).unwrap();
+    let mut visits = 0;
+    let outcome = catch_unwind(AssertUnwindSafe(|| {
+        simulation.world().near(|_, _| {
+            visits += 1;
+            assert!(visits < 5, "five is enough");
+        })
+    }));
+    assert_eq!(outcome.unwrap_err().downcast_ref(), Some(&"five is enough"));
+    assert_eq!(visits, 5, "none after the panic");
+    assert_eq!(simulation.world().candidates().unwrap().len(), 132, "and the world works on");
+}
+
+#[test]
+fn what_ode_would_end_the_process_for_is_refused() {
+    let ode = Ode::start(Collider::Own).unwrap();
+    let mut world = World::new(&ode).unwrap();
+    for bad in [f64::NAN, f64::INFINITY, 1e9] {
+        assert!(matches!(world.add_sphere([0.0, bad, 0.0], 1.0, 1.0), Err(Error::Number { what: "a coordinate", .. })));
+    }
+    for bad in [f64::NAN, -1.0, 0.0, 1e-300, f64::INFINITY] {
+        assert!(matches!(world.add_sphere([0.0; 3], bad, 1.0), Err(Error::Number { what: "a radius", .. })));
+        assert!(matches!(world.add_sphere([0.0; 3], 1.0, bad), Err(Error::Number { what: "a density", .. })));
+        assert!(matches!(world.step(bad), Err(Error::Number { what: "a step's time", .. })));
+    }
+    assert!(world.set_iterations(0).is_err());
+    let sphere = world.add_sphere([0.0; 3], 1.0, 1.0).unwrap();
+    assert_eq!(world.spheres().len(), 1, "nothing of what was refused is left");
+    assert!(world.add_force(sphere, [0.0, 0.0, f64::NAN]).is_err());
+    let contact = Contact { position: [0.0; 3], normal: [1.0, 0.0, 0.0], depth: 0.0 };
+    let itself = Touch { first: sphere, second: sphere, contact };
+    assert!(matches!(world.join(&itself, &Surface::SMOOTH), Err(Error::Itself(0))));
+
+    let mut pair = SpherePair::new(&ode).unwrap();
+    for bad in [f64::NAN, -1e-300, f64::INFINITY] {
+        let error = pair.set([0.0; 4], [0.0, 0.0, 0.0, bad]).unwrap_err();
+        assert!(error.to_string().starts_with("a radius is "), "{error}");
+    }
+    assert_eq!(pair.collide().map(|contact| contact.depth), Some(0.0), "points that coincide touch");
+
+    let diamond = Diamond::new(3, 0.0);
+    for bad in [
+        Diamond { layers: 0, ..diamond },
+        Diamond { layers: 41, ..diamond },
+        Diamond { gap: -1.1, ..diamond },
+        Diamond { force: f64::NAN, ..diamond },
+        Diamond { time_step: 0.0, ..diamond },
+        Diamond { iterations: 0, ..diamond },
+    ] {
+        assert!(bad.build(&ode).is_err(), "{bad:?}");
+    }
+}
+
+#[test]
+fn a_sphere_that_flies_away_is_lost_and_not_the_process() {
+    let ode = Ode::start(Collider::Own).unwrap();
+    let mut world = World::new(&ode).unwrap();
+    let sphere = world.add_sphere([0.0; 3], 0.5, 1.0).unwrap();
+    world.add_force(sphere, [1e8, 0.0, 0.0]).unwrap();
+    let error = world.step(10.0).unwrap_err();
+    assert!(matches!(error, Error::Lost { sphere: 0, .. }), "{error}");
+    assert!(matches!(world.candidates(), Err(Error::Lost { .. })));
+    assert!(matches!(world.step(0.01), Err(Error::Lost { .. })));
+}

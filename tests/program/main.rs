@@ -1,0 +1,22 @@
+//! The program `afu`: what it prints, writes and refuses, its pages in a browser, and what the documents say of it.
+
+#[cfg(feature = "cosim")]
+mod accuracy_page;
+#[cfg(any(feature = "cosim", feature = "ode"))]
+#[path = "../support/browser.rs"]
+mod browser;
+mod cli;
+#[cfg(feature = "cosim")]
+mod cli_accuracy;
+#[cfg(feature = "cosim")]
+mod cli_cosim;
+mod cli_files;
+mod cli_hard;
+#[cfg(feature = "cosim")]
+mod cli_paper;
+mod cli_rtl;
+#[cfg(feature = "cosim")]
+mod cli_sweep;
+#[cfg(feature = "cosim")]
+mod documented;
+mod scene;

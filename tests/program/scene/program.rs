@@ -1,0 +1,143 @@
+//! `afu scene` as a user meets it.
+
+use std::fs;
+use std::path::Path;
+
+use assert_cmd::Command;
+
+use super::path;
+
+fn afu(arguments: &[&str]) -> assert_cmd::assert::Assert {
+    Command::cargo_bin("afu").expect("the program").arg("scene").args(arguments).assert()
+}
+
+fn told(assert: &assert_cmd::assert::Assert) -> String {
+    String::from_utf8_lossy(&assert.get_output().stdout).into_owned()
+}
+
+fn text(path: &Path) -> String {
+    path.to_str().expect("a path").to_owned()
+}
+
+#[test]
+fn a_plan_names_lines_and_an_effect_more_or_less_says_what_it_costs() {
+    let diamond = text(&path("diamond"));
+    let plan = told(&afu(&[&diamond, "--plan"]).success());
+    for row in ["position", "depth", "14: bounce = 0.0", "every radius is 0.5", "fp_sqrt_e10f23z_normal"] {
+        assert!(plan.contains(row), "{row} in\n{plan}");
+    }
+    let with = told(&afu(&[&diamond, "--plan", "--with", "friction", "--no-luts"]).success());
+    for row in ["asked for on the command line", "fp_halve_e10f23z_normal", "position", "then", "host time a step"] {
+        assert!(with.contains(row), "{row} in\n{with}");
+    }
+    assert!(!with.contains("damping"), "{with}");
+    let without = told(&afu(&[&text(&path("billiards")), "--without", "spin", "--no-luts"]).success());
+    assert!(without.contains("spin"), "{without}");
+    let error = afu(&[&diamond, "--with", "jelly"]).code(2);
+    let error = String::from_utf8_lossy(&error.get_output().stderr).into_owned();
+    assert!(error.contains("no effect is called `jelly`: use gravity, pull"), "{error}");
+}
+
+#[test]
+fn a_bad_scene_ends_in_one_line_and_writes_nothing() {
+    let room = tempfile::tempdir().expect("a temporary folder");
+    let (file, out) = (room.path().join("s.toml"), room.path().join("out"));
+    fs::write(&file, "scene = 1\nwant = [\"touching\"]\n[[bodies]]\nshape = \"stack\"\ncount = 2\nmass = nan\n")
+        .unwrap();
+    let error = afu(&[&text(&file), "--out", &text(&out)]).code(2);
+    let error = String::from_utf8_lossy(&error.get_output().stderr).into_owned();
+    assert!(error.contains("s.toml:6: mass: NaN") && error.lines().count() == 1, "{error}");
+    assert!(!out.exists());
+}
+
+/// Refused before a model is built or a folder made.
+#[cfg(feature = "ode")]
+#[test]
+fn a_scene_that_begins_below_its_floor_is_exit_2() {
+    let room = tempfile::tempdir().expect("a temporary folder");
+    let (file, out) = (room.path().join("s.toml"), room.path().join("out"));
+    let scene = "scene = 1\nsteps = 40\nwant = [\"energy\"]\n[effects]\ngravity = [0.0, 0.0, -9.81]\nfloor = 0.0\nbounce = 0.5\n\
+                 [[bodies]]\nshape = \"lattice\"\ncount = [2, 2, 4]\nradius = 0.5\nat = [0.5, 0.5, 0.5]\n";
+    fs::write(&file, scene).unwrap();
+    let error = afu(&[&text(&file), "--engine", "reference", "--out", &text(&out)]).code(2);
+    let error = String::from_utf8_lossy(&error.get_output().stderr).into_owned();
+    assert!(error.contains("8 bodies begin below the floor") && error.lines().count() == 1, "{error}");
+    assert!(!out.exists());
+    fs::write(&file, scene.replace("steps", "start = \"as given\"\nsteps")).unwrap();
+    let told = told(&afu(&[&text(&file), "--engine", "reference", "--out", &text(&out)]).success());
+    assert!(told.contains("Warning: energy rose from "), "{told}");
+    let manifest: serde_json::Value = serde_json::from_slice(&fs::read(out.join("manifest.json")).unwrap()).unwrap();
+    let balance = &manifest["summary"]["balance"];
+    assert!(balance["end"].as_f64() > balance["start"].as_f64(), "{balance}");
+}
+
+/// A scene at rest needs no ODE: a query, its contacts, its page.
+#[test]
+fn a_query_says_who_touches_whom() {
+    let room = tempfile::tempdir().expect("a temporary folder");
+    let out = room.path().join("out");
+    let told = told(&afu(&[&text(&path("touching")), "--engine", "reference", "--out", &text(&out)]).success());
+    assert!(told.contains("an arm in a point cloud") && told.contains("48 000"), "{told}");
+    let contacts = fs::read_to_string(out.join("contacts.csv")).unwrap();
+    assert!(contacts.starts_with("step,first,second\n0,"), "{contacts}");
+    let manifest: serde_json::Value = serde_json::from_slice(&fs::read(out.join("manifest.json")).unwrap()).unwrap();
+    assert_eq!(manifest["schema"], "contact-afu/scene/1");
+    assert_eq!(manifest["summary"]["contacts"], contacts.lines().count() - 1);
+    assert!(!out.join("trajectories.csv").exists() && !out.join("energy.csv").exists());
+}
+
+/// The simulated AFU in ODE's loop gives the same bytes as the same arithmetic in software; the page moves in Chromium.
+#[cfg(all(feature = "ode", feature = "cosim"))]
+#[test]
+fn the_simulated_afu_moves_bodies_as_software_does() {
+    let room = tempfile::tempdir().expect("a temporary folder");
+    let file = room.path().join("s.toml");
+    let scene = fs::read_to_string(path("diamond")).unwrap();
+    fs::write(&file, scene.replace("steps = 120", "steps = 30\naccuracy = \"e8f5z\"")).unwrap();
+    let [simulated, software] = ["ode", "reference"].map(|engine| {
+        let out = room.path().join(engine);
+        afu(&[&text(&file), "--engine", engine, "--out", &text(&out)]).success();
+        out
+    });
+    for name in ["trajectories.csv", "energy.csv"] {
+        assert_eq!(fs::read(simulated.join(name)).unwrap(), fs::read(software.join(name)).unwrap(), "{name}");
+    }
+    let manifest: serde_json::Value =
+        serde_json::from_slice(&fs::read(simulated.join("manifest.json")).unwrap()).unwrap();
+    assert!(manifest["summary"]["cycles"].as_u64().expect("simulated") > 1_000);
+    assert!(manifest["summary"]["contacts"].as_u64().expect("a count") > 100);
+
+    let npy = room.path().join("npy");
+    afu(&[&text(&file), "--engine", "reference", "--npy", "--out", &text(&npy)]).success();
+    let bytes = fs::read(npy.join("trajectories.npy")).unwrap();
+    let array = npyz::NpyFile::new(&bytes[..]).expect("an array");
+    assert_eq!(array.shape(), [31, 25, 3]);
+    let values: Vec<f64> = array.into_vec().expect("of f64");
+    let csv = fs::read_to_string(software.join("trajectories.csv")).unwrap();
+    let last = csv.lines().last().unwrap().rsplit(',').next().unwrap().parse::<f64>().unwrap();
+    assert_eq!(values.last(), Some(&last));
+    assert!(!npy.join("trajectories.csv").exists());
+
+    let opened = crate::browser::open(&simulated.join("report.html"));
+    assert!(opened.console.is_empty() && opened.fetched.is_empty(), "{opened:?}");
+    // The script drew: it says which frame the canvas shows.
+    assert!(opened.dom.contains("data-frame=\""), "the canvas was never drawn");
+    assert!(opened.dom.contains("id=\"play\"") && opened.dom.matches("<svg class=\"plot\"").count() == 2);
+
+    // A reader's hand: it scrubs to step 17, which stops the play, and plays again. Its script needs a policy without
+    // hash.
+    let made = fs::read_to_string(simulated.join("report.html")).unwrap();
+    let (before, rest) = made.split_once("script-src 'sha256-").expect("a policy");
+    let (_, after) = rest.split_once('\'').expect("the hash's end");
+    let free = format!("{before}script-src 'unsafe-inline{}{after}", '\'');
+    let hand = "<script>const at = document.getElementById('at'), play = document.getElementById('play');\
+        at.value = '17'; at.dispatchEvent(new Event('input'));\
+        const canvas = document.getElementById('scene');\
+        document.title = [canvas.dataset.frame, document.getElementById('step').value, play.textContent].join('|');\
+        play.click(); document.title += '|' + play.textContent; play.click(); document.title += '|' + play.textContent;\
+        </script></body>";
+    let page = room.path().join("hand.html");
+    fs::write(&page, free.replace("</body>", hand)).unwrap();
+    let opened = crate::browser::open(&page);
+    assert!(opened.dom.contains("<title>17|step 17|Play|Pause|Play</title>"), "{:?}", opened.dom.get(..600));
+}

@@ -1,0 +1,104 @@
+//! A study of `afu accuracy` that is interrupted goes on where it was, and comes to what it would have come to.
+
+use contact_afu::accuracy::trade::{Named, Plan, Results, Size, Work, run};
+use contact_afu::accuracy::{Contenders, Profiled, measure};
+use contact_afu::config::{Config, Profile, Record, Shell};
+use contact_afu::pairs::Set;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+
+/// An arithmetic over both kinds of records, nothing synthesised.
+fn plan() -> Plan {
+    let link = "harp1".parse().expect("a link");
+    let mut plan = Size::Quick.plan(link, "harp1", 1, 1);
+    let profile: Profile = "e8f3z".parse().expect("a profile");
+    let config =
+        |record| Config { scpus: 1, shell: Shell::Line, profile: profile.clone(), record, ..Config::default() };
+    plan.choices = vec![("a", config(Record::F32)), ("b", config(Record::F16))];
+    let named = |set: Set| Named { name: set.to_string(), is_scene: true, pairs: set.pairs(1) };
+    plan.sets = vec![named(Set::Diamond(4)), named(Set::Dense(500))];
+    plan.synthesis = false;
+    plan
+}
+
+/// The study in a folder, stopped by force after so many pieces of work; and how many cosims it began.
+fn study(folder: &Path, stop_after: usize) -> (Option<Results>, usize) {
+    let (mut done, mut begun, mut configurations) = (0, 0, 0);
+    let (mut planned, mut worked) = (0.0, 0.0);
+    let ran = catch_unwind(AssertUnwindSafe(|| {
+        run(&plan(), Some((folder, false)), |work| match work {
+            Work::Begun(what) => {
+                begun += usize::from(what.ends_with(": cosim"));
+                assert!(worked < planned, "the bar is full while there is work: {what}");
+            }
+            Work::Done(_) if done == stop_after => panic!("pulled the plug"),
+            Work::Done(seconds) => (done, worked) = (done + 1, worked + seconds),
+            Work::Planned(seconds) => planned += seconds,
+            Work::Configuration(line) => {
+                configurations += 1;
+                assert!(line.starts_with("e8f3z") && line.contains(" cycles, line in to line out"), "{line}");
+            }
+        })
+        .expect("a study that ends")
+    }));
+    if ran.is_ok() {
+        assert!((worked - planned).abs() < 1e-3, "what was planned was done: {planned}, {worked}");
+        assert_eq!(configurations, 2);
+    }
+    (ran.ok(), begun)
+}
+
+/// Without what is timed on this machine.
+fn figures(mut results: Results) -> Results {
+    results.kernels.clear();
+    results.points.iter_mut().for_each(|point| point.software_ns = None);
+    results
+}
+
+#[test]
+fn an_interrupted_study_goes_on_and_comes_to_the_same() {
+    let room = tempfile::tempdir().expect("a temporary folder");
+    let [whole, parts] = ["whole", "parts"].map(|name| room.path().join(name));
+    let (undisturbed, begun) = study(&whole, usize::MAX);
+    let undisturbed = figures(undisturbed.expect("nothing stopped it"));
+    assert_eq!(begun, 2);
+
+    // After both sets and the first configuration: its cycles are kept.
+    let (stopped, _) = study(&parts, 2);
+    assert!(stopped.is_none(), "it was stopped");
+    let store = parts.join("manifest.json");
+    let mut kept: serde_json::Value = serde_json::from_slice(&std::fs::read(&store).expect("a store")).expect("JSON");
+    let count = |what: &str| kept[what].as_array().map(Vec::len);
+    assert_eq!((count("rows"), count("cycles")), (Some(4), Some(1)));
+
+    let (resumed, begun) = study(&parts, usize::MAX);
+    assert_eq!(begun, 1, "what is kept is not simulated again");
+    assert_eq!(figures(resumed.expect("nothing stopped it")), undisturbed);
+
+    // What is kept is believed: no row is measured again either.
+    kept["rows"][0]["tally"]["missed"] = 4711.into();
+    std::fs::write(&store, serde_json::to_vec(&kept).expect("JSON")).expect("written");
+    let (resumed, _) = study(&parts, usize::MAX);
+    assert_eq!(resumed.expect("nothing stopped it").points[0].rows[0].tally.missed, 4711);
+
+    let [f32, f16] = [0, 1].map(|i| &undisturbed.points[i]);
+    assert_eq!((f32.name.as_str(), f16.name.as_str()), ("e8f3z", "e8f3z record f16"));
+    assert!(f16.cycles.link < 0.7 * f32.cycles.link, "a line carries more pairs: {:?} {:?}", f16.cycles, f32.cycles);
+    assert!(f16.cycles.link_limit < 0.55 * f32.cycles.link_limit);
+}
+
+/// Errors over f16 are of the pair that was given: its rounding is part of them.
+#[test]
+fn a_record_s_rounding_is_part_of_the_error() {
+    let configs = [("wide", Record::F32), ("wide", Record::F16), ("half", Record::F16)];
+    let mut contenders = Contenders::new();
+    for (profile, record) in configs {
+        contenders.push(Box::new(Profiled::over(&profile.parse().expect("a profile"), record)));
+    }
+    let dense = Set::Dense(500).pairs(1);
+    let (rows, _) = measure("dense", &dense, &mut contenders, &[], |_| {}).expect("answers");
+    let [wide, rounded, half] = [0, 1, 2].map(|i| rows[i].errors.contact.mean);
+    assert!(rounded > 1000.0 * wide, "f16 costs what it costs: {rounded:e} {wide:e}");
+    assert!(half > rounded, "and computing in it costs more: {half:e} {rounded:e}");
+    assert_eq!(rows[1].contender, "wide record f16");
+}

@@ -1,0 +1,261 @@
+//! Transactions with the AFU in software: what goes right, and what is refused.
+
+use contact_afu::afu::spl2::map::{self, identity, pointers, status};
+use contact_afu::config::{Config, Record};
+use contact_afu::host::{Expected, HostError, Session, Software, Transport, TransportError, Workspace};
+use contact_afu::kernel::{Engine, PairRecord};
+use contact_afu::link::LinkModel;
+use contact_afu::link::spl2::CsrOffset;
+
+use super::meddle::{Dying, Meddled};
+use super::{config, contacts, expected, pairs, session, software};
+
+#[test]
+fn seven_steps_give_the_reference_s_contacts() {
+    let mut session = session(software(), 1);
+    for count in [1000, 0, 1, 2, 3, 32_764] {
+        let pairs = pairs(count);
+        let results = session.transaction().send(&pairs).unwrap().start().unwrap().confirm().unwrap();
+        let results = results.wait().unwrap().retrieve().unwrap().end().unwrap();
+        assert_eq!(results.contacts, contacts(&pairs), "{count}");
+        assert_eq!(results.hits as usize, results.contacts.iter().filter(|contact| contact.is_contact()).count());
+        assert_eq!(results.report.pairs, count);
+    }
+    assert_eq!(session.reports().len(), 6);
+}
+
+#[test]
+fn an_engine_splits_what_the_buffers_do_not_hold() {
+    let mut session = session(software(), 1);
+    let pairs = pairs(70_000);
+    assert_eq!(session.contacts(&pairs).unwrap(), contacts(&pairs));
+    let sizes: Vec<u64> = session.reports().iter().map(|report| report.pairs).collect();
+    assert_eq!(sizes, [32_764, 32_764, 4_472]);
+    assert_eq!(session.contacts(&[]).unwrap(), []);
+    assert_eq!(session.reports().len(), 3, "no pairs, no transaction");
+}
+
+#[test]
+fn two_gigabytes_take_only_what_is_used() {
+    let mut session = session(software(), 1024);
+    let workspace = session.workspace();
+    assert_eq!((workspace.bytes(), workspace.capacity()), (2 << 30, 33_554_428));
+    let pages = [workspace.source(), workspace.destination()].map(|address| (address - workspace.context()) >> 21);
+    assert_eq!(pages, [0, 512]);
+    let pairs = pairs(40_000);
+    assert_eq!(session.run(&pairs).unwrap(), contacts(&pairs));
+}
+
+#[track_caller]
+fn refused<T: Transport>(session: &mut Session<T>, pairs: &[PairRecord]) -> HostError {
+    session.run(pairs).unwrap_err()
+}
+
+#[test]
+fn more_pairs_than_the_buffers_hold_are_refused_before_anything_is_sent() {
+    let mut session = session(software(), 1);
+    let error = session.transaction().send(&pairs(32_765)).unwrap_err();
+    assert_eq!(error, HostError::TooManyPairs { pairs: 32_765, capacity: 32_764, pages: 2 });
+    assert!(error.to_string().contains("give the workspace 2 pages"), "{error}");
+    assert!(session.transport().device_writes().is_empty());
+}
+
+#[test]
+fn another_afu_is_refused_by_what_differs() {
+    let other = |config: Config| {
+        let mut session = session(Software::new(&config, Default::default()).unwrap(), 1);
+        refused(&mut session, &pairs(3)).to_string()
+    };
+    let scpus = other(Config { scpus: 3, ..config() });
+    assert!(scpus.starts_with("the FPGA's AFU has a number of SCPUs of 3, this session expects 10: load"), "{scpus}");
+    let fields = other(Config { contact: "depth".parse().unwrap(), ..config() });
+    assert!(fields.contains("contact fields (a mask) 3, this session expects 15"), "{fields}");
+    let profile = other(Config { profile: "paper".parse().unwrap(), ..config() });
+    assert!(profile.contains("an SCPU latency (another profile or clock)"), "{profile}");
+}
+
+/// Changes what the AFU says in its DSM, as soon as it is there.
+fn pretends(field: map::Field, value: u128) -> HostError {
+    let device = Meddled::new(software(), move |device: &mut Software| {
+        let Some(at) = device.device_writes().first().map(|write| write.address) else { return };
+        let Some(mut line) = device.memory().get(at).copied() else { return };
+        field.set(&mut line, value);
+        device.memory_mut().set(at, &line);
+    });
+    refused(&mut session(device, 1), &pairs(3))
+}
+
+#[test]
+fn another_identity_or_version_is_refused() {
+    let error = pretends(identity::AFU_ID, 0xBAD);
+    assert_eq!(error, HostError::Identity { afu_id: 0xBAD, version: map::VERSION });
+    let error = pretends(identity::VERSION, 99);
+    assert_eq!(error, HostError::Identity { afu_id: map::AFU_ID, version: 99 });
+    assert!(error.to_string().contains("load the AFU that the same version of this program generated"), "{error}");
+}
+
+/// A device that dies after so many CSR writes: whatever the host waits for then never comes.
+#[test]
+fn a_dead_device_is_a_time_out_that_says_for_what() {
+    // Reset; SPL DSM (2), AFU DSM (2), SPL context (2), AFU context (2), enable.
+    for left in 0..10 {
+        let mut session = session(Dying { device: software(), left, cycles: 0 }, 1);
+        let error = refused(&mut session, &pairs(3));
+        let text = error.to_string();
+        if left < 5 {
+            assert!(matches!(error, HostError::NoIdentity(_)), "{left}: {text}");
+            assert!(text.starts_with("AFU_ID never seen in the DSM after "), "{text}");
+        } else {
+            assert!(matches!(error, HostError::NoStatus { .. }), "{left}: {text}");
+            assert!(text.starts_with("Status never set, ") && text.contains("end the transaction"), "{text}");
+        }
+        let waited = match error {
+            HostError::NoIdentity(cycles) | HostError::NoStatus { cycles, .. } => cycles,
+            _ => 0,
+        };
+        assert!((512..5_000).contains(&waited), "{left}: longer than a poll takes, and not for ever: {text}");
+    }
+    let mut session = session(Dying { device: software(), left: 9, cycles: 0 }, 1);
+    session.max_cycles = Some(50);
+    let error = refused(&mut session, &pairs(3));
+    assert!(matches!(error, HostError::NoStatus { cycles: 51..=80, .. }), "{error}");
+}
+
+/// Does something to memory once the status of a job is there.
+fn at_status(mut meddle: impl FnMut(&mut Software, u64) + 'static) -> Meddled<Software> {
+    Meddled::new(software(), move |device: &mut Software| {
+        let is_status = |line: &[u32; 16]| status::DONE.get(line) == 1 && status::AFU_ID.get(line) == map::AFU_ID;
+        let found = device.device_writes().iter().rev().find(|write| is_status(&write.data)).map(|write| write.address);
+        if let Some(at) = found {
+            meddle(device, at);
+        }
+    })
+}
+
+#[test]
+fn a_line_that_was_never_written_is_no_result() {
+    let mut plain = session(software(), 1);
+    let lost = plain.workspace().physical(plain.workspace().destination() + 64).unwrap();
+    plain.run(&pairs(6)).unwrap();
+    let device = at_status(move |device, _| device.memory_mut().forget(lost..lost + 1));
+    assert_eq!(refused(&mut session(device, 1), &pairs(6)), HostError::Unwritten(1));
+}
+
+#[test]
+fn a_page_that_is_not_there_is_named() {
+    let plain = session(software(), 1);
+    let context = plain.workspace().physical(plain.workspace().context()).unwrap();
+    let beyond = plain.workspace().context() + (2 << 20);
+    let device = Meddled::new(software(), move |device: &mut Software| {
+        if let Some(mut line) = device.memory().get(context).copied() {
+            pointers::DESTINATION.set(&mut line, beyond.into());
+            device.memory_mut().set(context, &line);
+        }
+    });
+    let error = refused(&mut session(device, 1), &pairs(6));
+    let fault = TransportError::PageFault { what: "write", line: beyond / 64 };
+    assert_eq!(error, HostError::Transport(fault));
+}
+
+#[test]
+fn an_error_of_the_device_says_what_to_do() {
+    let plain = session(software(), 1);
+    let context = plain.workspace().physical(plain.workspace().context()).unwrap();
+    let device = Meddled::new(software(), move |device: &mut Software| {
+        if let Some(mut line) = device.memory().get(context).copied() {
+            pointers::LINES.set(&mut line, 3);
+            device.memory_mut().set(context, &line);
+        }
+    });
+    let error = refused(&mut session(device, 1), &pairs(6));
+    assert!(matches!(error, HostError::Job { code: 8, .. }), "{error}");
+    assert!(error.to_string().contains("more pairs than the buffers have lines for): use a workspace"), "{error}");
+}
+
+#[test]
+fn invalid_pairs_are_named_by_number_and_field() {
+    let mut session = session(software(), 1);
+    let mut pairs = vec![PairRecord::from_spheres([0.0, 0.0, 0.0, 1.0], [1.0, 0.0, 0.0, 1.0]); 9];
+    pairs[5].0[7] = (-1.0_f32).to_bits();
+    pairs[8].0[0] = f32::NAN.to_bits();
+    let done = session.transaction().send(&pairs).unwrap().start().unwrap().confirm().unwrap().wait().unwrap();
+    let results = done.retrieve().unwrap().end().unwrap();
+    let error = results.strict(&pairs).unwrap_err();
+    assert_eq!(error, HostError::InvalidPairs { count: 2, first: 5, field: "r2", record: Record::F32 });
+    let good = session.transaction().send(&pairs[..5]).unwrap().start().unwrap().confirm().unwrap().wait().unwrap();
+    assert_eq!(good.retrieve().unwrap().end().unwrap().strict(&pairs[..5]), Ok(()));
+}
+
+/// Records of 16 bits: four pairs a line, the reference's contacts; an AFU of other records is another one.
+#[test]
+fn records_of_16_bits_are_agreed_on() {
+    let pairs = pairs(1000);
+    for record in [Record::F16, Record::Bf16] {
+        let config = Config { record, ..config() };
+        let expected = Expected::new(&config).unwrap();
+        assert_eq!(expected.layout.pairs_per_line(), 4);
+        let workspace = || Workspace::new(expected.layout, 1, 7).unwrap();
+        let device = Software::new(&config, LinkModel::ideal()).unwrap();
+        let contacts = Session::new(device, workspace(), expected).run(&pairs).unwrap();
+        assert_eq!(contacts, config.reference().run_all(&pairs));
+        assert_ne!(contacts, super::contacts(&pairs));
+        let error = Session::new(software(), workspace(), expected).run(&pairs).unwrap_err();
+        assert!(error.to_string().contains("records (0: f32, 1: f16, 2: bf16) of"), "{error}");
+    }
+    // A number beyond f16 makes a pair invalid there, and the host says so.
+    let config = Config { record: Record::F16, ..config() };
+    let expected = Expected::new(&config).unwrap();
+    let device = Software::new(&config, LinkModel::ideal()).unwrap();
+    let mut session = Session::new(device, Workspace::new(expected.layout, 1, 7).unwrap(), expected);
+    let far = [PairRecord::from_spheres([0.0, 0.0, 65_520.0, 1.0], [0.0; 4])];
+    let done = session.transaction().send(&far).unwrap().start().unwrap().confirm().unwrap().wait().unwrap();
+    let error = done.retrieve().unwrap().end().unwrap().strict(&far).unwrap_err().to_string();
+    assert!(error.contains("pair 0, whose z1 is, as f16, NaN, infinite"), "{error}");
+}
+
+/// Whatever step a transaction was dropped at, the device is stopped, the workspace free, and the next one right.
+#[test]
+fn a_dropped_transaction_ends_properly() {
+    let pairs = pairs(50);
+    for step in 1..=7 {
+        let device = Meddled::new(software(), |_| ());
+        let csrs = device.csrs.clone();
+        let mut session = session(device, 1);
+        let first = session.workspace().physical(session.workspace().source() + 64).unwrap();
+        let to_step = |session: &mut Session<Meddled<Software>>| -> Result<(), HostError> {
+            let transaction = session.transaction();
+            if step == 1 {
+                return Ok(());
+            }
+            let transaction = transaction.send(&pairs)?;
+            if step == 2 {
+                return Ok(());
+            }
+            let transaction = transaction.start()?;
+            if step == 3 {
+                return Ok(());
+            }
+            let transaction = transaction.confirm()?;
+            if step == 4 {
+                return Ok(());
+            }
+            let transaction = transaction.wait()?;
+            if step == 5 {
+                return Ok(());
+            }
+            let transaction = transaction.retrieve()?;
+            if step == 6 {
+                return Ok(());
+            }
+            transaction.end().map(|_| ())
+        };
+        to_step(&mut session).unwrap();
+        let control: Vec<u32> =
+            csrs.borrow().iter().filter(|csr| csr.0 == CsrOffset::Control as u32).map(|csr| csr.1).collect();
+        let wanted: &[u32] = if step == 1 { &[] } else { &[1, 2, 0, 1] };
+        assert_eq!(control, wanted, "step {step}");
+        assert_eq!(session.transport().memory().get(first), None, "step {step}: the source is free");
+        assert_eq!(session.run(&pairs).unwrap(), contacts(&pairs), "step {step}");
+    }
+    assert_eq!(expected().layout.pairs_per_line(), 2);
+}

@@ -1,0 +1,77 @@
+//! Real links: what the AFU makes of what they allow, and where a small job's cycles go.
+
+use contact_afu::afu::{Afu, Spec};
+use contact_afu::config::{Config, Shell};
+use contact_afu::link::{Description, LinkModel, Order};
+use contact_afu::pairs::Set;
+use contact_afu::verify::{Bench, account};
+
+fn link(name: &str) -> LinkModel {
+    name.parse::<Description>().unwrap().at(Config::default().clock_mhz).unwrap()
+}
+
+fn without_tail(name: &str) -> LinkModel {
+    let mut link = link(name);
+    (link.read.tail, link.write.tail) = (0, 0);
+    link
+}
+
+#[test]
+fn ninety_thousand_pairs_take_what_harp1_allows() {
+    let bench = Bench::new(&Config::default()).unwrap();
+    let verdict = bench.run(&Set::Random(90_000).pairs(1), &link("harp1"), 1).unwrap();
+    assert!(verdict.is_good());
+    let outcome = &verdict.outcome;
+    // 32 bytes in and 32 out for each pair, at 6.5 GB/s: 9.85 ns.
+    let allowed = 64.0 * 90_000.0 / 6.5;
+    // The shell's own lines (polls, counters, status) are less than half a percent; what is reached is told of the
+    // pairs.
+    let own = 5.0 * outcome.limit_cycles / allowed;
+    assert!((1.0..1.005).contains(&own), "{own}");
+    let reached = allowed / (5.0 * outcome.cycles as f64);
+    assert!((0.95..=1.0).contains(&reached), "{reached}");
+}
+
+#[test]
+fn a_small_job_is_the_sum_of_its_parts() {
+    let config = Config { shell: Shell::Line, ..Config::default() };
+    let afu = Afu::generate(Spec::from(config.clone())).unwrap();
+    let bench = Bench::new(&config).unwrap();
+    for mut link in ["ideal", "harp1", "harp2", "pcie3x8"].map(without_tail) {
+        link.order = Order::InOrder;
+        for pairs in [0, 1, 2, 3, 20, 41] {
+            let parts = account(&afu, &link, pairs).unwrap_or_else(|| panic!("{pairs} pairs over {link}"));
+            let sum: u64 = parts.iter().map(|part| part.cycles).sum();
+            let measured = bench.run(&Set::Random(pairs.into()).pairs(2), &link, 1).unwrap().outcome.cycles;
+            assert_eq!(sum, measured, "{pairs} pairs over {link}: {parts:#?}");
+        }
+    }
+}
+
+#[test]
+fn what_is_no_sum_of_parts_is_not_told_as_one() {
+    let afu = |shell: Shell| Afu::generate(Spec::from(Config { shell, ..Config::default() })).unwrap();
+    assert_eq!(account(&afu(Shell::Spl2), &without_tail("harp1"), 2), None, "a shell that polls");
+    let afu = afu(Shell::Line);
+    assert_eq!(account(&afu, &link("harp1"), 2), None, "a tail");
+    assert_eq!(account(&afu, &without_tail("pcie3x8"), 20), None, "reads in any order wait for one another");
+    assert_eq!(account(&afu, &LinkModel::hostile(), 2), None, "stalls");
+    assert_eq!(account(&afu, &without_tail("harp1"), 1000), None, "writes meet reads");
+}
+
+/// A link's file by its path: a lost read is a job that does not finish, and says so.
+#[test]
+fn a_file_of_a_link_is_taken() {
+    let run = |link: &str, code: i32| {
+        let mut afu = assert_cmd::Command::cargo_bin("afu").unwrap();
+        let done = afu.args(["cosim", "--shell", "line", "--pairs", "random:100", "--link", link]).assert().code(code);
+        String::from_utf8(done.get_output().stderr.clone()).unwrap()
+    };
+    let lost = run(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/links/lossy.toml"), 1);
+    assert!(lost.contains("waiting for the data of a read"), "{lost}");
+    run("harp1", 0);
+    let unknown = run("harp3", 2);
+    assert!(unknown.contains("harp1, harp2, pcie3x8, or a .toml or .json file"), "{unknown}");
+    let missing = run("missing.toml", 2);
+    assert!(missing.starts_with("afu: missing.toml: "), "{missing}");
+}
