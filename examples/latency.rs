@@ -3,6 +3,7 @@
 //! `cargo run --release --example latency -- [LINK [PAIRS]...]`: a link's name or TOML file, whose tail is cut off
 //! (harp1), and numbers of pairs (1 2 20).
 
+use std::error::Error;
 use std::fs;
 
 use contact_afu::config::{Config, Shell};
@@ -10,7 +11,7 @@ use contact_afu::link::Description;
 use contact_afu::report::latency;
 use contact_afu::verify::Bench;
 
-fn main() -> anyhow::Result<()> {
+fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let name = arguments.next().unwrap_or_else(|| "harp1".to_owned());
     let numbers: Vec<u32> = arguments.map(|number| number.parse()).collect::<Result<_, _>>()?;
@@ -23,7 +24,7 @@ fn main() -> anyhow::Result<()> {
     (link.read.tail, link.write.tail) = (0, 0);
 
     let text = latency::text(&Bench::new(&config)?, &link, &numbers)?
-        .ok_or_else(|| anyhow::anyhow!("{name}: the cycles of such jobs are no sum of parts"))?;
+        .ok_or_else(|| format!("{name}: the cycles of such jobs are no sum of parts"))?;
     println!("{name} without its tail, {} SCPUs, {} MHz", config.scpus, config.clock_mhz);
     println!("{text}");
     Ok(())

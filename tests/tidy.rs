@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 /// Who may import whom: `ARCHITECTURE.md` draws it. A module may always import itself.
 const HOUSE: &[(&str, &[&str])] = &[
@@ -172,7 +173,9 @@ fn no_file_names_a_registry_host_or_a_path_of_one_machine() {
     let hosts = ["deb.deb~ian.org", "pypi~.org", "pythonhosted~.org", "crates~.io", "npmjs~.org"];
     let paths = ["/wo~rk/", "/fa~rm/", "/ho~me/", "/Us~ers/"];
     let words: Vec<String> = hosts.iter().chain(&paths).map(|word| word.replace('~', "")).collect();
-    let mut checked = ["README.md", "ARCHITECTURE.md", "Cargo.toml", "build.rs", ".ci/run"].map(PathBuf::from).to_vec();
+    let mut checked = ["README.md", "ARCHITECTURE.md", "CHANGELOG.md", "Cargo.toml", "build.rs", ".ci/run"]
+        .map(PathBuf::from)
+        .to_vec();
     for path in &mut checked {
         *path = Path::new(env!("CARGO_MANIFEST_DIR")).join(&path);
     }
@@ -202,4 +205,25 @@ fn the_readme_shows_the_example_as_it_is() {
     let readme = text(&root.join("README.md"));
     assert!(readme.contains(&format!("```rust\n{example}```")), "README.md must hold examples/verify.rs verbatim");
     assert!(example.lines().count() < 30, "an example of a test is short");
+}
+
+/// What the program alone needs, no other crate compiles.
+#[test]
+fn the_library_compiles_nothing_of_the_program_s() {
+    let program = ["anyhow", "clap", "clap_complete", "indicatif"];
+    let tree = |features: &str| {
+        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+        let output = Command::new(cargo)
+            .current_dir(env!("CARGO_MANIFEST_DIR"))
+            .args(["tree", "--locked", "--offline", "-e", "normal,build", "--prefix", "none", "--format", "{p}"])
+            .args(["--no-default-features", "--features", features])
+            .output()
+            .expect("cargo runs");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let text = String::from_utf8(output.stdout).expect("UTF-8");
+        let names: Vec<_> = text.lines().filter_map(|line| line.split(' ').next().map(str::to_owned)).collect();
+        program.into_iter().filter(|name| names.iter().any(|found| found == name)).collect::<Vec<_>>()
+    };
+    assert_eq!(tree("cosim"), [""; 0]);
+    assert_eq!(tree("cli"), program);
 }
