@@ -1,6 +1,40 @@
 //! Generates, simulates and proves the Verilog of a collision-detection accelerator.
 //!
+//! A [`Config`] says which AFU: how many SCPUs, which arithmetic, which clock. [`afu::Afu`] generates its Verilog:
+//!
+//! ```
+//! use contact_afu::Config;
+//! use contact_afu::afu::{Afu, Spec};
+//!
+//! let config = Config { scpus: 1, contact: "hit".parse()?, ..Config::default() };
+//! let afu = Afu::generate(Spec::from(config))?;
+//! assert!(afu.files().iter().any(|(name, _)| name == "afu_top.v"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! With the feature `cosim`, `Bench` simulates it. Pairs of spheres ([`PairRecord`]) go through it over a link
+//! ([`LinkModel`]), and every bit that comes back ([`ContactRecord`]) is compared with the reference kernel. A test in
+//! another crate, for which Verilator and a C++ compiler are installed:
+//!
+#![cfg_attr(feature = "cosim", doc = "```no_run")]
+#![cfg_attr(not(feature = "cosim"), doc = "```ignore")]
+#![doc = include_str!("../examples/verify.rs")]
+//! ```
+//!
+//! # Features
+//!
+//! | feature | default | what it adds | what it needs |
+//! |---|---|---|---|
+//! | `cli` | yes | the program `afu` | clap, clap_complete, indicatif, anyhow |
+//! | `cosim` | yes | simulation: `verify`, `cosim`, `sweep`, `paper` | Verilator, a C++ compiler, libclang |
+//! | `ode` | no | `ode`: the Open Dynamics Engine | libode in double precision, libclang |
+//! | `parry` | no | parry3d beside the other engines in `accuracy` | parry3d |
+//!
+//! A library's user takes `default-features = false, features = ["cosim"]`. Without any feature the crate is pure Rust
+//! and needs no tool.
+//!
 //! `ARCHITECTURE.md` is the map: which module does what and who may import whom.
+#![warn(missing_docs)]
 
 pub mod accuracy;
 pub mod afu;
@@ -30,3 +64,9 @@ pub mod synth;
 pub mod tools;
 #[cfg(feature = "cosim")]
 pub mod verify;
+
+pub use config::Config;
+pub use kernel::{ContactRecord, PairRecord};
+pub use link::LinkModel;
+#[cfg(feature = "cosim")]
+pub use verify::{Bench, Verdict, VerifyError};

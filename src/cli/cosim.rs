@@ -9,14 +9,14 @@ use contact_afu::cosim::Trace;
 use contact_afu::kernel::PairRecord;
 use contact_afu::link::LinkModel;
 use contact_afu::report::cosim::{Job, Run};
+use contact_afu::report::junit;
 use contact_afu::report::tally::Tally;
-use contact_afu::report::{junit, mismatch};
-use contact_afu::verify::{Bench, Origin, Progress, Verdict, corpus};
+use contact_afu::verify::{Bench, Command, Origin, Progress, Verdict, corpus};
 use contact_afu::{pairs, tools};
 
 use super::failure::{Classify, Failure, Kind};
 use super::machine::{One, warn_of_unused_scpus};
-use super::{link, output, progress, replay};
+use super::{link, output, progress};
 
 /// Mismatches that are told one by one, for each job, as in the JSON.
 const TOLD: usize = 10;
@@ -199,10 +199,8 @@ impl Cosim {
 
     fn command(&self, config: &Config) -> String {
         let mut command = match &self.rtl {
-            None => replay::Command::new("cosim").config(config),
-            Some(folder) => replay::Command::new("cosim")
-                .option("--rtl", &folder.display().to_string())
-                .option("--scpus", &config.scpus.to_string()),
+            None => Command::new("cosim").config(config),
+            Some(folder) => Command::new("cosim").folder(folder, config.scpus),
         };
         for source in &self.pairs {
             command = command.option("--pairs", source);
@@ -241,7 +239,8 @@ fn write_contacts(path: &Path, verdict: &Verdict, config: &Config) -> Result<(),
 
 /// The first mismatches of a job, one by one, and how many more there are.
 fn tell(job: &str, verdict: &Verdict) -> String {
-    let mut told: Vec<String> = verdict.mismatches.iter().take(TOLD).map(|found| mismatch::text(job, found)).collect();
+    let mut told: Vec<String> =
+        verdict.mismatches.iter().take(TOLD).map(|found| format!("mismatch: {job}, {found}")).collect();
     if verdict.mismatches.len() > TOLD {
         told.push(format!("({} more mismatches in {job})", verdict.mismatches.len() - TOLD));
     }

@@ -22,8 +22,6 @@ mod pairs;
 #[cfg(feature = "cosim")]
 mod paper;
 mod progress;
-#[cfg(feature = "cosim")]
-mod replay;
 mod rtl;
 mod scene;
 #[cfg(feature = "cosim")]

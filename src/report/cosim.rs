@@ -4,14 +4,13 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::mismatch::{CONTACT_FIELDS, differences};
 use super::table::{figure, grouped, table};
 use super::tally::{Flows, Tally};
 use crate::config::{Config, Results};
 use crate::kernel::PAIR_FIELDS;
-use crate::verify::Mismatch;
+use crate::verify::{CONTACT_FIELDS, Mismatch};
 
-/// The JSON's schema. Within a number keys are only added.
+/// The JSON's schema. Within a number keys are only added: `CHANGELOG.md` has the rule.
 pub const SCHEMA: &str = "contact-afu/cosim/1";
 
 /// One job: what was sent, and what it came to.
@@ -122,7 +121,7 @@ impl From<&Mismatch> for MismatchFigures {
             pair: mismatch.number,
             cycle: mismatch.cycle,
             sent: PAIR_FIELDS.into_iter().zip(mismatch.pair.0.map(hex)).collect(),
-            words: differences(mismatch).map(word).collect(),
+            words: mismatch.differences().map(word).collect(),
         }
     }
 }

@@ -10,8 +10,6 @@ pub mod junit;
 #[cfg(feature = "cosim")]
 pub mod latency;
 pub mod manifest;
-#[cfg(feature = "cosim")]
-pub mod mismatch;
 pub mod operators;
 pub mod page;
 pub mod synth;

@@ -112,18 +112,40 @@ pub struct Effects {
 /// How a group's bodies lie.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
-    /// The paper's: the points of an octahedron, so many layers from centre to tip.
-    Diamond { layers: u64 },
-    /// A box of so many along each axis.
-    Lattice { count: [u64; 3] },
-    /// So many in random places of a box, from a seed.
-    Random { count: u64, corners: [[f64; 3]; 2], seed: u64 },
+    /// The paper's: the points of an octahedron.
+    Diamond {
+        /// Layers from the centre to a tip.
+        layers: u64,
+    },
+    /// A box of rows.
+    Lattice {
+        /// Bodies along x, y and z.
+        count: [u64; 3],
+    },
+    /// Random places in a box.
+    Random {
+        /// The number of bodies.
+        count: u64,
+        /// Two opposite corners of the box.
+        corners: [[f64; 3]; 2],
+        /// The seed of the places.
+        seed: u64,
+    },
     /// One upon the other, along z.
-    Stack { count: u64 },
+    Stack {
+        /// The number of bodies.
+        count: u64,
+    },
     /// Centres.
-    List { centres: Vec<[f64; 3]> },
+    List {
+        /// One per body.
+        centres: Vec<[f64; 3]>,
+    },
     /// Centres from a CSV (x,y,z or x,y,z,r) or PLY file.
-    File { path: PathBuf },
+    File {
+        /// The file.
+        path: PathBuf,
+    },
 }
 
 /// Bodies that are alike.

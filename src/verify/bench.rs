@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use super::check::{Verdict, check};
 use super::error::VerifyError;
+use super::replay::Setup;
 use crate::afu::{Afu, Layout, Spec, file_list, top_name};
 use crate::config::{self, Config, Results, Shell};
 use crate::cosim::spl2::{Machine, Place, Session};
@@ -43,6 +44,7 @@ pub enum Origin {
 #[derive(Clone, Debug)]
 pub struct Bench {
     config: Config,
+    folder: Option<PathBuf>,
     source: Source,
     model: Model,
     layout: Layout,
@@ -87,7 +89,8 @@ impl Bench {
         Spec::from(config.clone()).check().map_err(crate::afu::BuildError::from)?;
         let source = Source::from_list(&folder.join(file_list(&config)), &top_name(&config))?;
         let source = with_scpus(source, &config, in_folder.scpus);
-        Self::of(&config, source, |source| Model::build(source, trace), trace == Trace::Off)
+        let bench = Self::of(&config, source, |source| Model::build(source, trace), trace == Trace::Off)?;
+        Ok(Self { folder: Some(folder.to_owned()), ..bench })
     }
 
     fn of(
@@ -103,6 +106,7 @@ impl Bench {
         };
         Ok(Self {
             config: config.clone(),
+            folder: None,
             source,
             model,
             layout: Layout::of(LINE_BITS, config),
@@ -165,6 +169,7 @@ impl Bench {
             let half_period_ps = (500.0 * self.config.cycle_ns()).round() as u64;
             instance.trace_open(path, half_period_ps).map_err(CosimError::from)?;
         }
+        let setup = Setup { config: self.config.clone(), folder: self.folder.clone(), link: link.clone(), seed };
         let link = Link::new(link.clone(), seed)?;
         let mut tell = |traffic: Traffic| {
             let pairs = match self.config.results {
@@ -183,7 +188,7 @@ impl Bench {
         closed.map_err(CosimError::from)?;
         let seconds = begun.elapsed().as_secs_f64();
         progress(Progress::Comparing);
-        Ok(check(&self.layout, self.config.contact, pairs, &self.reference.run_all(pairs), outcome, seconds))
+        Ok(check(&self.layout, setup, pairs, &self.reference.run_all(pairs), outcome, seconds))
     }
 }
 

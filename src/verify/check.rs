@@ -1,30 +1,23 @@
 //! What came of a job, compared.
 
+use std::fmt;
+
+use super::mismatch::Mismatch;
+use super::replay::Setup;
 use crate::afu::Layout;
 use crate::config::{Config, Results};
 use crate::cosim::Outcome;
 use crate::host::lines::Contacts;
 use crate::kernel::{ContactRecord, Fields, Flow, PairRecord, settle};
 
-/// One record that is not what it should be.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Mismatch {
-    /// The pair's number in its job, from 0.
-    pub number: usize,
-    /// The cycle of the job in which its line was last written; none: it never was.
-    pub cycle: Option<u64>,
-    /// What went in.
-    pub pair: PairRecord,
-    /// What the reference kernel gives.
-    pub expected: ContactRecord,
-    /// What lies in destination memory; none: nothing does. Where only contacts come back, zero words are expected of a
-    /// pair without one.
-    pub got: Option<ContactRecord>,
-}
+/// Mismatches that a verdict's text shows in full.
+const SHOWN: usize = 3;
 
-/// What a job came to.
+/// What a job came to. As text: whether it is good, else what is wrong and how to run the job again.
 #[derive(Clone, Debug)]
 pub struct Verdict {
+    /// The AFU, the link and the seed.
+    pub setup: Setup,
     /// Pairs of the job.
     pub pairs: usize,
     /// What came back, from destination memory, the unsettled settled: for each pair, or only for those that touch.
@@ -48,6 +41,16 @@ impl Verdict {
     /// Whether everything is as it should be.
     pub fn is_good(&self) -> bool {
         self.mismatches.is_empty() && self.unmet.is_empty()
+    }
+
+    /// Panics unless the verdict [is good](Self::is_good), for tests. The message is the verdict's text: the first
+    /// mismatches, the failed checks, the seed and how to run the job again.
+    ///
+    /// # Panics
+    /// If a record differs from the reference's, or another check failed.
+    #[track_caller]
+    pub fn assert_good(&self) {
+        assert!(self.is_good(), "{self}");
     }
 
     /// Pairs of each flow, in the order of [`Flow::ALL`]. One-bit records, and those of contacts alone, tell no invalid
@@ -77,10 +80,36 @@ impl Verdict {
     }
 }
 
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { setup, pairs, mismatches, unmet, .. } = self;
+        if self.is_good() {
+            return write!(f, "{pairs} pairs, every bit as in the reference");
+        }
+        let checks = if unmet.len() == 1 { "check" } else { "checks" };
+        write!(
+            f,
+            "{} of {pairs} records differ from the reference, {} other {checks} failed",
+            mismatches.len(),
+            unmet.len()
+        )?;
+        for mismatch in mismatches.iter().take(SHOWN) {
+            write!(f, "\nmismatch: {mismatch}")?;
+        }
+        if mismatches.len() > SHOWN {
+            write!(f, "\n({} more mismatches)", mismatches.len() - SHOWN)?;
+        }
+        for check in unmet {
+            write!(f, "\nfailed check: {check}")?;
+        }
+        write!(f, "\nreplay: {setup}")
+    }
+}
+
 /// Compares a job's outcome with the reference's records.
 pub(super) fn check(
     layout: &Layout,
-    fields: Fields,
+    setup: Setup,
     pairs: &[PairRecord],
     reference: &[ContactRecord],
     outcome: Outcome,
@@ -99,8 +128,8 @@ pub(super) fn check(
     job.status(&mut unmet);
     let Came { numbers, mut contacts, mismatches, .. } = came;
     // With contacts alone as results nothing is unsettled: the profile exact refuses them.
-    let unsettled = if layout.number_bits() > 0 { 0 } else { settle(pairs, &mut contacts, fields) };
-    Verdict { pairs: pairs.len(), contacts, numbers, unsettled, mismatches, unmet, outcome, seconds }
+    let unsettled = if layout.number_bits() > 0 { 0 } else { settle(pairs, &mut contacts, setup.config.contact) };
+    Verdict { setup, pairs: pairs.len(), contacts, numbers, unsettled, mismatches, unmet, outcome, seconds }
 }
 
 /// What is compared with what.
@@ -205,7 +234,10 @@ impl Job<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use expect_test::expect;
+
     use crate::kernel::Reference;
+    use crate::link::LinkModel;
     use crate::number::Format;
 
     /// The outcome of a job whose destination holds these records, one a line, and nothing else.
@@ -244,9 +276,9 @@ mod tests {
         let pairs = [9.0, 1.0, 8.0, 0.0, 1.5].map(pair);
         let reference = Reference::new(Format::WIDE, config.contact).run_all(&pairs);
         let hit = |number: usize| (number as u32, reference[number]);
-        let judge = |records: &[(u32, ContactRecord)]| {
-            check(&layout, config.contact, &pairs, &reference, outcome(records, 5), 0.0)
-        };
+        let setup = || Setup { config: config.clone(), folder: None, link: LinkModel::late(), seed: 7 };
+        let judge =
+            |records: &[(u32, ContactRecord)]| check(&layout, setup(), &pairs, &reference, outcome(records, 5), 0.0);
 
         let right = judge(&[hit(1), hit(3), hit(4)]);
         assert!(right.is_good(), "{right:?}");
@@ -273,8 +305,49 @@ mod tests {
         let mut more = outcome(&[hit(1), hit(3), hit(4)], 5);
         more.lines[4] = Some([0; 16]);
         assert_eq!(
-            check(&layout, config.contact, &pairs, &reference, more, 0.0).unmet,
+            check(&layout, setup(), &pairs, &reference, more, 0.0).unmet,
             ["a line behind the last contact's was written"]
         );
+    }
+
+    #[test]
+    fn a_failed_verdict_names_mismatches_checks_seed_and_the_way_to_run_it_again() {
+        let config = Config { scpus: 3, ..Config::default() };
+        let pair = PairRecord::from_spheres([0.0, 0.0, 0.0, 0.5], [1.0, 0.0, 0.0, 0.5]);
+        let expected = Reference::new(Format::WIDE, config.contact).run_all(&[pair])[0];
+        let mut got = expected;
+        got.0[6] = 1;
+        let mismatch = |number| Mismatch { number, cycle: Some(99), pair, expected, got: Some(got) };
+        let mut verdict = Verdict {
+            setup: Setup { config, folder: None, link: LinkModel::hostile(), seed: 7 },
+            pairs: 1000,
+            contacts: Vec::new(),
+            numbers: Vec::new(),
+            unsettled: 0,
+            mismatches: Vec::new(),
+            unmet: Vec::new(),
+            outcome: outcome(&[], 0),
+            seconds: 0.0,
+        };
+        verdict.assert_good();
+        assert_eq!(verdict.to_string(), "1000 pairs, every bit as in the reference");
+
+        verdict.mismatches = [3, 5, 8, 13, 21].map(mismatch).to_vec();
+        verdict.unmet = vec!["status: contacts is 5, should be 6".to_owned()];
+        let panic = std::panic::catch_unwind(|| verdict.assert_good()).expect_err("it is not good");
+        let text = panic.downcast_ref::<String>().expect("a message");
+        // The pair's words are those of a mismatch's own text.
+        let lines: Vec<_> = text.lines().filter(|line| !line.starts_with("  ") || line.contains("got")).collect();
+        expect![[r#"
+            5 of 1000 records differ from the reference, 1 other check failed
+            mismatch: pair 3, written in cycle 99
+              depth     expected 00000000 (0.0), got 00000001 (1e-45)
+            mismatch: pair 5, written in cycle 99
+              depth     expected 00000000 (0.0), got 00000001 (1e-45)
+            mismatch: pair 8, written in cycle 99
+              depth     expected 00000000 (0.0), got 00000001 (1e-45)
+            (2 more mismatches)
+            failed check: status: contacts is 5, should be 6
+            replay: the same pairs over the link `hostile` with seed 7; with the pairs in a file (pairs::write_pairs): afu cosim --scpus 3 --interval 1 --pairs PAIRS.csv --link hostile --seed 7"#]].assert_eq(&lines.join("\n"));
     }
 }

@@ -6,9 +6,13 @@ mod check;
 pub mod corpus;
 mod engine;
 mod error;
+mod mismatch;
+mod replay;
 
 pub use account::{Part, account};
 pub use bench::{Bench, Origin, Progress, rtl_sha256};
-pub use check::{Mismatch, Verdict};
+pub use check::Verdict;
 pub use engine::{BenchEngine, Differs, Totals};
 pub use error::VerifyError;
+pub use mismatch::{CONTACT_FIELDS, Mismatch};
+pub use replay::{Command, Setup};

@@ -1,0 +1,95 @@
+//! A record that differs from the reference's, told so that a person can begin to search.
+
+use std::fmt;
+
+use crate::kernel::{ContactRecord, Flow, PAIR_FIELDS, PairRecord};
+
+/// The words of a contact record, in order.
+pub const CONTACT_FIELDS: [&str; 8] = ["pos_x", "pos_y", "pos_z", "normal_x", "normal_y", "normal_z", "depth", "flags"];
+
+/// One record that is not what it should be. As text it is a paragraph: the pair, and the words that differ, in hex and
+/// value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Mismatch {
+    /// The pair's number in its job, from 0.
+    pub number: usize,
+    /// The cycle of the job in which its line was last written; none: it never was.
+    pub cycle: Option<u64>,
+    /// What went in.
+    pub pair: PairRecord,
+    /// What the reference kernel gives.
+    pub expected: ContactRecord,
+    /// What lies in destination memory; none: nothing does. Where only contacts come back, zero words are expected of a
+    /// pair without one.
+    pub got: Option<ContactRecord>,
+}
+
+impl Mismatch {
+    /// The words that differ: each one's place in a contact record, what was expected, and what there was, if anything.
+    pub fn differences(&self) -> impl Iterator<Item = (usize, u32, Option<u32>)> {
+        let Self { expected, got, .. } = *self;
+        let words = expected.0.into_iter().enumerate();
+        let words = words.map(move |(word, expected)| (word, expected, got.map(|got| got.0[word])));
+        words.filter(|&(_, expected, got)| got != Some(expected))
+    }
+}
+
+impl fmt::Display for Mismatch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { number, cycle, pair, expected, got } = self;
+        write!(f, "pair {number}, ")?;
+        match cycle {
+            Some(cycle) => write!(f, "written in cycle {cycle}")?,
+            None => f.write_str("never written")?,
+        }
+        let word = |bits: u32| format!("{bits:08x} ({:?})", f32::from_bits(bits));
+        for (name, bits) in PAIR_FIELDS.into_iter().zip(pair.0) {
+            write!(f, "\n  {name:<9} {}", word(bits))?;
+        }
+        for (index, _, _) in self.differences() {
+            let name = CONTACT_FIELDS[index];
+            let shown = |record: &ContactRecord| match name {
+                "flags" => format!("{:08x} ({})", record.0[index], flow(record)),
+                _ => word(record.0[index]),
+            };
+            write!(f, "\n  {name:<9} expected {}", shown(expected))?;
+            if let Some(got) = got {
+                write!(f, ", got {}", shown(got))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn flow(record: &ContactRecord) -> &'static str {
+    record.flow().map_or("no flow", Flow::name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use expect_test::expect;
+
+    #[test]
+    fn only_differing_words_are_told() {
+        let pair = PairRecord::from_spheres([0.0, 0.0, 0.0, 0.5], [1.0, 0.0, -0.0, 0.5]);
+        let expected = ContactRecord([0x3f00_0000, 0, 0, 0xbf80_0000, 0, 0, 0, 7]);
+        let mut got = expected;
+        got.0[6] = 1;
+        got.0[7] = 2;
+        let mismatch = Mismatch { number: 3, cycle: Some(99), pair, expected, got: Some(got) };
+        expect![[r#"
+            pair 3, written in cycle 99
+              x1        00000000 (0.0)
+              y1        00000000 (0.0)
+              z1        00000000 (0.0)
+              r1        3f000000 (0.5)
+              x2        3f800000 (1.0)
+              y2        00000000 (0.0)
+              z2        80000000 (-0.0)
+              r2        3f000000 (0.5)
+              depth     expected 00000000 (0.0), got 00000001 (1e-45)
+              flags     expected 00000007 (real), got 00000002 (fake)"#]]
+        .assert_eq(&mismatch.to_string());
+    }
+}
