@@ -246,6 +246,7 @@ impl Link {
                 Fault::ReadError(n) if n == number => read.error = true,
                 Fault::ReadSwapped(n) if n == number => read.held = true,
                 Fault::ReadFlipped { read: n, bit } if n == number => read.flipped = Some(bit),
+                Fault::ReadTwice(n) if n == number => self.reads.push(self.now, read, &mut self.random),
                 _ => {}
             }
         }
@@ -262,7 +263,11 @@ impl Link {
         let job = self.memory.accept_write(request.address);
         if !self.faults.contains(&Fault::WriteLost(number)) {
             let error = self.faults.contains(&Fault::WriteError(number));
-            self.writes.push(self.now, Write { request, error, job }, &mut self.random);
+            let write = Write { request, error, job };
+            self.writes.push(self.now, write, &mut self.random);
+            if self.faults.contains(&Fault::WriteTwice(number)) {
+                self.writes.push(self.now, Write { job: None, ..write }, &mut self.random);
+            }
         }
     }
 }

@@ -11,6 +11,9 @@ pub enum Fault {
     ReadError(u64),
     /// The response to this read never comes.
     ReadLost(u64),
+    /// The response to this read comes twice. (The second is the AFU's error to find only while its tag is free: with a
+    /// link that holds it back long enough, the tag belongs to another request.)
+    ReadTwice(u64),
     /// This read and the next get each other's data. (If no next read comes, neither does this one's response.)
     ReadSwapped(u64),
     /// One bit (0 to 511) of this read's data is flipped.
@@ -24,4 +27,6 @@ pub enum Fault {
     WriteError(u64),
     /// The response to this write never comes, and nothing is written.
     WriteLost(u64),
+    /// The acknowledgement of this write comes twice.
+    WriteTwice(u64),
 }

@@ -166,6 +166,15 @@ fn error_responses_end_the_job_with_their_code() {
     }
 }
 
+/// The second response finds its tag free. (That of the last write comes when the job has ended.)
+#[test]
+fn a_response_that_comes_twice_ends_the_job_with_its_code() {
+    for link in ["ideal", "late"] {
+        spoil(link, &PLACES.map(Fault::ReadTwice), 0, JobError::Response);
+        spoil(link, &PLACES[..5].iter().copied().map(Fault::WriteTwice).collect::<Vec<_>>(), 0, JobError::Response);
+    }
+}
+
 #[test]
 fn the_watchdog_ends_jobs_whose_responses_are_lost() {
     // Longer than any response takes that is not lost.

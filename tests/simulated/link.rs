@@ -118,6 +118,7 @@ fn faults_do_what_they_say() {
     assert_eq!(four_reads(&[]), right);
     assert_eq!(four_reads(&[Fault::ReadError(2)])[2], (12, 2, true));
     assert_eq!(four_reads(&[Fault::ReadLost(1)]), [right[0], right[2], right[3]]);
+    assert_eq!(four_reads(&[Fault::ReadTwice(1)]), [right[0], right[1], right[1], right[2], right[3]]);
     assert_eq!(four_reads(&[Fault::ReadSwapped(1)]), [right[0], (11, 2, false), (12, 1, false), right[3]]);
     assert_eq!(four_reads(&[Fault::ReadFlipped { read: 3, bit: 4 }])[3], (13, 3 ^ 16, false));
 }
@@ -125,14 +126,14 @@ fn faults_do_what_they_say() {
 #[test]
 fn failed_writes_are_not_in_memory() {
     let mut link = Link::new(LinkModel::ideal(), 0).unwrap();
-    link.plan(&[Fault::WriteError(0), Fault::WriteLost(1)]);
+    link.plan(&[Fault::WriteError(0), Fault::WriteLost(1), Fault::WriteTwice(2)]);
     let data: Line = [7; 16];
     let mut came = Vec::new();
     for i in 0..6u16 {
         let write = (i < 3).then(|| WriteRequest { address: i.into(), tag: i, data });
         came.extend(link.cycle(&Requests { read: None, write }).write.map(|r| (r.tag, r.error)));
     }
-    assert_eq!(came, [(0, true), (2, false)]);
+    assert_eq!(came, [(0, true), (2, false), (2, false)]);
     assert_eq!([0, 1, 2].map(|address| link.memory.get(address).is_some()), [false, false, true]);
 }
 
