@@ -75,8 +75,6 @@ impl Aside {
     }
 
     fn within(folder: &Path, to: To) -> io::Result<Self> {
-        // A folder that is missing has the system's own error: tempfile's names a file that nobody knows.
-        fs::metadata(folder)?;
         let room = tempfile::Builder::new().prefix(".afu-").tempdir_in(folder).map_err(without_path)?;
         let aside = room.path().join("aside");
         // Made by hand rather than by tempfile, which would give it to its owner alone.
