@@ -11,7 +11,7 @@ use crate::hdl::{Graph, Signal};
 /// Says which accelerator this is: DSM line 0, and again in the status. It never changes.
 pub const AFU_ID: u128 = 0xf885_f921_48fc_4b0b_8fd1_f127_a3a0_b8e2;
 /// The version of this map: it changes with every change that software must know of. `CHANGELOG.md` has the rule.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 /// Dword 0 of the control memory, when a job is there.
 pub const START_WORD: u32 = 0x406C_CCFF;
 
