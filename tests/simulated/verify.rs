@@ -131,10 +131,9 @@ fn a_right_afu_is_never_given_up_below_spl2() {
     never_given_up(Shell::Spl2);
 }
 
-/// Ten AFUs over links that make them wait: none is given up, and none is waited for without end.
+/// Twelve AFUs over links that make them wait: none is given up, and none is waited for without end.
 ///
-/// The first was given up below SPL2: "did not finish after 24610 cycles". Eleven SCPUs of interval 5 compute as fast as
-/// ten, and five of interval 1 as three: a line per cycle.
+/// The first was given up below SPL2: "did not finish after 24610 cycles".
 fn never_given_up(shell: Shell) {
     let named = |name: &str| name.parse::<Description>().expect("a link").at(200.0).expect("a clock");
     let ideal = LinkModel::ideal;
@@ -150,11 +149,11 @@ fn never_given_up(shell: Shell) {
         (slow(1, 64), ideal(), 900),
         (slow(3, 64), LinkModel::late(), 1501),
         (bf16(slow(2, 64)), named("harp1"), 1024),
-        (slow(11, 5), LinkModel::hostile(), 3000),
+        (slow(10, 5), LinkModel::hostile(), 3000),
         (slow(11, 5), LinkModel::shuffled(), 3001),
         (slow(19, 5), named("pcie3x8"), 5000),
         (slow(1, 1), creeping, 300),
-        (slow(3, 1), LinkModel::hostile(), 4000),
+        (slow(5, 1), LinkModel::hostile(), 4000),
         (slow(3, 1), stalling, 1000),
         (hits(slow(3, 7)), LinkModel::late(), 5000),
         (Config { radius: Some(0.25), ..hits(bf16(slow(1, 31))) }, named("harp2"), 1000),
