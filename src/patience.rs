@@ -5,7 +5,7 @@
 //! reported after a small multiple of the time that a right one needs.
 //!
 //! **The SCPUs.** The AFU says its number of SCPUs and their interval. In each interval each SCPU takes a pair, and all
-//! together no more than a line a cycle ([`Capability::computing_cycles`]).
+//! together no more than one line per cycle ([`Capability::computing_cycles`]).
 //!
 //! **Requests.** A line that is read or written takes 1 ÷ rate cycles of its direction's bandwidth and of the bandwidth
 //! that both share. An AFU keeps `WINDOW` requests of a direction in flight, or as many as the link takes. All of

@@ -40,8 +40,8 @@ impl Capability {
     }
 
     /// Cycles that the SCPUs take for so many pairs if none waits for memory. In an interval each SCPU takes one pair,
-    /// and all together no more than a line a cycle. The first turn may come a whole interval late, and the last round
-    /// may be of a single pair.
+    /// and all together no more than one line per cycle. The first turn may come a whole interval late, and the last
+    /// round may be of a single pair.
     pub fn computing_cycles(&self, pairs: u64) -> u64 {
         let interval = u64::from(self.interval.max(1));
         let each_interval = u64::from(self.scpus).clamp(1, u64::from(self.pairs_per_line) * interval);

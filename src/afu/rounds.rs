@@ -3,7 +3,7 @@
 //! A phase counter runs freely through the interval. Where a line has L pairs, SCPUs 0 to L − 1 take theirs in phase 0
 //! alone, the next L in phase 1, and so on round: a group stays within such a block. With N SCPUs an interval of II
 //! cycles takes N pairs; and where N is above L·II, there are as many SCPUs as the largest multiple of L·II that is not
-//! above N, since more than a line a cycle never comes ([`Spec::scpus_in_turn`]).
+//! above N, since more than one line per cycle never comes ([`Spec::scpus_in_turn`]).
 
 use crate::hdl::{Graph, Register, Signal};
 

@@ -187,7 +187,7 @@ mod tests {
     fn the_longest_interval_takes_what_comes() {
         let of =
             |scpus, pairs_a_cycle| Spec::from(Config { scpus, ..Config::default() }).longest_interval(pairs_a_cycle);
-        // Two pairs a line, and no more than a line a cycle.
+        // Two pairs per line, and no more than one line per cycle.
         assert_eq!([1, 2, 3, 4, 10, 11, 64].map(|scpus| of(scpus, 2.0)), [1, 1, 1, 2, 5, 5, 32]);
         assert_eq!(of(10, f64::INFINITY), Config::shipped().interval);
         let at_five = |scpus| Spec::from(Config { scpus, interval: 5, ..Config::default() });

@@ -31,7 +31,7 @@ pub enum Error {
     },
 }
 
-/// A folder in the making, next to where it will stand.
+/// A temporary folder beside its final place, renamed when complete.
 ///
 /// Dropped before [`Folder::commit`], it leaves nothing behind.
 pub struct Folder {

@@ -50,7 +50,7 @@ impl fmt::Display for Setup {
     }
 }
 
-/// A command line in the making, quoted for a POSIX shell.
+/// Builds a command line, quoted for a POSIX shell.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Command(String);
 

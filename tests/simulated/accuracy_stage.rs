@@ -31,7 +31,9 @@ fn a_stage_more_is_a_cycle_more() {
     let room = tempfile::tempdir().expect("a temporary folder");
     for (name, text) in Afu::generate(Spec::from(config.clone())).expect("an AFU").files() {
         let text = if name == "contact_afu.v" { with_a_stage(&text) } else { text };
-        fs::write(room.path().join(name), text).expect("written");
+        let path = room.path().join(name);
+        fs::create_dir_all(path.parent().expect("a folder")).expect("made");
+        fs::write(path, text).expect("written");
     }
     let pairs = Set::Diamond(5).pairs(1);
     let count = |bench: &Bench| -> Cycles {
