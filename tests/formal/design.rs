@@ -94,7 +94,7 @@ impl Design {
 }
 
 /// An SCPU that gives its pair back, as far as a record holds it: a contact if bit 0 is set, invalid if bit 1 is set
-/// and bit 0 is not. At an interval of 2 it looks at the upper half of the pair a cycle later.
+/// and bit 0 is not. At an interval of 2 it reads the upper half one cycle later.
 fn scpu(spec: &Spec, latency: u32, record_bits: u32) -> Arc<Module> {
     let graph = Graph::new("scpu");
     graph.about(format!("in place of an SCPU: the pair itself, {latency} cycles later"));

@@ -1,5 +1,5 @@
 //! What README and docs show of the program's output, compared with what the program prints today.
-//! `UPDATE_EXPECT=1 cargo test --test program documented` writes it anew.
+//! `UPDATE_EXPECT=1 cargo test --test program documented` rewrites it.
 //!
 //! Not compared, since each takes a router, a clock of its own or many minutes: the study of accuracy (README,
 //! docs/accuracy.md), areas and clocks (docs/operators.md, docs/interval.md, LUTs in docs/scene.md), rates over links

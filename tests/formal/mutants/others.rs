@@ -27,7 +27,7 @@ const PHASE: Rows =
 
 const SIEVE: Rows = &[
     (
-        "pairs that are none are hits too",
+        "hits are dropped too",
         "dropped_pairs <= (group_here - hits_to_1) & not_start_wide;",
         "dropped_pairs <= group_here & not_start_wide;",
         17,
