@@ -10,6 +10,8 @@ mod drive;
 mod exact_afu;
 #[cfg(feature = "cosim")]
 mod host;
+#[cfg(feature = "cosim")]
+mod images;
 mod link;
 #[cfg(feature = "cosim")]
 mod link_models;

@@ -1,0 +1,188 @@
+//! What destination memory holds after a job, by its hash, for forty AFUs: every part of a record's layout. Hardware and
+//! host read one layout and could be wrong together; these hashes were taken before they did.
+//!
+//! Below no shell the hardware is run by the crate's own evaluator, which needs no model; below SPL2 it is Verilated.
+
+use contact_afu::afu::{Afu, Spec};
+use contact_afu::config::{Config, Shell};
+use contact_afu::hdl::Evaluator;
+use contact_afu::kernel::narrow;
+use contact_afu::link::{Line, LinkModel};
+use contact_afu::pairs::Set;
+use contact_afu::verify::Bench;
+use sha2::{Digest, Sha256};
+
+const PAIRS: u64 = 67;
+
+/// Profile, fields, record, results, SCPUs, interval, radius; the hash of the image.
+type Image = (&'static str, &'static str, &'static str, &'static str, u32, u32, Option<f32>, &'static str);
+
+const ALL: &str = "depth,normal,position";
+
+const LINE: [Image; 32] = [
+    ("e8f3z", "hit", "f32", "all", 3, 1, None, "02d899b38eb9e563"),
+    ("e8f3z", "depth", "f32", "all", 3, 1, None, "50521e38fa309326"),
+    ("e8f3z", "normal", "f32", "all", 3, 1, None, "b88053fb6039738b"),
+    ("e8f3z", "depth,normal", "f32", "all", 3, 1, None, "499bac55ae05f7a9"),
+    ("e8f3z", "position", "f32", "all", 3, 1, None, "5e487596a775dc79"),
+    ("e8f3z", "depth,position", "f32", "all", 3, 1, None, "ba9ef73f95dc310c"),
+    ("e8f3z", "normal,position", "f32", "all", 3, 1, None, "a9c4fd474ebd83c2"),
+    ("e8f3z", ALL, "f32", "all", 3, 1, None, "702c02cdccd9e77d"),
+    ("e8f3z", "hit", "f32", "hits", 3, 1, None, "537ca40009122c92"),
+    ("e8f3z", "depth", "f32", "hits", 3, 1, None, "18f369ef1448e958"),
+    ("e8f3z", "normal", "f32", "hits", 3, 1, None, "9fd988cc072646ec"),
+    ("e8f3z", "depth,normal", "f32", "hits", 3, 1, None, "2fa3b8a0753008c2"),
+    ("e8f3z", "position", "f32", "hits", 3, 1, None, "2ae4e2ae6eaf2c84"),
+    ("e8f3z", "depth,position", "f32", "hits", 3, 1, None, "e319459774c5ac6f"),
+    ("e8f3z", "normal,position", "f32", "hits", 3, 1, None, "7dbcfdbf252826b5"),
+    ("e8f3z", ALL, "f32", "hits", 3, 1, None, "2fcff89dac023616"),
+    ("half", "hit", "f16", "all", 2, 1, None, "05cf42abaee7b94c"),
+    ("half", "depth", "f16", "all", 2, 1, None, "cb134bbfe493f2e5"),
+    ("half", "normal", "f16", "all", 2, 2, None, "175276aef57aca47"),
+    ("half", ALL, "f16", "all", 4, 1, None, "357b22340740247e"),
+    ("half", "hit", "f16", "hits", 2, 1, None, "10c1ba70e910b1ec"),
+    ("half", "depth", "f16", "hits", 5, 2, None, "f02041d7cdcf25fc"),
+    ("half", "normal", "f16", "hits", 2, 1, None, "9aeb664c53778d3e"),
+    ("half", ALL, "f16", "hits", 1, 1, None, "7e935e813c9b4ba7"),
+    ("bfloat", ALL, "bf16", "all", 1, 1, Some(0.5), "a631ef1bc79a2758"),
+    ("bfloat", "depth,position", "bf16", "all", 1, 1, Some(0.5), "1fcbef9a902eaf02"),
+    ("bfloat", ALL, "bf16", "hits", 1, 1, Some(0.5), "20a4e755e5cca43d"),
+    ("e8f3z", "depth,position", "f32", "hits", 2, 1, Some(0.5), "beffc2e6625a72b5"),
+    ("paper", ALL, "f32", "all", 1, 1, None, "5b1c525472d200d3"),
+    ("wide", ALL, "f32", "all", 2, 2, None, "6826257ae8fec426"),
+    ("wide", ALL, "f32", "hits", 2, 2, None, "7482d4e391915c2f"),
+    ("exact", ALL, "f32", "all", 1, 1, None, "ff550ff390ce5c6d"),
+];
+
+const SPL2: [Image; 8] = [
+    ("wide", ALL, "f32", "all", 10, 5, None, "6826257ae8fec426"),
+    ("e8f3z", ALL, "f32", "hits", 3, 1, None, "2fcff89dac023616"),
+    ("e8f3z", "hit", "f32", "all", 3, 1, None, "02d899b38eb9e563"),
+    ("e8f3z", "depth,normal", "f32", "all", 2, 2, None, "499bac55ae05f7a9"),
+    ("half", "depth", "f16", "hits", 2, 1, None, "f02041d7cdcf25fc"),
+    ("half", ALL, "f16", "all", 2, 1, None, "357b22340740247e"),
+    ("bfloat", "depth,position", "bf16", "all", 1, 1, Some(0.5), "1fcbef9a902eaf02"),
+    ("e8f3z", "hit", "f32", "hits", 1, 1, Some(0.5), "056603a85e12f2ee"),
+];
+
+fn config(&(profile, contact, record, results, scpus, interval, radius, _): &Image, shell: Shell) -> Config {
+    Config {
+        profile: profile.parse().unwrap(),
+        contact: contact.parse().unwrap(),
+        record: record.parse().unwrap(),
+        results: results.parse().unwrap(),
+        scpus,
+        interval,
+        radius,
+        shell,
+        ..Config::default()
+    }
+}
+
+/// Pairs of every flow, of the radius that all have if they have one.
+fn pairs(config: &Config) -> Vec<[u32; 8]> {
+    let mut pairs: Vec<_> = Set::Random(PAIRS).pairs(7).into_iter().map(|pair| pair.0).collect();
+    for pair in &mut pairs {
+        for word in [3, 7] {
+            pair[word] = config.radius.map_or(pair[word], f32::to_bits);
+        }
+    }
+    pairs
+}
+
+/// Pairs in lines, by the words of the design and not by the crate's layout.
+fn source(config: &Config, pairs: &[[u32; 8]]) -> Vec<Line> {
+    let format = config.record.format();
+    let mut bytes = Vec::new();
+    for pair in pairs {
+        let words = (0..8).filter(|word| config.radius.is_none() || word % 4 != 3);
+        let mut pair: Vec<u8> = words
+            .flat_map(|word| narrow(pair[word], format).to_le_bytes()[..format.width() as usize / 8].to_vec())
+            .collect();
+        pair.resize(format.width() as usize, 0);
+        bytes.extend(pair);
+    }
+    bytes.resize(bytes.len().next_multiple_of(64), 0);
+    let word = |bytes: &[u8]| u32::from_le_bytes(bytes.try_into().unwrap());
+    bytes.chunks(64).map(|line| std::array::from_fn(|i| word(&line[4 * i..4 * i + 4]))).collect()
+}
+
+fn hash(lines: &[Line]) -> String {
+    let mut hash = Sha256::new();
+    lines.iter().flatten().for_each(|word| hash.update(word.to_le_bytes()));
+    hash.finalize().iter().take(8).map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// The destination of a job at the line port: each request is answered in the next cycle.
+fn at_the_line_port(config: &Config) -> Vec<Line> {
+    let source = source(config, &pairs(config));
+    let afu = Afu::generate(Spec::from(config.clone())).unwrap();
+    let mut run = Evaluator::new(afu.top(), &[("SCPUS", config.scpus)]).unwrap();
+    run.reset();
+    let pin = |run: &Evaluator, name: &str| run.pin(name).unwrap();
+    let set = |run: &mut Evaluator, name: &str, value: u64| run.write(pin(run, name), value);
+    let get = |run: &mut Evaluator, name: &str| run.read(pin(run, name));
+    if config.results == "hits".parse().unwrap() {
+        set(&mut run, "destination_lines", 100);
+    }
+    for (name, value) in [("count", PAIRS), ("start", 1), ("rd_req_ready", 1), ("wr_req_ready", 1)] {
+        set(&mut run, name, value);
+    }
+    let mut written = vec![];
+    for _ in 0..20_000 {
+        if get(&mut run, "done") == 1 {
+            assert_eq!(get(&mut run, "error"), 0, "{config:?}");
+            return written;
+        }
+        let reads = get(&mut run, "rd_req_valid") == 1;
+        let (line, read_tag) = (get(&mut run, "rd_req_address"), get(&mut run, "rd_req_tag"));
+        let writes = get(&mut run, "wr_req_valid") == 1;
+        let (at, write_tag) = (get(&mut run, "wr_req_address"), get(&mut run, "wr_req_tag"));
+        if writes {
+            assert_eq!(at, written.len() as u64, "lines are written in order");
+            let (mut data, from) = ([0; 8], pin(&run, "wr_req_data"));
+            run.read_words(from, &mut data);
+            written.push(std::array::from_fn(|i| (data[i / 2] >> (i % 2 * 32)) as u32));
+        }
+        run.step();
+        set(&mut run, "start", 0);
+        set(&mut run, "rd_rsp_valid", reads.into());
+        set(&mut run, "wr_rsp_valid", writes.into());
+        if reads {
+            let data: Vec<u64> =
+                source[line as usize].chunks(2).map(|two| u64::from(two[0]) | u64::from(two[1]) << 32).collect();
+            set(&mut run, "rd_rsp_tag", read_tag);
+            let to = pin(&run, "rd_rsp_data");
+            run.write_words(to, &data);
+        }
+        set(&mut run, "wr_rsp_tag", write_tag);
+    }
+    panic!("{config:?}: the job does not end");
+}
+
+/// The destination of a job below SPL2.
+fn below_spl2(config: &Config) -> Vec<Line> {
+    let pairs: Vec<_> = pairs(config).into_iter().map(contact_afu::PairRecord).collect();
+    let verdict = Bench::new(config).unwrap().run(&pairs, &LinkModel::ideal(), 1).unwrap();
+    verdict.assert_good();
+    verdict.outcome.lines.into_iter().map_while(|line| line).collect()
+}
+
+fn compare(images: &[Image], shell: Shell, run: fn(&Config) -> Vec<Line>) {
+    let different = |image: &Image| {
+        let found = hash(&run(&config(image, shell)));
+        (found != image.7).then(|| format!("{image:?}: {found}"))
+    };
+    let different: Vec<_> = images.iter().filter_map(different).collect();
+    assert!(different.is_empty(), "{}", different.join("\n"));
+}
+
+#[test]
+fn images_at_the_line_port_are_what_they_were() {
+    compare(&LINE, Shell::Line, at_the_line_port);
+}
+
+#[test]
+fn images_below_spl2_are_what_they_were() {
+    compare(&SPL2, Shell::Spl2, below_spl2);
+}
