@@ -27,7 +27,7 @@
 //! The shell's writes are counters, fence and status. Almost-full and acknowledgements that are held back are refusals.
 
 use crate::afu::Capability;
-use crate::afu::spl2::map;
+use crate::afu::shell::spl2::map;
 use crate::link::spl2::Spl2Model;
 use crate::link::{Direction, LinkModel, Stalls};
 

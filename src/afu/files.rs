@@ -10,7 +10,8 @@ use crate::config::{Config, MANIFEST_SCHEMA, Shell};
 use crate::hdl::Primitive;
 use crate::pipeline::KernelReport;
 
-use super::{Afu, spl2};
+use super::Afu;
+use super::shell::spl2;
 
 /// The folder of the test bench, apart from what is synthesised.
 pub(super) const BENCH_FOLDER: &str = "sim";

@@ -7,8 +7,9 @@ use crate::hdl::{Errors, Module};
 use crate::pipeline::{Settings, sphere_kernel};
 
 use super::scpu::scpu;
+use super::shell::spl2;
 use super::top::line_top;
-use super::{Layout, Spec, SpecError, spl2};
+use super::{Layout, Spec, SpecError};
 use crate::config::{Config, Shell};
 
 /// The name of the top module of a configuration's accelerator.

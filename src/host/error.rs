@@ -2,7 +2,7 @@
 
 use super::transport::TransportError;
 use crate::afu::OtherRadius;
-use crate::afu::spl2::map;
+use crate::afu::shell::spl2::map;
 use crate::config::Record;
 
 /// Why a transaction has no results.

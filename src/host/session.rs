@@ -5,7 +5,7 @@ use super::report::Report;
 use super::transaction::{Pointed, Transaction};
 use super::transport::{Transport, TransportError};
 use super::workspace::{AFU_DSM, SPL_CONTEXT, SPL_DSM, Workspace};
-use crate::afu::spl2::map::{self, Csr, control, identity, status};
+use crate::afu::shell::spl2::map::{self, Csr, control, identity, status};
 use crate::afu::{Afu, BuildError, Capability, Layout, Spec};
 use crate::config::Config;
 use crate::link::spl2::CsrOffset;

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use super::lines::{pack_contacts, unpack_pairs};
 use super::transport::{Transport, TransportError};
-use crate::afu::spl2::map::{self, control, identity, latency, performance, pointers, scratch, status};
+use crate::afu::shell::spl2::map::{self, control, identity, latency, performance, pointers, scratch, status};
 use crate::afu::{Afu, BuildError, JobError, Layout, Spec};
 use crate::config::Config;
 use crate::kernel::{Flow, Reference};

@@ -7,7 +7,7 @@ use super::results::Results;
 use super::session::Session;
 use super::transport::Transport;
 use super::workspace::pages_for;
-use crate::afu::spl2::map::{self, performance, status};
+use crate::afu::shell::spl2::map::{self, performance, status};
 use crate::kernel::{ContactRecord, PairRecord, settle};
 use crate::link::{LINE_BYTES, Line, Traffic};
 

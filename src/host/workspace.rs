@@ -11,7 +11,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::error::HostError;
 use crate::afu::Layout;
-use crate::afu::spl2::map::{self, pointers};
+use crate::afu::shell::spl2::map::{self, pointers};
 use crate::link::spl2::{MAX_PAGES, PAGE_BYTES};
 use crate::link::{LINE_BYTES, Line, Memory};
 

@@ -9,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use contact_afu::afu::spl2::map;
+use contact_afu::afu::shell::spl2::map;
 use contact_afu::afu::{Afu, Spec, top_name};
 use contact_afu::config::{Config, Multipliers, Results, Shell};
 use contact_afu::kernel::{PairRecord, Reference};

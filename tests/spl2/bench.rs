@@ -1,6 +1,6 @@
 //! AFUs to test, jobs for them, and what memory must hold afterwards.
 
-use contact_afu::afu::spl2::map;
+use contact_afu::afu::shell::spl2::map;
 use contact_afu::afu::{Afu, Spec};
 use contact_afu::config::{Config, Shell};
 use contact_afu::cosim::spl2::{Machine, Place};

@@ -1,6 +1,6 @@
 //! Numbers of SCPUs, counts of pairs, links and kinds of SPL2, each with each; what the AFU writes, and in what order.
 
-use contact_afu::afu::spl2::map::{self, identity, latency, performance, scratch, status};
+use contact_afu::afu::shell::spl2::map::{self, identity, latency, performance, scratch, status};
 use contact_afu::cosim::Job;
 use contact_afu::cosim::spl2::{MachineError, Session};
 use contact_afu::link::LinkModel;

@@ -1,6 +1,6 @@
 //! Jobs one after another without a reset: how soon the next one starts, and what a context that is written again does.
 
-use contact_afu::afu::spl2::map::{self, control, pointers, status};
+use contact_afu::afu::shell::spl2::map::{self, control, pointers, status};
 use contact_afu::cosim::spl2::{Machine, Place, Session};
 use contact_afu::link::spl2::PAGE_BYTES;
 

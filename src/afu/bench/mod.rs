@@ -5,7 +5,7 @@ use crate::config::{Results, Shell};
 use crate::kernel::{Flow, PairRecord};
 
 use super::pack::{Line, pack, pack_contacts, unpack_pairs};
-use super::spl2::map;
+use super::shell::spl2::map;
 use super::{Afu, COUNT_BITS};
 
 /// Spheres one in the other, beside each other, touching, far apart, equal; and what is no pair of spheres.

@@ -1,6 +1,6 @@
 //! Why a transaction has no outcome.
 
-use crate::afu::spl2::map;
+use crate::afu::shell::spl2::map;
 use crate::cosim::error::SimulationError;
 use crate::link::spl2::Spl2Error;
 

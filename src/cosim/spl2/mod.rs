@@ -11,7 +11,7 @@ pub use error::MachineError;
 pub use session::{Place, Session, Status};
 
 use super::instance::{Clock, Instance};
-use crate::afu::spl2::map;
+use crate::afu::shell::spl2::map;
 use crate::link::spl2::{DeviceWrite, Header, Spl2, Transmit};
 use crate::link::{LINE_BYTES, Memory};
 use ports::Ports;

@@ -2,7 +2,7 @@
 
 use super::{Machine, MachineError};
 use crate::afu::Capability;
-use crate::afu::spl2::map::{self, Field, control, identity, latency, performance, pointers, status};
+use crate::afu::shell::spl2::map::{self, Field, control, identity, latency, performance, pointers, status};
 use crate::cosim::drive::{Job, Outcome};
 use crate::link::spl2::{CsrOffset, Limits, MAX_PAGES, PAGE_BYTES};
 use crate::link::{LINE_BYTES, Line, Traffic};

@@ -1,6 +1,6 @@
 //! Transactions with the AFU in software: what goes right, and what is refused.
 
-use contact_afu::afu::spl2::map::{self, identity, pointers, status};
+use contact_afu::afu::shell::spl2::map::{self, identity, pointers, status};
 use contact_afu::config::{Config, Record};
 use contact_afu::host::{Expected, HostError, Session, Software, Transport, TransportError, Workspace};
 use contact_afu::kernel::{Engine, PairRecord};

@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use contact_afu::afu::spl2::map::{self, identity, latency, performance, status};
+use contact_afu::afu::shell::spl2::map::{self, identity, latency, performance, status};
 use contact_afu::cosim::Instance;
 use contact_afu::cosim::spl2::Machine;
 use contact_afu::host::{HostError, Session, Software, Transport};

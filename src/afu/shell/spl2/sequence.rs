@@ -6,11 +6,11 @@ use std::sync::Arc;
 use crate::config::Results;
 use crate::hdl::{Errors, Graph, Module, Signal};
 
-use super::super::control::{ERROR_BITS, JobError, MODE_BITS};
-use super::super::{ADDRESS_BITS, COUNT_BITS, Spec};
 use super::map::{self, control, latency, performance, pointers, status};
 use super::port::{MDATA_BITS, NUMBER_BITS, is_own};
 use super::registers::dsm_page_line;
+use crate::afu::control::{ERROR_BITS, JobError, MODE_BITS};
+use crate::afu::{ADDRESS_BITS, COUNT_BITS, Spec};
 
 /// Bits of a byte address within a line.
 const BYTE_BITS: u32 = 6;

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use crate::hdl::{Errors, Graph, Module};
 
-use super::super::counter::up_down;
-use super::super::{EPOCH_BITS, Spec};
 use super::port::{MDATA_BITS, SHELL_EPOCH_BITS, is_core_s};
+use crate::afu::counter::up_down;
+use crate::afu::{EPOCH_BITS, Spec};
 
 /// Builds the module `spl2_acknowledge`. Channel 0 goes straight to the core; channel 1 waits for a cycle in which
 /// channel 0 brings nothing. As many can wait as writes can be outstanding, and those of other jobs are dropped before.

@@ -7,9 +7,9 @@ use std::sync::Arc;
 
 use crate::hdl::{Errors, Graph, Module, Signal};
 
-use super::super::{ADDRESS_BITS, Spec};
 use super::map::{self, Csr, identity, scratch};
 use super::port::MDATA_BITS;
+use crate::afu::{ADDRESS_BITS, Spec};
 
 /// Bits of a byte address within a line.
 const BYTE_BITS: u32 = 6;

@@ -9,8 +9,8 @@ use std::sync::Arc;
 
 use crate::hdl::{Errors, Graph, Module, Register, Signal};
 
-use super::super::{ADDRESS_BITS, EPOCH_BITS, Spec};
 use super::port::{self, NUMBER_BITS, Request, SHELL_EPOCH_BITS, TX_HEADER_BITS};
+use crate::afu::{ADDRESS_BITS, EPOCH_BITS, Spec};
 
 /// Builds the module `spl2_transmit`.
 pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, Errors> {
