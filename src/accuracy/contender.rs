@@ -1,8 +1,8 @@
 //! Who answers pairs.
 
-use super::engine::in_parallel;
+use super::measure::in_parallel;
 use super::{Answer, Formula};
-use crate::config::{Profile, Record};
+use crate::config::{Profile, RecordFormat};
 use crate::kernel::{ContactRecord, EngineError, Fields, PairRecord, Reference, settle};
 
 /// Something that answers pairs: a profile's reference kernel, or another engine.
@@ -22,18 +22,18 @@ pub trait Contender {
 #[derive(Clone, Debug)]
 pub struct Profiled {
     profile: Profile,
-    record: Record,
+    record: RecordFormat,
     reference: Reference,
 }
 
 impl Profiled {
     /// The kernel of a profile.
     pub fn new(profile: &Profile) -> Self {
-        Self::over(profile, Record::F32)
+        Self::over(profile, RecordFormat::F32)
     }
 
     /// The kernel of a profile over such records in memory.
-    pub fn over(profile: &Profile, record: Record) -> Self {
+    pub fn over(profile: &Profile, record: RecordFormat) -> Self {
         let reference = profile.reference(Fields::ALL).with_record(record.format());
         Self { profile: profile.clone(), record, reference }
     }
@@ -41,7 +41,7 @@ impl Profiled {
     /// Its name as a contender.
     pub fn title(&self) -> String {
         match self.record {
-            Record::F32 => self.profile.to_string(),
+            RecordFormat::F32 => self.profile.to_string(),
             record => format!("{} record {record}", self.profile),
         }
     }

@@ -103,7 +103,7 @@ pub fn judge(standard: &Standard, answer: &Answer) -> Judgement {
     let length = length(answer.normal);
     found.non_finite = differences.iter().any(|difference| !difference.is_finite());
     found.normal = (length - 1.0).abs() > 1e-6 + SMALLEST;
-    let other_way = standard.truth.flow() == Flow::Grazing && answer.normal != exact.normal;
+    let other_way = standard.truth.flow() == Flow::Coincident && answer.normal != exact.normal;
     found.direction = !other_way && apart(answer.normal.map(|v| v / length), exact.normal) > 1e-5 + SMALLEST;
     found.depth = depth > 16.0 * HALF_ULP * radii + SMALLEST;
     found.position = !other_way && position > 16.0 * HALF_ULP * size + SMALLEST;

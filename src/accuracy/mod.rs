@@ -6,9 +6,9 @@
 
 mod answer;
 mod contender;
-mod engine;
 mod formula;
 mod judge;
+mod measure;
 #[cfg(feature = "ode")]
 mod ode;
 #[cfg(feature = "parry")]
@@ -22,14 +22,14 @@ pub mod trade;
 
 pub use answer::Answer;
 pub use contender::{Contender, Contenders, Profiled, contenders};
-pub use engine::{Failed, assess, measure};
 pub use formula::Formula;
 pub use judge::{Judgement, Standard, judge};
+pub use measure::{ContenderError, assess, measure};
 #[cfg(feature = "ode")]
 pub use ode::OdeDouble;
 #[cfg(feature = "parry")]
 pub use parry::Parry;
 pub use record::{Record, RecordError, Row, SCHEMA};
-pub use spread::{Errors, Spread};
+pub use spread::{ErrorStatistics, Spread};
 pub use study::{StudyError, Task, fill};
 pub use tally::Tally;

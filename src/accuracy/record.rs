@@ -1,6 +1,6 @@
 //! The store of results: a row for each category and contender, in a folder that is written as it grows.
 
-use super::{Errors, Tally, Task};
+use super::{ErrorStatistics, Tally, Task};
 use crate::report::folder::{self, replace_file};
 use crate::report::table::{grouped, table};
 use serde::{Deserialize, Serialize};
@@ -26,13 +26,13 @@ pub struct Row {
     /// What came out.
     pub tally: Tally,
     /// How large the errors are.
-    pub errors: Errors,
+    pub errors: ErrorStatistics,
 }
 
 impl Row {
     pub(super) fn new(category: &str, contender: &str, key: String) -> Self {
         let (category, contender) = (category.to_owned(), contender.to_owned());
-        Self { category, contender, key, tally: Tally::default(), errors: Errors::default() }
+        Self { category, contender, key, tally: Tally::default(), errors: ErrorStatistics::default() }
     }
 }
 

@@ -36,7 +36,7 @@ impl Spread {
 /// Errors of contacts' numbers, in units in the last place of binary32 and relative, as [`Judgement`] has them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Errors {
+pub struct ErrorStatistics {
     /// Of the depth, in its units in the last place.
     pub depth_ulps: Spread,
     /// Of the normal, in units of 1.
@@ -53,7 +53,7 @@ pub struct Errors {
     pub contact: Spread,
 }
 
-impl Errors {
+impl ErrorStatistics {
     /// Of both together.
     #[must_use]
     pub fn plus(&self, other: &Self) -> Self {
@@ -92,8 +92,8 @@ impl Gathered {
     }
 
     /// What they come to.
-    pub fn errors(&self) -> Errors {
-        Errors::of(self.0.each_ref().map(Gathering::spread))
+    pub fn errors(&self) -> ErrorStatistics {
+        ErrorStatistics::of(self.0.each_ref().map(Gathering::spread))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Contenders over the hard categories.
 
-use super::engine::{Failed, measure};
 use super::{Contender, Record, RecordError};
+use super::{ContenderError, measure};
 use crate::kernel::PairRecord;
 use crate::pairs::CATEGORIES;
 use std::path::Path;
@@ -20,7 +20,7 @@ pub struct Task {
 pub enum StudyError {
     /// An engine failed.
     #[error(transparent)]
-    Engine(#[from] Failed),
+    Engine(#[from] ContenderError),
     /// The folder is not ours, or could not be read or written.
     #[error(transparent)]
     Record(#[from] RecordError),

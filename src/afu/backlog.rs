@@ -4,13 +4,13 @@
 
 use std::sync::Arc;
 
-use crate::hdl::{Errors, Graph, Module, Signal};
+use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
 use super::Spec;
 
 /// Builds the module `contact_afu_backlog` with `places` (a power of two) places, in a bank a lane: what comes in one
 /// cycle goes to as many banks, and so does what leaves.
-pub(super) fn backlog(spec: &Spec, places: u32) -> Result<Arc<Module>, Errors> {
+pub(super) fn backlog(spec: &Spec, places: u32) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new("contact_afu_backlog");
     graph.about("keeps contacts, in their order, until the packer takes them");
     let (lanes, leaving, entry_bits) = (spec.lanes(), spec.leaving(), spec.entry_bits());

@@ -58,15 +58,15 @@ impl Capability {
 mod tests {
     use super::super::{Afu, Spec};
     use super::*;
-    use crate::config::{Config, Record};
+    use crate::config::{Config, RecordFormat};
 
     #[test]
     fn the_word_says_what_a_host_plans_with() {
         for (record, results, radius) in [
-            (Record::F32, Results::All, None),
-            (Record::F32, Results::All, Some(0.5)),
-            (Record::Bf16, Results::Hits, Some(0.5)),
-            (Record::F16, Results::All, None),
+            (RecordFormat::F32, Results::All, None),
+            (RecordFormat::F32, Results::All, Some(0.5)),
+            (RecordFormat::Bf16, Results::Hits, Some(0.5)),
+            (RecordFormat::F16, Results::All, None),
         ] {
             let profile = "e8f3z".parse().expect("a profile");
             let config = Config { scpus: 7, interval: 3, record, results, radius, profile, ..Config::default() };

@@ -7,7 +7,7 @@
 
 use std::sync::Arc;
 
-use crate::hdl::{Errors, Graph, Module};
+use crate::hdl::{BuildErrors, Graph, Module};
 
 use super::awaited::{Port, awaited};
 use super::counter::{Countdown, all_used, up_down};
@@ -21,7 +21,7 @@ pub(super) const CYCLES_TO_REQUEST: u32 = 2;
 pub(super) const CYCLES_TO_LINE: u32 = in_order::CYCLES_TO_COME + 1;
 
 /// Builds the module `contact_afu_collector`.
-pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, Errors> {
+pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new("contact_afu_collector");
     graph.about("reads source lines ahead, puts out-of-order responses back in order");
     let slots = spec.max_outstanding;

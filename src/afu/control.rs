@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use crate::config::Results;
-use crate::hdl::{Errors, Graph, Module};
+use crate::hdl::{BuildErrors, Graph, Module};
 
 use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, Spec, feeder};
 
@@ -46,7 +46,7 @@ pub(super) const CYCLES_TO_RUN: u32 = 2;
 pub(super) const CYCLES_TO_DONE: u32 = 2;
 
 /// Builds the module `contact_afu_control`; `capacity` is the number of results there is room for.
-pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, Errors> {
+pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new("contact_afu_control");
     graph.about("takes a job, watches it, ends it");
     let room_bits = room_bits(capacity);

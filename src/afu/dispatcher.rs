@@ -8,7 +8,7 @@
 use std::sync::Arc;
 
 use crate::config::Results;
-use crate::hdl::{Errors, Graph, Module};
+use crate::hdl::{BuildErrors, Graph, Module};
 
 use super::awaited::{self, Port, awaited};
 use super::counter::{Countdown, all_used, up_down};
@@ -22,7 +22,7 @@ pub(super) const CYCLES_TO_REQUEST: u32 = 3;
 pub(super) const CYCLES_TO_IDLE: u32 = awaited::CYCLES_TO_ANSWER + 1;
 
 /// Builds the module `contact_afu_dispatcher`, with room for `depth` (a power of two) lines.
-pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, Errors> {
+pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new("contact_afu_dispatcher");
     graph.about("keeps finished lines, writes them in order, waits for every acknowledgement");
     let slots = spec.max_outstanding;

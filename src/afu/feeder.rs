@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use crate::hdl::{Errors, Graph, Module, Signal};
+use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
 use super::counter::Countdown;
 use super::lines::CYCLES_TO_WORD;
@@ -29,7 +29,7 @@ pub(super) fn room_to_enter(spec: &Spec) -> u32 {
 }
 
 /// Builds the module `contact_afu_feeder`.
-pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, Errors> {
+pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new("contact_afu_feeder");
     graph.about("hands pairs to the SCPUs in turn, only when there is room for their results");
     let layout = spec.layout();

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::hdl::verilog::{self, Style};
-use crate::hdl::{Errors, Module};
+use crate::hdl::{BuildErrors, Module};
 use crate::pipeline::{Settings, sphere_kernel};
 
 use super::scpu::scpu;
@@ -37,7 +37,7 @@ pub enum BuildError {
     Spec(#[from] SpecError),
     /// The hardware: a mistake of the generator.
     #[error("the generated hardware is faulty:\n{0}")]
-    Hardware(#[from] Errors),
+    Hardware(#[from] BuildErrors),
 }
 
 impl Afu {

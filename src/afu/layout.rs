@@ -1,6 +1,6 @@
 //! Where records lie in lines: computed once, read by hardware, host and files alike.
 
-use crate::config::{Config, Record, Results};
+use crate::config::{Config, RecordFormat, Results};
 use crate::kernel::{Fields, PAIR_FIELDS, PairRecord};
 
 use super::COUNT_BITS;
@@ -11,7 +11,7 @@ use super::COUNT_BITS;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout {
     line_bits: u32,
-    record: Record,
+    record: RecordFormat,
     word_bits: u32,
     fields: Fields,
     results: Results,
@@ -38,7 +38,7 @@ pub struct OtherRadius {
 impl Layout {
     /// The layout of full pairs and of a contact with `fields` for each, in lines of `line_bits` (a power of two) bits.
     pub fn new(line_bits: u32, fields: Fields) -> Self {
-        let record = Record::F32;
+        let record = RecordFormat::F32;
         let word_bits = record.format().width();
         Self { line_bits, record, word_bits, fields, results: Results::All, radius: None }
     }
@@ -56,7 +56,7 @@ impl Layout {
     }
 
     /// The numbers of the records.
-    pub fn record(&self) -> Record {
+    pub fn record(&self) -> RecordFormat {
         self.record
     }
 
@@ -189,7 +189,7 @@ mod tests {
     fn words_of_16_bits_are_half_as_long_but_for_a_hit_s_number() {
         let of = |contact: &str, results, radius| {
             let contact = contact.parse().expect("fields");
-            let config = Config { contact, results, radius, record: Record::F16, ..Config::default() };
+            let config = Config { contact, results, radius, record: RecordFormat::F16, ..Config::default() };
             let layout = Layout::of(512, &config);
             assert_eq!((layout.pair_bits(), layout.pairs_per_line()), (128, 4), "six words are padded to eight");
             assert_eq!(layout.pair_words().len(), if radius.is_some() { 6 } else { 8 });

@@ -1,7 +1,7 @@
 //! A memory of lines, whose word comes two cycles after its address: a block memory, or several side by side where the
 //! target's are written as primitives.
 
-use crate::hdl::{Errors, Graph, Ports, Signal, block_memory};
+use crate::hdl::{BuildErrors, Graph, Ports, Signal, block_memory};
 
 use super::Spec;
 
@@ -31,7 +31,7 @@ pub(super) fn line_memory<'g>(
     name: &str,
     depth: u32,
     access: &Access<'g>,
-) -> Result<Signal<'g>, Errors> {
+) -> Result<Signal<'g>, BuildErrors> {
     let primitive = spec.delays.memory_primitive.filter(|_| depth <= PRIMITIVE_DEPTH);
     let widest = primitive.map_or(spec.line_bits, |_| PRIMITIVE_WIDTH);
     let mut words = Vec::new();

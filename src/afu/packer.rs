@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use crate::config::Results;
-use crate::hdl::{Errors, Graph, Module, Signal};
+use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
 use super::{COUNT_BITS, Spec, status};
 
@@ -16,7 +16,7 @@ pub(super) const CYCLES_TO_FLUSH: u32 = 2;
 pub(super) const CYCLES_TO_NOTHING: u32 = 1;
 
 /// Builds the module `contact_afu_packer`.
-pub(super) fn packer(spec: &Spec) -> Result<Arc<Module>, Errors> {
+pub(super) fn packer(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     match spec.config.results {
         Results::All => of_all(spec),
         Results::Hits => of_hits(spec),
@@ -24,7 +24,7 @@ pub(super) fn packer(spec: &Spec) -> Result<Arc<Module>, Errors> {
 }
 
 /// Results of a cycle in order of pairs, a record for each.
-fn of_all(spec: &Spec) -> Result<Arc<Module>, Errors> {
+fn of_all(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new("contact_afu_packer");
     graph.about("packs results into destination lines, counts contacts and invalid pairs");
     let (lanes, group_bits, record_bits) = (spec.lanes(), spec.group_bits(), spec.layout().contact_bits());
@@ -48,7 +48,7 @@ fn of_all(spec: &Spec) -> Result<Arc<Module>, Errors> {
 
 /// Contacts of a cycle in order of pairs, each a record with its number, a cycle after how many they are; `all_out`
 /// when no more will come.
-fn of_hits(spec: &Spec) -> Result<Arc<Module>, Errors> {
+fn of_hits(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new("contact_afu_packer");
     graph.about("packs contacts into destination lines");
     let layout = spec.layout();

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use crate::config::{Record, Results};
+use crate::config::{RecordFormat, Results};
 use crate::kernel::{ContactRecord, Flow, PAIR_FIELDS};
 
 use super::Afu;
@@ -25,9 +25,9 @@ impl Afu {
         let (config, layout) = (&self.spec().config, self.layout());
         let (line, word) = (layout.line_bits(), layout.word_bits());
         let numbers = match config.record {
-            Record::F32 => "IEEE 754 binary32",
-            Record::F16 => "IEEE 754 binary16",
-            Record::Bf16 => "bfloat16 (the upper half of binary32)",
+            RecordFormat::F32 => "IEEE 754 binary32",
+            RecordFormat::F16 => "IEEE 754 binary16",
+            RecordFormat::Bf16 => "bfloat16 (the upper half of binary32)",
         };
         let mut out =
             format!("## Records\n\nNumbers are {numbers}. Bits of a record are counted from its lowest bit.\n");
@@ -97,13 +97,13 @@ impl Afu {
         let hits = self.spec().config.results == Results::Hits;
         let flows = [
             (Flow::Real, "contact"),
-            (Flow::Grazing, "contact, the centres are equal"),
+            (Flow::Coincident, "contact, coincident centres"),
             (Flow::Fake, "no contact"),
             (Flow::Invalid, "invalid pair"),
         ];
         let mut values: Vec<(u32, &str)> = flows
             .into_iter()
-            .filter(|(flow, _)| !hits || matches!(flow, Flow::Real | Flow::Grazing))
+            .filter(|(flow, _)| !hits || matches!(flow, Flow::Real | Flow::Coincident))
             .map(|(flow, meaning)| (flow.flags(), meaning))
             .collect();
         if self.spec().config.profile.is_exact() {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::config::Results;
-use crate::hdl::{Errors, Graph, Instantiated, Module, Signal};
+use crate::hdl::{BuildErrors, Graph, Instantiated, Module, Signal};
 
 use super::feeder::room_to_enter;
 use super::{Spec, backlog, feeder, packer, sieve};
@@ -61,7 +61,7 @@ pub(super) struct Packed<'g> {
 }
 
 impl Parts {
-    pub(super) fn new(spec: &Spec, room: Room) -> Result<Self, Errors> {
+    pub(super) fn new(spec: &Spec, room: Room) -> Result<Self, BuildErrors> {
         let before = match spec.config.results {
             Results::All => None,
             Results::Hits => Some([sieve::sieve(spec)?, backlog::backlog(spec, room.results)?]),

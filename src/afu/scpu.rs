@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::hdl::{Errors, Graph, Module, Signal};
+use crate::hdl::{BuildErrors, Graph, Module, Signal};
 use crate::kernel::{Fields, PAIR_FIELDS};
 
 use super::Spec;
@@ -12,7 +12,7 @@ const CONTACT: [&str; 7] = ["pos_x", "pos_y", "pos_z", "normal_x", "normal_y", "
 
 /// Builds the module `scpu` around a kernel: detection of invalid pairs on the raw words, flags, record packing.
 /// Its latency is the kernel's.
-pub(super) fn scpu(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>, Errors> {
+pub(super) fn scpu(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new("scpu");
     let latency = kernel.latency;
     let every = match spec.config.interval {
@@ -58,13 +58,13 @@ pub(super) fn scpu(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>, Err
     let record = if spec.config.contact == Fields::HIT {
         Some(hit).filter(|_| layout.result_bits() > 0)
     } else {
-        let grazing = kernel.output("grazing").named("grazing");
+        let coincident = kernel.output("grazing").named("grazing");
         let exact = spec.config.profile.is_exact();
         let unsettled = exact.then(|| kernel.output("unsettled").named("unsettled"));
         let no_flow = unsettled.map_or(invalid, |unsettled| invalid | unsettled);
         let flow = no_flow.select(
             graph.constant(2, 0),
-            hit.select(grazing.select(graph.constant(2, 2), graph.constant(2, 3)), graph.constant(2, 1)),
+            hit.select(coincident.select(graph.constant(2, 2), graph.constant(2, 3)), graph.constant(2, 1)),
         );
         let flags: Vec<_> = unsettled.into_iter().chain([invalid, flow.named("flow"), hit]).collect();
         let flags = Signal::join(&flags).extend(bits).named("flags");

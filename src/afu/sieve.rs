@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use crate::hdl::{Errors, Graph, Module, Signal};
+use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
 use super::{COUNT_BITS, Spec, status};
 
@@ -22,7 +22,7 @@ pub(super) fn ranks(lanes: u32) -> u32 {
 }
 
 /// Builds the module `contact_afu_sieve`.
-pub(super) fn sieve(spec: &Spec) -> Result<Arc<Module>, Errors> {
+pub(super) fn sieve(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new("contact_afu_sieve");
     graph.about("numbers contacts, moves those of a cycle together, counts contacts and invalid pairs");
     let (lanes, group_bits, result_bits) = (spec.lanes(), spec.group_bits(), spec.layout().result_bits());

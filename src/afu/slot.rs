@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use crate::hdl::{Errors, Graph, Module, Signal};
+use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
 use super::{SCPU_BITS, Spec};
 
@@ -16,7 +16,7 @@ pub(super) fn latency(kernel_latency: u32) -> u32 {
 }
 
 /// Builds the module `scpu_slot`.
-pub(super) fn slot(spec: &Spec, scpu: &Arc<Module>) -> Result<Arc<Module>, Errors> {
+pub(super) fn slot(spec: &Spec, scpu: &Arc<Module>) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new("scpu_slot");
     graph.about("an SCPU's place: takes a pair in its turn, answers on the lane the pair came from");
     let (layout, lanes, group_bits) = (spec.layout(), spec.lanes(), spec.group_bits());

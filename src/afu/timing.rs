@@ -1,6 +1,6 @@
 //! How many cycles each part of an AFU takes, from the numbers its hardware is generated with.
 
-use crate::config::{Record, Results};
+use crate::config::{RecordFormat, Results};
 
 use super::{Afu, collector, control, dispatcher, feeder, packer, slot, top};
 
@@ -34,11 +34,11 @@ pub struct Timing {
 }
 
 /// What the capability word calls the numbers of records.
-pub(super) fn record_code(record: Record) -> u64 {
+pub(super) fn record_code(record: RecordFormat) -> u64 {
     match record {
-        Record::F32 => 0,
-        Record::F16 => 1,
-        Record::Bf16 => 2,
+        RecordFormat::F32 => 0,
+        RecordFormat::F16 => 1,
+        RecordFormat::Bf16 => 2,
     }
 }
 

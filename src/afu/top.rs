@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::config::Results;
-use crate::hdl::{Errors, Graph, Module, Signal};
+use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
 use super::control::{MODE_BITS, control};
 use super::results::{Parts, Room};
@@ -14,7 +14,7 @@ use super::{collector, dispatcher, feeder, slot, timing};
 pub(super) const RANKS_AFTER: u32 = 1;
 
 /// The top over the plain line port, around an SCPU.
-pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, Errors> {
+pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, BuildErrors> {
     let (lanes, group_bits) = (spec.lanes(), spec.group_bits());
     let slot_latency = slot::latency(unit.latency);
     let has_records = spec.layout().result_bits() > 0;

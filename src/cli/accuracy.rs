@@ -112,7 +112,7 @@ pub fn run(options: &Accuracy) -> Result<(), Failure> {
         None => Ok(()),
         Some(point) => {
             let message = format!("{}: {} mismatches with the reference", point.name, point.cycles.mismatches);
-            Err(Failure::new(Kind::Unmet, message))
+            Err(Failure::new(Kind::Failed, message))
         }
     }
 }

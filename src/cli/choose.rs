@@ -4,7 +4,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use contact_afu::accuracy::trade::{Bounds, Results, Time, choose, committed, to_build};
+use contact_afu::accuracy::trade::{Bounds, Study, Time, choose, committed, to_build};
 use contact_afu::config::MANIFEST_SCHEMA;
 use serde_json::json;
 
@@ -113,13 +113,13 @@ pub fn run(options: &Choose) -> Result<(), Failure> {
             if instead.is_empty() {
                 message += "; more than one of them would have to give way";
             }
-            Err(Failure::new(Kind::Unmet, message))
+            Err(Failure::new(Kind::Failed, message))
         }
     }
 }
 
 impl Choose {
-    fn results(&self) -> Result<Results, Failure> {
+    fn results(&self) -> Result<Study, Failure> {
         let Some(path) = &self.from else { return committed().ends(Kind::Other) };
         let path = if path.is_dir() { path.join("results.json") } else { path.clone() };
         let fail = |error: &dyn std::fmt::Display| Failure::new(Kind::Usage, format!("{}: {error}", path.display()));

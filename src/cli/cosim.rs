@@ -187,9 +187,9 @@ impl Cosim {
             Ok(verdict) => {
                 let tally = Tally::of(&verdict, bench.config());
                 let mismatches = verdict.mismatches.iter().take(TOLD).copied().collect();
-                Ok((Job { name, tally, failures: verdict.unmet.clone(), mismatches }, Some(verdict)))
+                Ok((Job { name, tally, failures: verdict.failed_checks.clone(), mismatches }, Some(verdict)))
             }
-            Err(error) if error.is_the_job_s() => {
+            Err(error) if error.is_job_failure() => {
                 let tally = Tally { pairs: pairs.len() as u64, ..Tally::default() };
                 Ok((Job { name, tally, failures: vec![error.to_string()], mismatches: Vec::new() }, None))
             }
@@ -221,7 +221,7 @@ impl Cosim {
         }
         let bad = run.jobs.iter().filter(|job| !job.passed()).count();
         let message = format!("{bad} of {} jobs failed, {} mismatches", run.jobs.len(), run.total().mismatches);
-        Err(Failure::new(Kind::Unmet, message))
+        Err(Failure::new(Kind::Failed, message))
     }
 }
 

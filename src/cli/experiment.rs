@@ -7,7 +7,7 @@ use contact_afu::kernel::Flow;
 use contact_afu::ode::{self, Benchmark, Collider, Diamond, Ode};
 use contact_afu::paper::measure::{Measured, measure};
 use contact_afu::paper::{
-    Claim, Published, Results, SCHEMA, Settings, SimulateError, Simulated, Size, Summary, Task, claims, figure6,
+    Claim, Experiment, Published, SCHEMA, Settings, SimulateError, Simulated, Size, Summary, Task, claims, figure6,
     figure7, page, per_collision, simulate,
 };
 use contact_afu::report::folder::{self, replace_file};
@@ -66,7 +66,7 @@ pub fn run(options: &Paper) -> Result<(), Failure> {
     let task =
         Task { bench: &bench, link: &link, pairs: &pairs, seed: options.seed, transactions: options.transactions };
     let simulated = options.simulated(&task, &counts)?;
-    let results = Results::new(settings, size, &measured.points, &simulated.points, &Published::PAPER);
+    let results = Experiment::new(settings, size, &measured.points, &simulated.points, &Published::PAPER);
     write(&options.out, &results)?;
     if let Some(summary) = results.summary() {
         output::show(&told(&summary), false)?;
@@ -122,12 +122,12 @@ struct Document<'a> {
     points: &'a [contact_afu::paper::Joined],
 }
 
-fn write(out: &Path, results: &Results) -> Result<(), Failure> {
+fn write(out: &Path, results: &Experiment) -> Result<(), Failure> {
     let claims = claims(&Published::PAPER);
     let (schema, version) = (SCHEMA, env!("CARGO_PKG_VERSION"));
     let (settings, summary, points) = (&results.settings, results.summary(), &results.points[..]);
     let document = Document { schema, version, settings, summary, claims: &claims, points };
-    let csv = |points| Results::csv(points).ends(Kind::Other);
+    let csv = |points| Experiment::csv(points).ends(Kind::Other);
     let files = [
         ("figure6.svg", figure6(results).svg().into_bytes()),
         ("figure7.svg", figure7(results).svg().into_bytes()),
@@ -182,7 +182,7 @@ impl From<SimulateError> for Failure {
     fn from(error: SimulateError) -> Self {
         match error {
             SimulateError::Verify(error) => error.into(),
-            SimulateError::Wrong { .. } => Self::caused(Kind::Unmet, error),
+            SimulateError::Wrong { .. } => Self::caused(Kind::Failed, error),
         }
     }
 }

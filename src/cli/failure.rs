@@ -5,8 +5,8 @@ use std::process::ExitCode;
 /// What kind of end it was. The numbers are part of the command line's contract.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// A mismatch, an unmet check, or a job that does not finish.
-    Unmet = 1,
+    /// A mismatch, a failed check, or a job that does not finish.
+    Failed = 1,
     /// Bad usage or bad input.
     Usage = 2,
     /// A tool that this needs is missing.
@@ -94,7 +94,7 @@ impl From<contact_afu::verify::VerifyError> for Failure {
             }
             VerifyError::Model(CosimError::MissingTool { .. }) => Kind::Tool,
             VerifyError::Model(CosimError::Source(_)) => Kind::Usage,
-            VerifyError::Drive(_) | VerifyError::Machine(_) if error.is_the_job_s() => Kind::Unmet,
+            VerifyError::Drive(_) | VerifyError::Machine(_) if error.is_job_failure() => Kind::Failed,
             VerifyError::Model(_) | VerifyError::Drive(_) | VerifyError::Machine(_) => Kind::Other,
         };
         Self::caused(kind, error)

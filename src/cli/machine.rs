@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use contact_afu::afu::Spec;
-use contact_afu::config::{self, Config, Input, Multipliers, Profile, Record, Results, Shell};
+use contact_afu::config::{self, Config, Input, Multipliers, Profile, RecordFormat, Results, Shell};
 use contact_afu::kernel::Fields;
 use contact_afu::number::{FormatError, Roots, Rounding, Subnormals};
 use contact_afu::synth::Target;
@@ -44,7 +44,7 @@ pub struct Machine {
     /// Numbers of records in memory: f32, or f16 or bf16, to which pairs are rounded, and of which a line holds four
     /// [default: f32]
     #[arg(long, value_name = "FORMAT")]
-    pub record: Option<Record>,
+    pub record: Option<RecordFormat>,
     /// Multiplier blocks: use, or spare (roots and reciprocals digit by digit: more logic and cycles, the same bits)
     /// [default: use]
     #[arg(long, value_name = "HOW")]

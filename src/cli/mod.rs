@@ -37,7 +37,7 @@ use failure::Failure;
 
 /// Generates, simulates and proves the Verilog of a collision-detection accelerator.
 ///
-/// Exit status: 0 pass; 1 a mismatch, an unmet check or a job that does not finish; 2 bad usage or input; 3 a missing
+/// Exit status: 0 pass; 1 a mismatch, a failed check or a job that does not finish; 2 bad usage or input; 3 a missing
 /// tool; 4 anything else. Results go to standard output or files, progress and messages to standard error.
 #[derive(Parser, Debug)]
 #[command(name = "afu", version = usage::version())]

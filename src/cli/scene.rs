@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use contact_afu::config::Config;
 use contact_afu::kernel::Engine;
 use contact_afu::report::folder::{self, Folder};
-use contact_afu::scene::{self, Cost, Part, Plan, Results, Scene as Story, SceneError};
+use contact_afu::scene::{self, Cost, Part, Plan, Scene as Story, SceneError, SceneRun};
 
 use super::failure::{Classify, Failure, Kind};
 use super::{output, progress};
@@ -140,7 +140,7 @@ impl Scene {
         scene::ladder(story)?.into_iter().map(rung).collect()
     }
 
-    fn results(&self, story: &Story, plan: &Plan) -> Result<Results, Failure> {
+    fn results(&self, story: &Story, plan: &Plan) -> Result<SceneRun, Failure> {
         match self.engine {
             Who::Reference => {
                 let mut reference = plan.config.profile.reference(plan.config.contact);
@@ -151,7 +151,7 @@ impl Scene {
     }
 
     #[cfg(feature = "cosim")]
-    fn simulated(&self, story: &Story, plan: &Plan) -> Result<Results, Failure> {
+    fn simulated(&self, story: &Story, plan: &Plan) -> Result<SceneRun, Failure> {
         use contact_afu::link::LinkModel;
         use contact_afu::verify::{Bench, BenchEngine};
         if !plan.has(Part::Hit) {
@@ -169,12 +169,12 @@ impl Scene {
     }
 
     #[cfg(not(feature = "cosim"))]
-    fn simulated(&self, _: &Story, _: &Plan) -> Result<Results, Failure> {
+    fn simulated(&self, _: &Story, _: &Plan) -> Result<SceneRun, Failure> {
         let message = "this program was built without simulation (feature `cosim`): give --engine reference";
         Err(Failure::new(Kind::Tool, message))
     }
 
-    fn go(&self, story: &Story, plan: &Plan, engine: &mut dyn Engine, name: &str) -> Result<Results, Failure> {
+    fn go(&self, story: &Story, plan: &Plan, engine: &mut dyn Engine, name: &str) -> Result<SceneRun, Failure> {
         if Plan::moves(story) {
             return moving(story, plan, engine, name);
         }
@@ -185,7 +185,7 @@ impl Scene {
         &self,
         out: &std::path::Path,
         plan: &Plan,
-        results: &Results,
+        results: &SceneRun,
         ladder: &[(String, Cost)],
     ) -> Result<(), Failure> {
         let folder = Folder::begin(out, self.force)?;
@@ -194,9 +194,9 @@ impl Scene {
         folder.write("manifest.json", &manifest)?;
         folder.write("report.html", scene::page(results, ladder).as_bytes())?;
         let texts = [
-            (Part::Contacts, "contacts.csv", Results::contacts_csv as fn(&Results) -> String),
-            (Part::Trajectories, "trajectories.csv", Results::trajectories_csv),
-            (Part::Energy, "energy.csv", Results::energy_csv),
+            (Part::Contacts, "contacts.csv", SceneRun::contacts_csv as fn(&SceneRun) -> String),
+            (Part::Trajectories, "trajectories.csv", SceneRun::trajectories_csv),
+            (Part::Energy, "energy.csv", SceneRun::energy_csv),
         ];
         for (part, name, text) in texts.into_iter().filter(|(part, ..)| plan.has(*part)) {
             if self.npy && part == Part::Trajectories {
@@ -210,7 +210,7 @@ impl Scene {
 }
 
 #[cfg(feature = "ode")]
-fn moving(story: &Story, plan: &Plan, engine: &mut dyn Engine, name: &str) -> Result<Results, Failure> {
+fn moving(story: &Story, plan: &Plan, engine: &mut dyn Engine, name: &str) -> Result<SceneRun, Failure> {
     let bar = progress::bar("running the scene:", "steps", story.steps.value);
     let results = scene::run(story, plan, engine, name, |steps| bar.set_position(steps));
     bar.finish_and_clear();
@@ -237,7 +237,7 @@ fn host_step(_: &Story, _: &Plan) -> Result<Option<f64>, Failure> {
 }
 
 #[cfg(not(feature = "ode"))]
-fn moving(_: &Story, _: &Plan, _: &mut dyn Engine, _: &str) -> Result<Results, Failure> {
+fn moving(_: &Story, _: &Plan, _: &mut dyn Engine, _: &str) -> Result<SceneRun, Failure> {
     Err(without_ode())
 }
 
@@ -260,7 +260,7 @@ impl From<SceneError> for Failure {
             SceneError::Synth(error) => return error.into(),
             #[cfg(feature = "ode")]
             SceneError::Ode(_) => Kind::Other,
-            SceneError::Engine(_) => Kind::Unmet,
+            SceneError::Engine(_) => Kind::Failed,
         };
         Self::caused(kind, error)
     }

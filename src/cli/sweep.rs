@@ -80,7 +80,7 @@ pub fn run(options: &Sweep) -> Result<(), Failure> {
     if bad.is_empty() {
         Ok(())
     } else {
-        Err(Failure::new(Kind::Unmet, format!("mismatches with {} SCPUs", bad.join(", "))))
+        Err(Failure::new(Kind::Failed, format!("mismatches with {} SCPUs", bad.join(", "))))
     }
 }
 

@@ -94,7 +94,7 @@ pub fn run(options: &Synth) -> Result<(), Failure> {
         Some(slow) => {
             let clock = slow.clock_mhz.unwrap_or_default();
             let message = format!("{}: {clock:.1} MHz, not {}", report::title(slow), slow.asked_mhz);
-            Err(Failure::new(Kind::Unmet, message))
+            Err(Failure::new(Kind::Failed, message))
         }
     }
 }

@@ -85,7 +85,7 @@ choice!(
 choice!(
     /// The numbers of records in memory: pairs are rounded to them when they are written, and contacts come back in
     /// them.
-    Record, "record", default F32,
+    RecordFormat, "record", default F32,
     /// IEEE binary32: a pair is 32 bytes, two a line.
     F32 = "f32",
     /// IEEE binary16: a pair is 16 bytes, four a line.
@@ -110,7 +110,7 @@ impl Multipliers {
     }
 }
 
-impl Record {
+impl RecordFormat {
     /// The format of a word.
     pub const fn format(self) -> Format {
         match self {

@@ -4,7 +4,7 @@ mod choices;
 mod file;
 mod profile;
 
-pub use choices::{Input, Multipliers, Record, Results, Shell};
+pub use choices::{Input, Multipliers, RecordFormat, Results, Shell};
 pub use file::{MANIFEST_SCHEMA, ReadError, read};
 pub use profile::Profile;
 
@@ -47,8 +47,8 @@ pub struct Config {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub radius: Option<f32>,
     /// The numbers of records in memory.
-    #[serde(skip_serializing_if = "Record::is_f32")]
-    pub record: Record,
+    #[serde(skip_serializing_if = "RecordFormat::is_f32")]
+    pub record: RecordFormat,
     /// Whether multiplier blocks are to be spared.
     #[serde(skip_serializing_if = "Multipliers::are_used")]
     pub multipliers: Multipliers,
@@ -74,7 +74,7 @@ impl Default for Config {
             input: Input::Direct,
             results: Results::All,
             radius: None,
-            record: Record::F32,
+            record: RecordFormat::F32,
             multipliers: Multipliers::Use,
             shell: Shell::Spl2,
             clock_mhz: 200.0,
@@ -114,12 +114,12 @@ pub enum Error {
     Radius(f32),
     /// A radius beyond the record's numbers.
     #[error("radius {0}: is infinite in records of {1}; give a smaller one, or record f32")]
-    RecordRadius(f32, Record),
+    RecordRadius(f32, RecordFormat),
     /// A pair that was rounded is another pair.
     #[error(
         "profile exact with record {0}: what is exact of a rounded pair is not exact of the pair that was given; use record f32"
     )]
-    ExactRecord(Record),
+    ExactRecord(RecordFormat),
     /// Known to the design, not built yet.
     #[error("{option} {value}: not built yet; {instead}")]
     NotYet {
@@ -157,7 +157,7 @@ impl Config {
         if self.profile.is_exact() && self.results == Results::Hits {
             return Err(Error::ExactHits);
         }
-        if self.profile.is_exact() && self.record != Record::F32 {
+        if self.profile.is_exact() && self.record != RecordFormat::F32 {
             return Err(Error::ExactRecord(self.record));
         }
         if let Some(radius) = self.radius
@@ -301,11 +301,11 @@ mod tests {
                 "profile exact with results",
             ),
             (
-                Config { profile: Profile::EXACT, record: Record::F16, ..Config::default() },
+                Config { profile: Profile::EXACT, record: RecordFormat::F16, ..Config::default() },
                 "profile exact with record f16",
             ),
             (
-                Config { radius: Some(1e6), record: Record::F16, ..Config::default() },
+                Config { radius: Some(1e6), record: RecordFormat::F16, ..Config::default() },
                 "radius 1000000: is infinite in records of f16",
             ),
             (Config { prefix: Some("2x".into()), ..Config::default() }, "prefix `2x`"),

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::error::Errors;
+use super::error::BuildErrors;
 use super::graph::Graph;
 use super::module::{Module, Primitive};
 use super::state::address_width;
@@ -23,7 +23,12 @@ pub enum Ports {
 ///
 /// # Errors
 /// What the graph recorded.
-pub fn block_memory(depth: u32, width: u32, ports: Ports, primitive: Option<Primitive>) -> Result<Arc<Module>, Errors> {
+pub fn block_memory(
+    depth: u32,
+    width: u32,
+    ports: Ports,
+    primitive: Option<Primitive>,
+) -> Result<Arc<Module>, BuildErrors> {
     let kind = if ports == Ports::Gated { "line_memory" } else { "memory" };
     let graph = Graph::new(format!("{kind}_{depth}x{width}{}", primitive.map_or("", Primitive::suffix)));
     graph.about("a word is written, another is read two cycles later: one block memory with its registers");

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::block_memory::{Ports, block_memory};
 use super::delay_model::DelayModel;
-use super::error::Errors;
+use super::error::BuildErrors;
 use super::graph::Graph;
 use super::module::{Module, Primitive};
 
@@ -19,7 +19,7 @@ const WIDTH: RangeInclusive<u32> = 24..=36;
 ///
 /// # Errors
 /// What the graph recorded.
-pub fn delay_block(cycles: u32, width: u32, model: &DelayModel) -> Result<Option<Arc<Module>>, Errors> {
+pub fn delay_block(cycles: u32, width: u32, model: &DelayModel) -> Result<Option<Arc<Module>>, BuildErrors> {
     match model.memory_primitive {
         Some(primitive) if CYCLES.contains(&cycles) && WIDTH.contains(&width) => {
             line(cycles, width, primitive).map(Some)
@@ -28,7 +28,7 @@ pub fn delay_block(cycles: u32, width: u32, model: &DelayModel) -> Result<Option
     }
 }
 
-fn line(cycles: u32, width: u32, primitive: Primitive) -> Result<Arc<Module>, Errors> {
+fn line(cycles: u32, width: u32, primitive: Primitive) -> Result<Arc<Module>, BuildErrors> {
     // A word is read into one register of the block and waits in another. Of that it comes late, and from afar: a
     // register in the fabric takes it.
     let depth = cycles - 2;

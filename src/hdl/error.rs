@@ -22,9 +22,9 @@ impl fmt::Display for Error {
 
 /// Every bad operation of a graph, in the order they were made.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub struct Errors(pub Vec<Error>);
+pub struct BuildErrors(pub Vec<Error>);
 
-impl fmt::Display for Errors {
+impl fmt::Display for BuildErrors {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (index, error) in self.0.iter().enumerate() {
             if index > 0 {

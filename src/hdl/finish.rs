@@ -2,15 +2,15 @@
 
 use std::collections::{BTreeSet, HashMap};
 
-use super::error::{Error, Errors};
+use super::error::{BuildErrors, Error};
 use super::graph::{Inner, Paths};
 use super::module::{Instance, Memory, Module, Node, NodeId, Op};
 use super::share_delays;
 
-pub(super) fn finish(mut inner: Inner) -> Result<Module, Errors> {
+pub(super) fn finish(mut inner: Inner) -> Result<Module, BuildErrors> {
     check_connected(&mut inner);
     if !inner.errors.is_empty() {
-        return Err(Errors(inner.errors));
+        return Err(BuildErrors(inner.errors));
     }
     match order(&mut inner) {
         Ok(order) => Ok(renumber(inner, &order)),
@@ -18,7 +18,7 @@ pub(super) fn finish(mut inner: Inner) -> Result<Module, Errors> {
             let node = &inner.nodes[looped.index()];
             let name = node.name.clone().unwrap_or_else(|| format!("{:?}", node.op));
             let message = format!("combinational loop through `{name}`");
-            Err(Errors(vec![Error { module: inner.name, message, place: inner.places[looped.index()] }]))
+            Err(BuildErrors(vec![Error { module: inner.name, message, place: inner.places[looped.index()] }]))
         }
     }
 }

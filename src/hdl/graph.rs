@@ -5,7 +5,7 @@ use std::collections::{BTreeSet, HashMap};
 use std::panic::Location;
 use std::sync::Arc;
 
-use super::error::{Error, Errors};
+use super::error::{BuildErrors, Error};
 use super::module::{Instance, Memory, Module, Node, NodeId, Op, Parameter, Port, Rounded};
 use super::signal::Signal;
 
@@ -177,7 +177,7 @@ impl Graph {
     ///
     /// # Errors
     /// Every error recorded by an operation, wires never driven, and combinational loops, together.
-    pub fn finish(self) -> Result<Arc<Module>, Errors> {
+    pub fn finish(self) -> Result<Arc<Module>, BuildErrors> {
         let inner = self.inner.into_inner();
         super::finish::finish(inner).map(Arc::new)
     }

@@ -28,7 +28,7 @@ pub use block_memory::{Ports, block_memory};
 pub use cut::{Timing, cut};
 pub use delay_block::delay_block;
 pub use delay_model::DelayModel;
-pub use error::{Error, Errors};
+pub use error::{BuildErrors, Error};
 pub use evaluate::{EvaluateError, Evaluator, Pin};
 pub use graph::Graph;
 pub use module::{

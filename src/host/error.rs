@@ -3,7 +3,7 @@
 use super::transport::TransportError;
 use crate::afu::OtherRadius;
 use crate::afu::shell::spl2::map;
-use crate::config::Record;
+use crate::config::RecordFormat;
 
 /// Why a transaction has no results.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -115,7 +115,7 @@ pub enum HostError {
         /// Its field.
         field: &'static str,
         /// The numbers of the AFU's records.
-        record: Record,
+        record: RecordFormat,
     },
     /// The transport.
     #[error(transparent)]

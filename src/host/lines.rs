@@ -63,17 +63,17 @@ impl<'a> Contacts<'a> {
         Some((number, record))
     }
 
-    /// What of the reference's record is in destination memory, in the same form as [`Contacts::get`] gives it.
+    /// The part of the reference's record that destination memory holds, as [`Contacts::get`] gives it.
     #[cfg_attr(not(feature = "cosim"), allow(dead_code))] // for `verify` alone
-    pub(crate) fn seen(&self, record: ContactRecord) -> ContactRecord {
-        let mut seen = ContactRecord::default();
+    pub(crate) fn as_stored(&self, record: ContactRecord) -> ContactRecord {
+        let mut stored = ContactRecord::default();
         if self.words.is_empty() {
-            seen.0[FLAGS] = if record.is_contact() { Flow::Real } else { Flow::Fake }.flags();
+            stored.0[FLAGS] = if record.is_contact() { Flow::Real } else { Flow::Fake }.flags();
         }
         for &word in &self.words {
-            seen.0[word] = record.0[word];
+            stored.0[word] = record.0[word];
         }
-        seen
+        stored
     }
 
     /// Whether everything behind the last of `count` contacts is zero, in each slot and at the end of the last line.
@@ -99,7 +99,7 @@ impl<'a> Contacts<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::{Config, Record, Results};
+    use crate::config::{Config, RecordFormat, Results};
     use crate::kernel::Fields;
     use crate::kernel::{PairRecord, narrow};
 
@@ -138,7 +138,7 @@ mod tests {
             assert_eq!(pack_contacts(&layout, &records).into_iter().map(Some).collect::<Vec<_>>(), lines, "{fields}");
             let contacts = Contacts::new(&layout, &lines);
             for (i, record) in records.iter().enumerate() {
-                assert_eq!(contacts.get(i), Some(contacts.seen(*record)), "{fields}, {i}");
+                assert_eq!(contacts.get(i), Some(contacts.as_stored(*record)), "{fields}, {i}");
             }
             assert!(contacts.rest_is_zero(records.len()), "{fields}");
             assert!(!contacts.rest_is_zero(records.len() - 2), "{fields}: a record behind the last is seen");
@@ -172,7 +172,7 @@ mod tests {
             let contacts = Contacts::new(&layout, &lines);
             for (i, &record) in records.iter().enumerate() {
                 let known =
-                    if contact == "hit" { ContactRecord([0, 0, 0, 0, 0, 0, 0, 7]) } else { contacts.seen(record) };
+                    if contact == "hit" { ContactRecord([0, 0, 0, 0, 0, 0, 0, 7]) } else { contacts.as_stored(record) };
                 assert_eq!(contacts.hit(i), Some((7 * i as u32, known)), "{contact}, {i}");
             }
             assert!(contacts.rest_is_zero(33) && !contacts.rest_is_zero(31), "{contact}");
@@ -199,7 +199,7 @@ mod tests {
         let sphere = |x: f32| [x, 0.3, -x, 0.7];
         let near = |i: u32| PairRecord::from_spheres(sphere(0.1), sphere(i as f32 / 32.0));
         let pairs: Vec<_> = (0..41).map(|i| if i % 2 == 0 { any(i) } else { near(i) }).collect();
-        for (record, results) in [(Record::F16, Results::All), (Record::Bf16, Results::Hits)] {
+        for (record, results) in [(RecordFormat::F16, Results::All), (RecordFormat::Bf16, Results::Hits)] {
             let layout = Layout::of(512, &Config { record, results, ..Config::default() });
             let lines = pack(&layout, &pairs);
             assert_eq!(lines.len(), 11);

@@ -20,7 +20,7 @@ mod workspace;
 
 pub use error::HostError;
 pub use report::Report;
-pub use results::Results;
+pub use results::JobResults;
 pub use session::{Expected, Session};
 pub use software::Software;
 pub use transaction::{Done, Loaded, Pointed, Retrieved, Running, Started, Transaction};

@@ -2,12 +2,12 @@
 
 use super::error::HostError;
 use super::report::Report;
-use crate::config::Record;
+use crate::config::RecordFormat;
 use crate::kernel::{ContactRecord, PAIR_FIELDS, PairRecord};
 
 /// The contacts of a transaction, with what the AFU said at its end.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Results {
+pub struct JobResults {
     /// One for each pair, in their order; words that the AFU does not compute are zero.
     pub contacts: Vec<ContactRecord>,
     /// Contacts among them, as the AFU counted.
@@ -19,12 +19,12 @@ pub struct Results {
     /// Pairs that the AFU left to the host (profile exact), which settled them: their contacts are the host's.
     pub unsettled: u64,
     /// The numbers of the AFU's records: what is invalid is so in these.
-    pub record: Record,
+    pub record: RecordFormat,
     /// What it took.
     pub report: Report,
 }
 
-impl Results {
+impl JobResults {
     /// Nothing, if every pair was one.
     ///
     /// # Errors

@@ -3,7 +3,7 @@
 use super::error::HostError;
 use super::lines::{Contacts, pack};
 use super::report::Report;
-use super::results::Results;
+use super::results::JobResults;
 use super::session::Session;
 use super::transport::Transport;
 use super::workspace::pages_for;
@@ -37,7 +37,7 @@ pub struct Done {
 /// After step 6: the results are the host's.
 #[derive(Debug)]
 pub struct Retrieved {
-    results: Results,
+    results: JobResults,
 }
 
 /// When a job began: the cycle, the traffic before it, the device's writes before it.
@@ -313,7 +313,7 @@ impl<'s, T: Transport> Transaction<'s, T, Done> {
         (report.bytes_read, report.bytes_written) = (reads * LINE_BYTES, writes * LINE_BYTES);
         report.link_limit = session.transport.link().limit_cycles(reads, writes);
         let word = |field: map::Field| field.get(&status) as u32;
-        let results = Results {
+        let results = JobResults {
             contacts,
             hits: word(status::CONTACTS),
             invalid: word(status::INVALID),
@@ -331,7 +331,7 @@ impl<T: Transport> Transaction<'_, T, Retrieved> {
     ///
     /// # Errors
     /// What the device did wrong meanwhile.
-    pub fn end(mut self) -> Result<Results, HostError> {
+    pub fn end(mut self) -> Result<JobResults, HostError> {
         self.open.finish()?;
         let mut results = self.state.results;
         results.report = self.open.report;

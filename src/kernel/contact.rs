@@ -31,7 +31,7 @@ pub struct Contact<T: Number> {
     /// Whether the spheres touch.
     pub hit: T::Bool,
     /// Whether they touch with coincident centres, so that the normal is chosen and not computed.
-    pub grazing: T::Bool,
+    pub coincident: T::Bool,
     /// Where they touch.
     pub position: Vector3<T>,
     /// The direction that parts them, pointing into the first.
@@ -66,14 +66,14 @@ pub fn contact<T: Number>(
         // The same decisions as below, without the root: q is 0 exactly when its rounded root is.
         let hit = valid & !q.root_exceeds(s);
         let nowhere = Vector3::new(unasked, unasked, unasked);
-        return Contact { hit, grazing: hit & q.le(zero), position: nowhere, normal: nowhere, depth: unasked };
+        return Contact { hit, coincident: hit & q.le(zero), position: nowhere, normal: nowhere, depth: unasked };
     }
 
     let d = q.sqrt().named("distance");
     let hit = valid & !d.gt(s);
-    let grazing = hit & d.le(zero);
+    let coincident = hit & d.le(zero);
 
-    // Division by a grazing pair's zero does no harm: its results are not selected.
+    // Division by a coincident pair's zero does no harm: its results are not selected.
     let n = named(apart * d.recip().named("inverse_distance"), ["nx", "ny", "nz"]);
     let k = (((r2 - r1) - d) * d.constant(0.5)).named("offset");
     let x_axis = Vector3::new(zero.constant(1.0), zero, zero);
@@ -81,16 +81,16 @@ pub fn contact<T: Number>(
     let deliver = |asked: bool, value: T, name: &str| {
         if asked { T::select(hit, value, zero).to(record).named(name) } else { unasked }
     };
-    let vector = |asked: bool, if_grazing: Vector3<T>, value: Vector3<T>, names: [&str; 3]| {
-        let component = |i: usize| deliver(asked, T::select(grazing, if_grazing[i], value[i]), names[i]);
+    let vector = |asked: bool, if_coincident: Vector3<T>, value: Vector3<T>, names: [&str; 3]| {
+        let component = |i: usize| deliver(asked, T::select(coincident, if_coincident[i], value[i]), names[i]);
         Vector3::new(component(0), component(1), component(2))
     };
     Contact {
         hit,
-        grazing,
+        coincident,
         position: vector(fields.position, p1, p1 + n * k, ["position_x", "position_y", "position_z"]),
         normal: vector(fields.normal, x_axis, n, ["normal_x", "normal_y", "normal_z"]),
-        // A grazing pair's depth is s: its d is +0, so the difference is that already.
+        // A coincident pair's depth is s: its d is +0, so the difference is that already.
         depth: deliver(fields.depth, s - d, "depth"),
     }
 }

@@ -92,10 +92,10 @@ fn contact([x1, y1, z1, r1, x2, y2, z2, r2]: [f64; 8]) -> [f64; 8] {
     let (dx, dy, dz) = (x1 - x2, y1 - y2, z1 - z2);
     let d = ((dx * dx + dy * dy) + dz * dz).sqrt();
     let s = r1 + r2;
-    let (hit, grazing) = (d <= s, d <= 0.0);
+    let (hit, coincident) = (d <= s, d <= 0.0);
     let inverse = 1.0 / d;
     let k = 0.5 * ((r2 - r1) - d);
-    let select = |normal: f64, if_grazing: f64| if grazing { if_grazing } else { normal };
+    let select = |normal: f64, if_coincident: f64| if coincident { if_coincident } else { normal };
     let n = [select(dx * inverse, 1.0), select(dy * inverse, 0.0), select(dz * inverse, 0.0)];
     let k = select(k, 0.0);
     let given = |value: f64| if hit { value } else { 0.0 };

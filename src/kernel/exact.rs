@@ -36,10 +36,10 @@ pub fn exact<T: Window>(pair: Pair<T>, valid: T::Bool, record: Format, fields: F
 
     let [x, y, z] = [(x, "tail_dx"), (y, "tail_dy"), (z, "tail_dz")].map(|(v, name)| v.to(tail).named(name));
     let q = ((x * x + y * y) + z * z).named("distance_squared");
-    let grazing = hit & q.le(zero);
+    let coincident = hit & q.le(zero);
     if !fields.need_distance() {
         let nowhere = Vector3::new(unasked, unasked, unasked);
-        let contact = Contact { hit, grazing, position: nowhere, normal: nowhere, depth: unasked };
+        let contact = Contact { hit, coincident, position: nowhere, normal: nowhere, depth: unasked };
         return Filtered { contact, unsettled };
     }
 
@@ -48,7 +48,7 @@ pub fn exact<T: Window>(pair: Pair<T>, valid: T::Bool, record: Format, fields: F
     let [nx, ny, nz] = [(x, "nx"), (y, "ny"), (z, "nz")].map(|(v, name)| (v * inverse).named(name));
     let s = sum.to(tail).named("tail_radius_sum");
     // Coincident centres: the depth is the sum of the radii as it is, and nothing is divided by zero.
-    let depth = T::select(grazing, s, excess / (s + d)).named("overlap");
+    let depth = T::select(coincident, s, excess / (s + d)).named("overlap");
     let r1 = pair.r1.to(tail);
     let k = (depth * depth.constant(0.5) - r1).named("offset");
 
@@ -57,14 +57,15 @@ pub fn exact<T: Window>(pair: Pair<T>, valid: T::Bool, record: Format, fields: F
     };
     let one = zero.constant(1.0);
     let normal = [(nx, one, "normal_x"), (ny, zero, "normal_y"), (nz, zero, "normal_z")];
-    let normal = normal.map(|(n, if_grazing, name)| deliver(fields.normal, T::select(grazing, if_grazing, n), name));
+    let normal =
+        normal.map(|(n, if_coincident, name)| deliver(fields.normal, T::select(coincident, if_coincident, n), name));
     let position = [(0, nx, "position_x"), (1, ny, "position_y"), (2, nz, "position_z")].map(|(axis, n, name)| {
         let centre = pair.p1[axis].to(tail);
-        deliver(fields.position, T::select(grazing, centre, centre + n * k), name)
+        deliver(fields.position, T::select(coincident, centre, centre + n * k), name)
     });
     let contact = Contact {
         hit,
-        grazing,
+        coincident,
         position: position.into(),
         normal: normal.into(),
         depth: deliver(fields.depth, depth, "depth"),

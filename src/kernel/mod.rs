@@ -21,4 +21,4 @@ pub use memory::{narrow, widen};
 pub use record::{ContactRecord, Flow, PAIR_FIELDS, PairRecord};
 pub use reference::{Arithmetic, Reference};
 pub use settle::settle;
-pub use truth::{Errors, Truth, ulp};
+pub use truth::{Truth, UlpErrors, ulp};

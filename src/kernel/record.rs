@@ -58,15 +58,16 @@ pub enum Flow {
     Invalid = 0,
     /// No contact (Flow 1 of the paper).
     Fake = 1,
-    /// A contact of coincident centres (Flow 2).
-    Grazing = 2,
+    /// A contact of coincident centres (Flow 2). The paper and files call it "grazing", which in English means
+    /// tangent.
+    Coincident = 2,
     /// A contact with a normal of its own (Flow 3).
     Real = 3,
 }
 
 impl Flow {
     /// Every flow.
-    pub const ALL: [Self; 4] = [Self::Invalid, Self::Fake, Self::Grazing, Self::Real];
+    pub const ALL: [Self; 4] = [Self::Invalid, Self::Fake, Self::Coincident, Self::Real];
 
     /// The flags word of a contact record: bit 0 contact, bits 2:1 flow, bit 3 invalid.
     #[inline(always)]
@@ -74,7 +75,7 @@ impl Flow {
         match self {
             Self::Invalid => 8,
             Self::Fake => 2,
-            Self::Grazing => 5,
+            Self::Coincident => 5,
             Self::Real => 7,
         }
     }
@@ -84,7 +85,7 @@ impl Flow {
         match self {
             Self::Invalid => "invalid",
             Self::Fake => "fake",
-            Self::Grazing => "grazing",
+            Self::Coincident => "grazing",
             Self::Real => "real",
         }
     }
@@ -172,7 +173,7 @@ mod tests {
         for flow in Flow::ALL {
             let record = ContactRecord([0, 0, 0, 0, 0, 0, 0, flow.flags()]);
             assert_eq!(record.flow(), Some(flow));
-            assert_eq!(record.is_contact(), matches!(flow, Flow::Grazing | Flow::Real));
+            assert_eq!(record.is_contact(), matches!(flow, Flow::Coincident | Flow::Real));
         }
         assert_eq!(ContactRecord::default().flow(), None);
     }

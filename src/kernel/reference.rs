@@ -110,7 +110,7 @@ pub(super) fn native(pair: &PairRecord, fields: Fields) -> ContactRecord {
 #[inline(always)]
 fn write<T: Number<Bool = bool>>(contact: Contact<T>, valid: bool, word: impl Fn(T) -> u32) -> ContactRecord {
     // Selections rather than a `match`: the batch kernel is made of this, without branches.
-    let touching = if contact.grazing { Flow::Grazing.flags() } else { Flow::Real.flags() };
+    let touching = if contact.coincident { Flow::Coincident.flags() } else { Flow::Real.flags() };
     let apart = if valid { Flow::Fake.flags() } else { Flow::Invalid.flags() };
     let flags = if contact.hit { touching } else { apart };
     let Contact { position: p, normal: n, depth, .. } = contact;

@@ -26,7 +26,7 @@ impl Truth {
             return Self { pair: *pair, contact: None, flow: Flow::Fake };
         }
         let contact = read(Fields::ALL);
-        let flow = if contact.grazing { Flow::Grazing } else { Flow::Real };
+        let flow = if contact.coincident { Flow::Coincident } else { Flow::Real };
         Self { pair: *pair, contact: Some(contact), flow }
     }
 
@@ -67,7 +67,7 @@ impl Truth {
         for (word, number) in words.iter_mut().zip(numbers) {
             *word = number.to_f32().to_bits();
         }
-        if self.flow == Flow::Grazing {
+        if self.flow == Flow::Coincident {
             words[..3].copy_from_slice(&self.pair.0[..3]);
         }
         ContactRecord(words)
@@ -88,7 +88,7 @@ impl Truth {
     }
 
     /// The largest errors of another answer to this pair; nothing unless both are contacts.
-    pub fn errors(&self, answer: ContactRecord) -> Option<Errors> {
+    pub fn errors(&self, answer: ContactRecord) -> Option<UlpErrors> {
         let truth = self.contact.filter(|_| answer.is_contact())?;
         let away = |given: f32, true_value: Precise, unit: f64| {
             if given.is_nan() || given.is_infinite() && true_value.to_f32() == given {
@@ -106,7 +106,7 @@ impl Truth {
             let makers = [[x, y, z][axis], r1, r2].map(|v| v.abs());
             ulp(makers.into_iter().fold(truth.position[axis].abs().to_f32(), f32::max))
         };
-        Some(Errors {
+        Some(UlpErrors {
             depth: away(answer.depth(), truth.depth, ulp(truth.depth.abs().to_f32())),
             normal: largest(answer.normal(), &truth.normal, [ulp(1.0); 3]),
             position: largest(answer.position(), &truth.position, [unit(0), unit(1), unit(2)]),
@@ -117,7 +117,7 @@ impl Truth {
 /// The largest error of each kind of number, in units in the last place of binary32; infinite for a number that is
 /// not one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Errors {
+pub struct UlpErrors {
     /// Of the depth, in its own units.
     pub depth: f64,
     /// Of the normal's components, in units of 1.
@@ -126,7 +126,7 @@ pub struct Errors {
     pub position: f64,
 }
 
-impl Errors {
+impl UlpErrors {
     /// The largest of all.
     pub fn largest(self) -> f64 {
         self.depth.max(self.normal).max(self.position)

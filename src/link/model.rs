@@ -32,7 +32,7 @@ pub struct LinkModel {
     pub lines_per_cycle: f64,
     /// What the host waits for beside a job.
     #[serde(default)]
-    pub session: Session,
+    pub session: SessionCost,
     /// Faults planted from the start.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Fault>,
@@ -41,7 +41,7 @@ pub struct LinkModel {
 /// What the host's side of a link costs, in cycles of the AFU's clock.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Session {
+pub struct SessionCost {
     /// Before each transaction.
     #[serde(default)]
     pub set_up: u64,
@@ -122,7 +122,7 @@ impl LinkModel {
             order,
             write_order: None,
             lines_per_cycle: both(),
-            session: Session::default(),
+            session: SessionCost::default(),
             faults: Vec::new(),
         }
     }

@@ -6,7 +6,7 @@ use super::direction::{Direction, Order, Shape};
 use super::fault::Fault;
 use super::figure::{Figure, count, rate, time};
 use super::memory::LINE_BYTES;
-use super::model::{LinkError, LinkModel, Session};
+use super::model::{LinkError, LinkModel, SessionCost};
 
 /// A link as its makers and those who measured it describe it: a TOML file. `src/link/presets` has those by name,
 /// `examples/links` one with every key.
@@ -161,7 +161,11 @@ impl Physical {
             order: self.order.into(),
             write_order: self.write_order.map(Order::from),
             lines_per_cycle: lines_per_cycle(&self.joint.bandwidth_gb_s).min(2.0),
-            session: Session { set_up: wait(set_up_ns), tear_down: wait(tear_down_ns), csr_write: wait(csr_write_ns) },
+            session: SessionCost {
+                set_up: wait(set_up_ns),
+                tear_down: wait(tear_down_ns),
+                csr_write: wait(csr_write_ns),
+            },
             faults: self.faults.clone(),
         };
         model.check()?;
@@ -246,7 +250,7 @@ mod tests {
         assert_eq!((model.read.latency, model.read.tail, model.read.in_flight), (71, 47, 58));
         assert_eq!((model.write.latency, model.write.tail, model.write.in_flight), (71, 0, 54));
         assert_eq!((model.order, model.write_order), (Order::InOrder, Some(Order::Shuffled)));
-        assert_eq!(model.session, Session { set_up: 400, tear_down: 400, csr_write: 146 });
+        assert_eq!(model.session, SessionCost { set_up: 400, tear_down: 400, csr_write: 146 });
         assert_eq!(model.read.shape, Shape::Geometric(8.0));
         assert!((model.read.lines_per_cycle - 7.0 / 12.8).abs() < 1e-12);
         assert!((model.write.lines_per_cycle - 4.9 / 12.8).abs() < 1e-12);

@@ -19,10 +19,10 @@ pub use window::{WINDOW_BITS, WINDOW_INEXACT_BITS, WINDOW_LEADING_BITS, WINDOW_L
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, DivAssign, Mul, MulAssign, Not, Sub, SubAssign};
 
-/// A truth value of a [`Number`]: `bool` in software, one wire in hardware.
-pub trait Truth: Copy + Debug + 'static + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {}
+/// A Boolean of a [`Number`]: `bool` in software, one wire in hardware.
+pub trait Boolean: Copy + Debug + 'static + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {}
 
-impl Truth for bool {}
+impl Boolean for bool {}
 
 /// A number that carries its own context (format, graph), so that one kernel serves software and hardware.
 ///
@@ -44,7 +44,7 @@ pub trait Number:
     + DivAssign
 {
     /// What a comparison gives.
-    type Bool: Truth;
+    type Bool: Boolean;
 
     /// `value`, in this number's format. `value` must be representable there.
     fn constant(self, value: f64) -> Self;

@@ -73,7 +73,7 @@ mod tests {
     use super::*;
     use crate::ode::{Collider, Ode, World};
 
-    const GRAZING: Contact = Contact { position: [0.0; 3], normal: [1.0, 0.0, 0.0], depth: 1.0 };
+    const COINCIDENT: Contact = Contact { position: [0.0; 3], normal: [1.0, 0.0, 0.0], depth: 1.0 };
 
     /// What one would write who does not know.
     unsafe extern "C" fn naive(
@@ -102,9 +102,9 @@ mod tests {
             let [a, b] = world.geoms(a, b);
             let ask = |contact| unsafe { answer(a, b, contact) };
             set(naive);
-            assert_eq!(bits(ask(Some(GRAZING))), Some([-1.0_f64, -0.0, -0.0].map(f64::to_bits)));
+            assert_eq!(bits(ask(Some(COINCIDENT))), Some([-1.0_f64, -0.0, -0.0].map(f64::to_bits)));
             set(collide);
-            assert_eq!(bits(ask(Some(GRAZING))), bits(Some(GRAZING)));
+            assert_eq!(bits(ask(Some(COINCIDENT))), bits(Some(COINCIDENT)));
             assert_eq!(ask(None), None);
         }
     }
@@ -117,8 +117,8 @@ mod tests {
         let [a, b] = [(); 2].map(|()| world.add_sphere([0.0; 3], 0.5, 1.0).unwrap());
         let [a, b] = world.geoms(a, b);
         for (a, b) in [(a, b), (b, a)] {
-            ANSWER.set(Some(Answer { first: a, second: b, contact: Some(GRAZING) }));
-            let mut found = GRAZING.raw(std::ptr::null_mut(), std::ptr::null_mut());
+            ANSWER.set(Some(Answer { first: a, second: b, contact: Some(COINCIDENT) }));
+            let mut found = COINCIDENT.raw(std::ptr::null_mut(), std::ptr::null_mut());
             let count = unsafe { sys::dCollide(a, b, 1, &mut found, size_of::<sys::dContactGeom>() as c_int) };
             ANSWER.set(None);
             assert_eq!((count, found.g1, found.g2), (1, a, b));

@@ -29,7 +29,7 @@ pub(crate) use widening::is_direct;
 
 use std::sync::Arc;
 
-use crate::hdl::{DelayModel, Errors, Graph, Module, cut};
+use crate::hdl::{BuildErrors, DelayModel, Graph, Module, cut};
 use crate::number::{self, Format, Roots};
 use parts::Rounding;
 
@@ -179,7 +179,7 @@ pub const INPUTS: [&str; 4] = ["a", "b", "c", "d"];
 ///
 /// # Errors
 /// What the graph recorded.
-pub fn build(operator: Operator, domain: impl Into<Domain>) -> Result<Arc<Module>, Errors> {
+pub fn build(operator: Operator, domain: impl Into<Domain>) -> Result<Arc<Module>, BuildErrors> {
     build_as(operator, domain, Architecture::Recurrence)
 }
 
@@ -191,7 +191,7 @@ pub fn build_as(
     operator: Operator,
     domain: impl Into<Domain>,
     architecture: Architecture,
-) -> Result<Arc<Module>, Errors> {
+) -> Result<Arc<Module>, BuildErrors> {
     let domain = domain.into();
     let by_table = architecture == Architecture::Table && Architecture::Table.is_possible(operator, domain);
     let format = domain.format();
@@ -242,7 +242,7 @@ pub fn pipelined(
     domain: impl Into<Domain>,
     model: &DelayModel,
     clock_mhz: f64,
-) -> Result<Arc<Module>, Errors> {
+) -> Result<Arc<Module>, BuildErrors> {
     let combinational = build_as(operator, domain, Architecture::of(model))?;
     cut(&combinational, model, clock_mhz)
 }

@@ -288,9 +288,9 @@ mod tests {
             let of = |flow| truths.iter().filter(|truth| truth.flow() == flow).count();
             assert_eq!(of(Flow::Invalid), 0, "{name}");
             let touching = |truth: &&Truth| truth.depth().is_some_and(|depth| depth.is_zero());
-            let (real, fake, grazing) = (of(Flow::Real), of(Flow::Fake), of(Flow::Grazing));
+            let (real, fake, coincident) = (of(Flow::Real), of(Flow::Fake), of(Flow::Coincident));
             match name {
-                "same-centre" => assert_eq!(grazing, 400),
+                "same-centre" => assert_eq!(coincident, 400),
                 "tangent" => assert!(truths.iter().filter(touching).count() > 100),
                 "internal" => assert_eq!(real, 400),
                 "ratio" | "far" | "ulps-apart" | "subnormal" => assert!(real > 40, "{name}: {real} touch"),

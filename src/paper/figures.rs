@@ -1,6 +1,6 @@
 //! The figures. Solid lines are measured here, dashed ones simulated, dotted ones the paper's text.
 
-use super::{Joined, Results};
+use super::{Experiment, Joined};
 use crate::plot::{Axis, Line, Mark, Plot, Scale, Series};
 
 const ODE_RULE: usize = 5;
@@ -11,20 +11,20 @@ const PAPER_ODE: usize = 3;
 const PAPER_AFU: usize = 4;
 
 /// The paper's Figure 6: times for up to 1000 collisions.
-pub fn figure6(results: &Results) -> Plot {
+pub fn figure6(results: &Experiment) -> Plot {
     let title = format!("Figure 6: time for 10 to 1000 {} collisions", results.settings.t_col);
     let plot = totals(results, &title, &results.figure6(), ("µs", 1e-3));
     crossover(results, plot, 1000)
 }
 
 /// The paper's Figure 7: times for 1000 to 90 000 collisions.
-pub fn figure7(results: &Results) -> Plot {
+pub fn figure7(results: &Experiment) -> Plot {
     let title = format!("Figure 7: time for 1000 to 90 000 {} collisions", results.settings.t_col);
     totals(results, &title, &results.figure7(), ("ms", 1e-6))
 }
 
 /// Both figures divided by the number of collisions: where the set-up is won back, and what is left.
-pub fn per_collision(results: &Results) -> Plot {
+pub fn per_collision(results: &Experiment) -> Plot {
     let axes = (Axis::new("collisions in a transaction", Scale::Log), Axis::new("ns a collision", Scale::Log));
     let all: Vec<&Joined> = results.points.iter().collect();
     let mut plot = Plot::new("Time a collision", axes.0, axes.1);
@@ -34,7 +34,7 @@ pub fn per_collision(results: &Results) -> Plot {
     crossover(results, plot, usize::MAX)
 }
 
-fn totals(results: &Results, title: &str, points: &[&Joined], (unit, factor): (&str, f64)) -> Plot {
+fn totals(results: &Experiment, title: &str, points: &[&Joined], (unit, factor): (&str, f64)) -> Plot {
     let x = Axis::new("collisions", Scale::Linear);
     let mut plot = Plot::new(title, x, Axis::new(&format!("time, {unit}"), Scale::Linear));
     for series in series(results, points, |_, total| total * factor) {
@@ -43,7 +43,7 @@ fn totals(results: &Results, title: &str, points: &[&Joined], (unit, factor): (&
     plot
 }
 
-fn crossover(results: &Results, plot: Plot, most: usize) -> Plot {
+fn crossover(results: &Experiment, plot: Plot, most: usize) -> Plot {
     let found = results.summary().and_then(|summary| summary.crossover_over_loop).filter(|&at| at <= most);
     let plot = match found {
         Some(at) => plot.marked(Mark::new(at as f64, &format!("AFU always faster from {at}")).colour(AFU)),
@@ -52,7 +52,7 @@ fn crossover(results: &Results, plot: Plot, most: usize) -> Plot {
     plot.marked(Mark::new(250.0, "paper: above 250").colour(PAPER_AFU))
 }
 
-fn series(results: &Results, points: &[&Joined], scale: impl Fn(&Joined, f64) -> f64) -> Vec<Series> {
+fn series(results: &Experiment, points: &[&Joined], scale: impl Fn(&Joined, f64) -> f64) -> Vec<Series> {
     let settings = &results.settings;
     let of = |name: String, colour, line, total: fn(&Joined) -> f64| {
         let points = points.iter().map(|point| (point.collisions as f64, scale(point, total(point))));

@@ -17,6 +17,6 @@ pub use claims::{Claim, claims};
 pub use figures::{figure6, figure7, per_collision};
 pub use page::page;
 pub use published::Published;
-pub use results::{AfuPoint, Joined, OdePoint, Results, SCHEMA, Settings, Summary};
+pub use results::{AfuPoint, Experiment, Joined, OdePoint, SCHEMA, Settings, Summary};
 pub use simulate::{SimulateError, Simulated, Task, simulate};
 pub use size::Size;

@@ -2,12 +2,12 @@
 
 use maud::{Markup, html};
 
-use super::{Claim, Joined, Published, Results, Settings, Summary, figure6, figure7, per_collision};
+use super::{Claim, Experiment, Joined, Published, Settings, Summary, figure6, figure7, per_collision};
 use crate::report::page::{self, table};
 use crate::report::table::grouped;
 
 /// The page.
-pub fn page(results: &Results, claims: &[Claim], paper: &Published) -> String {
+pub fn page(results: &Experiment, claims: &[Claim], paper: &Published) -> String {
     let body = html! {
         p { "The experiment of “A hardware accelerator implementation for real-time collision detection” (Alves et al.), "
             "run again: collisions recorded in the Open Dynamics Engine, timed on this machine, and sent through the "
@@ -87,7 +87,7 @@ fn doubts(claims: &[Claim]) -> Markup {
     table("", &["the paper says", "section", "arithmetic", "so"], 4, &rows)
 }
 
-fn method(results: &Results) -> Markup {
+fn method(results: &Experiment) -> Markup {
     let s = &results.settings;
     html! {
         ul {
@@ -107,7 +107,7 @@ fn method(results: &Results) -> Markup {
     }
 }
 
-fn points(results: &Results) -> Markup {
+fn points(results: &Experiment) -> Markup {
     let heading = [
         "collisions",
         "ODE, rule",

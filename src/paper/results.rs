@@ -127,7 +127,7 @@ pub struct Joined {
 
 /// All of it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Results {
+pub struct Experiment {
     /// What was asked for.
     pub settings: Settings,
     /// The numbers of collisions.
@@ -171,7 +171,7 @@ pub struct Summary {
     pub crossover_over_batch: Option<usize>,
 }
 
-impl Results {
+impl Experiment {
     /// Joins what was measured with what was simulated, where both are there.
     pub fn new(settings: Settings, size: Size, ode: &[OdePoint], afu: &[AfuPoint], paper: &Published) -> Self {
         let join = |ode: &OdePoint| {
@@ -261,7 +261,7 @@ pub(super) mod tests {
     use super::*;
 
     /// ODE takes 50 ns a collision, the AFU 10 ns and 4 µs around it: equal at 100.
-    pub(in crate::paper) fn example() -> Results {
+    pub(in crate::paper) fn example() -> Experiment {
         let settings = Settings {
             command: "afu paper --out out/paper".into(),
             processor: "a <processor>".into(),
@@ -300,7 +300,7 @@ pub(super) mod tests {
             contacts: n as u64,
         };
         let (ode, afu): (Vec<_>, Vec<_>) = counts.iter().map(|n| (ode(n), afu(n))).unzip();
-        Results::new(settings, Size::Quick, &ode, &afu, &Published::PAPER)
+        Experiment::new(settings, Size::Quick, &ode, &afu, &Published::PAPER)
     }
 
     #[test]
@@ -317,7 +317,7 @@ pub(super) mod tests {
     #[test]
     fn a_csv_has_a_line_a_point() {
         let results = example();
-        let csv = String::from_utf8(Results::csv(&results.figure7()).expect("memory")).expect("text");
+        let csv = String::from_utf8(Experiment::csv(&results.figure7()).expect("memory")).expect("text");
         assert_eq!(csv.lines().count(), 5);
         assert!(csv.starts_with("collisions,ode_rule_ns,ode_loop_ns,"), "{csv}");
         assert!(csv.contains("\n90000,5400000.0,4500000.0,"), "{csv}");

@@ -47,14 +47,14 @@ pub enum SimulateError {
     #[error(transparent)]
     Verify(#[from] VerifyError),
     /// What the AFU wrote is not what the reference kernel gives.
-    #[error("{mismatches} of {collisions} contacts of the simulated AFU differ from the reference kernel{}", unmet.iter().map(|text| format!("; {text}")).collect::<String>())]
+    #[error("{mismatches} of {collisions} contacts of the simulated AFU differ from the reference kernel{}", failed_checks.iter().map(|text| format!("; {text}")).collect::<String>())]
     Wrong {
         /// Collisions of the transaction.
         collisions: usize,
         /// Contacts that differ.
         mismatches: usize,
         /// What else is wrong.
-        unmet: Vec<String>,
+        failed_checks: Vec<String>,
     },
 }
 
@@ -85,7 +85,7 @@ impl Task<'_> {
             let verdict = self.bench.run(pairs, self.link, self.seed.wrapping_add(number))?;
             if !verdict.is_good() {
                 let mismatches = verdict.mismatches.len();
-                return Err(SimulateError::Wrong { collisions, mismatches, unmet: verdict.unmet });
+                return Err(SimulateError::Wrong { collisions, mismatches, failed_checks: verdict.failed_checks });
             }
             all.push(verdict.outcome.cycles);
             limit_cycles = verdict.outcome.limit_cycles;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::kernel::{Kernel, Source};
 use super::range::{Ranges, Unit};
-use crate::hdl::{Errors, Module};
+use crate::hdl::{BuildErrors, Module};
 use crate::operator::Operator;
 
 /// How many levels of glue may stand one behind the other before a register comes between: a level is a two-way
@@ -30,8 +30,8 @@ impl Schedule {
     /// Times for `kernel` with operators made by `pipelined`.
     pub fn new(
         kernel: &Kernel,
-        mut pipelined: impl FnMut(Unit) -> Result<Arc<Module>, Errors>,
-    ) -> Result<Self, Errors> {
+        mut pipelined: impl FnMut(Unit) -> Result<Arc<Module>, BuildErrors>,
+    ) -> Result<Self, BuildErrors> {
         let count = kernel.values.len();
         let mut this = Self {
             modules: BTreeMap::new(),

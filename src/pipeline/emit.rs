@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::balance::Schedule;
 use super::kernel::{Kernel, Source, ValueId};
 use super::names::Names;
-use crate::hdl::{DelayModel, Errors, Graph, Module, Node, NodeId, Op, Signal, delay_block};
+use crate::hdl::{BuildErrors, DelayModel, Graph, Module, Node, NodeId, Op, Signal, delay_block};
 use crate::operator::{INPUTS, pipelined};
 
 impl Kernel {
@@ -15,7 +15,7 @@ impl Kernel {
     ///
     /// # Errors
     /// What a graph recorded, or a clock no operator can be cut for.
-    pub fn pipeline(&self, model: &DelayModel, clock_mhz: f64) -> Result<Arc<Module>, Errors> {
+    pub fn pipeline(&self, model: &DelayModel, clock_mhz: f64) -> Result<Arc<Module>, BuildErrors> {
         let kernel = &self.with_widening_sums();
         let schedule = Schedule::new(kernel, |(operator, domain)| pipelined(operator, domain, model, clock_mhz))?;
         let graph = Graph::new(kernel.name.as_str());
@@ -45,7 +45,7 @@ struct Emitter<'a, 'g> {
 }
 
 impl<'g> Emitter<'_, 'g> {
-    fn emit(&mut self) -> Result<(), Errors> {
+    fn emit(&mut self) -> Result<(), BuildErrors> {
         for (name, id) in &self.kernel.inputs {
             self.signals[id.index()] = Some(self.graph.input(name, self.kernel.value(*id).kind.width()));
         }
@@ -68,7 +68,7 @@ impl<'g> Emitter<'_, 'g> {
 
     /// The value as of `cycle`, at or after the one it comes to be in. The graph makes one chain of a value's delays,
     /// but for those that fill a block memory.
-    fn at(&mut self, id: ValueId, cycle: u32) -> Result<Option<Signal<'g>>, Errors> {
+    fn at(&mut self, id: ValueId, cycle: u32) -> Result<Option<Signal<'g>>, BuildErrors> {
         let Some(signal) = self.signals[id.index()] else { return Ok(None) };
         if let Some(known) = self.waiting.get(&(id, cycle)) {
             return Ok(Some(*known));
@@ -86,7 +86,7 @@ impl<'g> Emitter<'_, 'g> {
     }
 
     /// The value of operands that meet in cycle `start`.
-    fn compute(&mut self, id: ValueId, start: u32) -> Result<Option<Signal<'g>>, Errors> {
+    fn compute(&mut self, id: ValueId, start: u32) -> Result<Option<Signal<'g>>, BuildErrors> {
         let value = self.kernel.value(id);
         let operands = value.operands.iter().map(|id| self.at(*id, start)).collect::<Result<Option<Vec<_>>, _>>()?;
         let Some(operands) = operands else { return Ok(None) };

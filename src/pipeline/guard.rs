@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashMap};
 use super::kernel::{Kernel, Kind, Source, ValueId};
 use crate::operator::Operator;
 
-/// Truth values that are supposed.
+/// Booleans that are supposed.
 type Supposed = BTreeMap<ValueId, bool>;
 
 /// Answers whether outputs hide what is wrong.
@@ -38,7 +38,7 @@ impl Guards {
     }
 }
 
-/// Whether some output depends on one of the `wrong` values when the truth values are as supposed.
+/// Whether some output depends on one of the `wrong` values when the Booleans are as supposed.
 fn shows(kernel: &Kernel, wrong: &[ValueId], supposed: &Supposed) -> bool {
     let mut known = HashMap::new();
     kernel.outputs.iter().any(|(_, id)| depends(kernel, *id, wrong, supposed, &mut known))
@@ -57,7 +57,7 @@ fn depends(
     let value = kernel.value(id);
     let answer = if wrong.contains(&id) {
         true
-    } else if value.kind == Kind::Truth && truth(kernel, id, supposed).is_some() {
+    } else if value.kind == Kind::Bit && truth(kernel, id, supposed).is_some() {
         false
     } else if let (Source::Select, &[condition, yes, no]) = (value.source, value.operands.as_slice()) {
         match truth(kernel, condition, supposed) {
@@ -80,7 +80,7 @@ fn depends(
     answer
 }
 
-/// A truth value, as far as it follows from what is supposed.
+/// A Boolean, as far as it follows from what is supposed.
 fn truth(kernel: &Kernel, id: ValueId, supposed: &Supposed) -> Option<bool> {
     if let Some(&truth) = supposed.get(&id) {
         return Some(truth);

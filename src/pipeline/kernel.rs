@@ -21,21 +21,21 @@ impl ValueId {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Kind {
     Number(Format),
-    Truth,
+    Bit,
 }
 
 impl Kind {
     pub fn width(self) -> u32 {
         match self {
             Self::Number(format) => format.width(),
-            Self::Truth => 1,
+            Self::Bit => 1,
         }
     }
 
     fn describe(self) -> String {
         match self {
             Self::Number(format) => format.to_string(),
-            Self::Truth => "a truth value".to_owned(),
+            Self::Bit => "a Boolean".to_owned(),
         }
     }
 }
@@ -173,7 +173,7 @@ impl Kernel {
         }
         let result = match operator.result_format(format) {
             Some(format) => Kind::Number(format),
-            None => Kind::Truth,
+            None => Kind::Bit,
         };
         let constants: Option<Vec<u128>> = operands.iter().map(|id| self.as_constant(*id)).collect();
         if let Some(constants) = constants {
@@ -200,9 +200,9 @@ impl Kernel {
 
     pub(super) fn not(&mut self, a: ValueId) -> ValueId {
         match self.value(a).source {
-            Source::Constant(bits) => self.constant(Kind::Truth, 1 - bits),
+            Source::Constant(bits) => self.constant(Kind::Bit, 1 - bits),
             Source::Not => self.value(a).operands[0],
-            _ => self.shared(Source::Not, Kind::Truth, vec![a]),
+            _ => self.shared(Source::Not, Kind::Bit, vec![a]),
         }
     }
 
@@ -225,7 +225,7 @@ impl Kernel {
                     a
                 }
             }
-            _ => self.shared(source, Kind::Truth, vec![a, b]),
+            _ => self.shared(source, Kind::Bit, vec![a, b]),
         }
     }
 

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 use super::trace::{Ports, trace};
 use super::wire::Wire;
-use crate::hdl::{DelayModel, Errors, Module};
+use crate::hdl::{BuildErrors, DelayModel, Module};
 use crate::kernel::{Arithmetic, Fields, Filtered, PAIR_FIELDS, Pair, contact, exact};
 use crate::number::{Format, Number};
 
@@ -35,7 +35,7 @@ pub struct Settings {
 /// The module `sphere_kernel`: a pair on inputs `x1 y1 z1 r1 x2 y2 z2 r2` with `valid`; `hit`, `grazing` and the
 /// fields asked for (`pos_x pos_y pos_z`, `normal_x normal_y normal_z`, `depth`), [`Module::latency`] cycles later.
 ///
-/// `valid` is a truth value of the kernel like any other, and not reset; where [`Settings::valid_is_late`] it comes a
+/// `valid` is a Boolean of the kernel like any other, and not reset; where [`Settings::valid_is_late`] it comes a
 /// cycle after the pair. It may be set only if the pair's words are
 /// finite and its radii not below zero. Without it, or without a hit, all outputs are zero. The kernel of exact squares
 /// has an output `unsettled` too, which may be set without a hit.
@@ -45,7 +45,7 @@ pub struct Settings {
 ///
 /// # Errors
 /// What a graph recorded, or a clock no operator can be cut for.
-pub fn sphere_kernel(settings: &Settings) -> Result<Arc<Module>, Errors> {
+pub fn sphere_kernel(settings: &Settings) -> Result<Arc<Module>, BuildErrors> {
     let kernel = trace("sphere_kernel", |ports| read(ports, settings))?;
     match settings.interval {
         0 | 1 => kernel.pipeline(&settings.model, settings.clock_mhz),
@@ -58,7 +58,7 @@ pub fn sphere_kernel(settings: &Settings) -> Result<Arc<Module>, Errors> {
 ///
 /// # Errors
 /// What a graph recorded.
-pub fn is_normal(arithmetic: Arithmetic, fields: Fields) -> Result<bool, Errors> {
+pub fn is_normal(arithmetic: Arithmetic, fields: Fields) -> Result<bool, BuildErrors> {
     let settings = Settings {
         arithmetic,
         record: arithmetic.record(Format::BINARY32),
@@ -109,7 +109,7 @@ fn read(ports: &Ports, settings: &Settings) {
         ports.output_bit("invalid_pair", !valid);
     }
     ports.output_bit("hit", contact.hit);
-    ports.output_bit("grazing", contact.grazing);
+    ports.output_bit("grazing", contact.coincident);
     let vector = |asked: bool, names: [&str; 3], value: Vector3<Wire>| {
         if asked {
             names.iter().zip(value.iter()).for_each(|(name, component)| ports.output(name, *component));

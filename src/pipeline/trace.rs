@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::kernel::{Kernel, Kind, Promise, ValueId};
 use super::wire::{Bit, Wire};
-use crate::hdl::Errors;
+use crate::hdl::BuildErrors;
 use crate::number::Format;
 
 thread_local! {
@@ -32,7 +32,7 @@ impl Handle {
 /// # Errors
 /// Every bad operation, together: mixed formats, wires of another kernel, constants that are no numbers of their
 /// format.
-pub fn trace(name: &str, body: impl FnOnce(&Ports)) -> Result<Kernel, Errors> {
+pub fn trace(name: &str, body: impl FnOnce(&Ports)) -> Result<Kernel, BuildErrors> {
     let serial = SERIAL.fetch_add(1, Ordering::Relaxed) + 1;
     let outer = CURRENT.replace(Some((serial, Kernel::new(name))));
     let mut restore = Restore { outer: Some(outer) };
@@ -40,9 +40,9 @@ pub fn trace(name: &str, body: impl FnOnce(&Ports)) -> Result<Kernel, Errors> {
     let traced = CURRENT.replace(restore.outer.take().flatten());
     match traced {
         Some((_, kernel)) if kernel.errors.is_empty() => Ok(kernel),
-        Some((_, kernel)) => Err(Errors(kernel.errors)),
+        Some((_, kernel)) => Err(BuildErrors(kernel.errors)),
         // Only if `body` had swapped the thread's kernel, which nothing outside this file can.
-        None => Err(Errors(Vec::new())),
+        None => Err(BuildErrors(Vec::new())),
     }
 }
 
@@ -107,17 +107,17 @@ impl Ports {
         Wire(input(name, Kind::Number(format), Location::caller()))
     }
 
-    /// An input that carries a truth value.
+    /// An input that carries a Boolean.
     #[track_caller]
     pub fn input_bit(&self, name: &str) -> Bit {
-        Bit(input(name, Kind::Truth, Location::caller()))
+        Bit(input(name, Kind::Bit, Location::caller()))
     }
 
     /// One that comes some cycles after the others.
     #[track_caller]
     pub fn input_bit_after(&self, name: &str, cycles: u32) -> Bit {
         Bit(make(name, &[], Location::caller(), |kernel, _| {
-            let id = kernel.input(name, Kind::Truth);
+            let id = kernel.input(name, Kind::Bit);
             kernel.late.push((id, cycles));
             Ok(id)
         }))
@@ -141,7 +141,7 @@ impl Ports {
         output(name, value.0, Location::caller());
     }
 
-    /// An output that carries a truth value.
+    /// An output that carries a Boolean.
     #[track_caller]
     pub fn output_bit(&self, name: &str, value: Bit) {
         output(name, value.0, Location::caller());

@@ -1,11 +1,11 @@
-//! Numbers and truth values that are wires: computing with them writes a kernel down.
+//! Numbers and Booleans that are wires: computing with them writes a kernel down.
 
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, DivAssign, Mul, MulAssign, Not, Sub, SubAssign};
 use std::panic::Location;
 
 use super::kernel::{Kind, Source};
 use super::trace::{Handle, make};
-use crate::number::{Format, Number, Soft, Truth, Window};
+use crate::number::{Boolean, Format, Number, Soft, Window};
 use crate::operator::Operator;
 
 /// A number in hardware. It belongs to the kernel that is read by [`super::trace`]; a bad operation is recorded
@@ -13,7 +13,7 @@ use crate::operator::Operator;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wire(pub(super) Handle);
 
-/// A truth value in hardware: one bit.
+/// A Boolean in hardware: one bit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bit(pub(super) Handle);
 
@@ -56,7 +56,7 @@ impl Number for Wire {
     fn constant(self, value: f64) -> Self {
         Self(make("constant", &[self.0], Location::caller(), |kernel, ids| {
             let kind = kernel.value(ids[0]).kind;
-            let Kind::Number(format) = kind else { return Err("constant: of a truth value".to_owned()) };
+            let Kind::Number(format) = kind else { return Err("constant: of a Boolean".to_owned()) };
             let word = Soft::from_f64(format, value);
             if word.to_f64() != value {
                 return Err(format!("constant: {value} is no number of {format}"));
@@ -131,7 +131,7 @@ impl Window for Wire {
     }
 }
 
-impl Truth for Bit {}
+impl Boolean for Bit {}
 
 impl BitAnd for Bit {
     type Output = Self;

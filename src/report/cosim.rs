@@ -20,7 +20,7 @@ pub struct Job {
     pub name: String,
     /// The counts.
     pub tally: Tally,
-    /// What else went wrong: unmet checks, or why the job did not finish. Empty in a good job.
+    /// What else went wrong: failed checks, or why the job did not finish. Empty in a good job.
     pub failures: Vec<String>,
     /// The first records that differ from the reference's.
     pub mismatches: Vec<Mismatch>,
@@ -240,7 +240,7 @@ impl Run {
             ("pairs", Box::new(|t| grouped(t.pairs))),
             ("contacts", Box::new(|t| grouped(t.flows.contacts()))),
             ("  real", Box::new(|t| grouped(t.flows.real))),
-            ("  grazing (same centre)", Box::new(|t| grouped(t.flows.grazing))),
+            ("  coincident centres", Box::new(|t| grouped(t.flows.coincident))),
             ("no contact (fake)", Box::new(|t| grouped(t.flows.fake))),
             ("invalid pairs", Box::new(|t| grouped(t.flows.invalid))),
             ("mismatches with the reference", Box::new(|t| grouped(t.mismatches))),
@@ -283,7 +283,7 @@ mod tests {
     fn run() -> Run {
         let tally = Tally {
             pairs: 12_354,
-            flows: Flows { fake: 9_420, grazing: 0, real: 2_934, invalid: 0 },
+            flows: Flows { fake: 9_420, coincident: 0, real: 2_934, invalid: 0 },
             unsettled: 0,
             mismatches: 0,
             cycles: 6_300,
@@ -387,7 +387,7 @@ mod tests {
              pairs                                      12 354           0
              contacts                                    2 934           0
                real                                      2 934           0
-               grazing (same centre)                         0           0
+               coincident centres                            0           0
              no contact (fake)                           9 420           0
              invalid pairs                                   0           0
              mismatches with the reference                   0           0

@@ -12,7 +12,8 @@ pub struct Flows {
     /// No contact (Flow 1).
     pub fake: u64,
     /// Contacts of coincident centres (Flow 2).
-    pub grazing: u64,
+    #[serde(rename = "grazing")]
+    pub coincident: u64,
     /// Contacts with a normal of their own (Flow 3).
     pub real: u64,
     /// Not pairs of spheres.
@@ -22,7 +23,7 @@ pub struct Flows {
 impl Flows {
     /// Pairs that touch.
     pub fn contacts(&self) -> u64 {
-        self.grazing + self.real
+        self.coincident + self.real
     }
 }
 
@@ -61,7 +62,7 @@ impl Tally {
             pairs: verdict.pairs as u64,
             flows: Flows {
                 fake: of(Flow::Fake),
-                grazing: of(Flow::Grazing),
+                coincident: of(Flow::Coincident),
                 real: of(Flow::Real),
                 invalid: of(Flow::Invalid),
             },
@@ -83,7 +84,7 @@ impl Tally {
             pairs: self.pairs + other.pairs,
             flows: Flows {
                 fake: self.flows.fake + other.flows.fake,
-                grazing: self.flows.grazing + other.flows.grazing,
+                coincident: self.flows.coincident + other.flows.coincident,
                 real: self.flows.real + other.flows.real,
                 invalid: self.flows.invalid + other.flows.invalid,
             },

@@ -34,7 +34,7 @@ pub use ladder::ladder;
 pub use page::page;
 pub use plan::{Call, Plan, Row};
 pub use query::{Query, query};
-pub use results::{Energy, Results, SCHEMA, Summary, Touching};
+pub use results::{Energy, SCHEMA, SceneRun, Summary, Touching};
 #[cfg(feature = "ode")]
 pub use run::run;
 pub use start::check_start;

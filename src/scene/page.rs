@@ -3,7 +3,7 @@
 use maud::{Markup, PreEscaped, html};
 
 use super::cost::Cost;
-use super::results::Results;
+use super::results::SceneRun;
 use super::text::cost_rows;
 use crate::plot::{Axis, Plot, Scale, Series};
 use crate::report::page::{base64, scripted, table};
@@ -20,7 +20,7 @@ div.bar{display:flex;gap:.6rem;align-items:center;margin:.5rem 0}div.bar input{f
 button{font:inherit;padding:.2rem .9rem;background:none;color:inherit;border:1px solid var(--soft);border-radius:.3rem}";
 
 /// The page of a run; `ladder` is the cost with one effect after another, from [`Cost`]s by name.
-pub fn page(results: &Results, ladder: &[(String, Cost)]) -> String {
+pub fn page(results: &SceneRun, ladder: &[(String, Cost)]) -> String {
     let body = html! {
         style { (PreEscaped(STYLE)) }
         p { (results.name) ", contacts by " (results.engine) "." }
@@ -39,7 +39,7 @@ pub fn page(results: &Results, ladder: &[(String, Cost)]) -> String {
 }
 
 /// The bodies' places as 16-bit numbers between the scene's corners, frame after frame, in base 64.
-fn picture(results: &Results) -> Markup {
+fn picture(results: &SceneRun) -> Markup {
     let bodies = results.radii.len().max(1);
     let most = FRAMES.min(NUMBERS / (3 * bodies)).max(1);
     let every = results.places.len().div_ceil(most).max(1);
@@ -80,7 +80,7 @@ fn picture(results: &Results) -> Markup {
     }
 }
 
-fn plan(results: &Results) -> Markup {
+fn plan(results: &SceneRun) -> Markup {
     let row = |row: &super::Row| {
         let calls = row.called_for_by().join("; ");
         vec![row.name.clone(), if row.on { "on" } else { "off" }.to_owned(), row.value.clone(), calls]
@@ -125,11 +125,11 @@ fn ladder_of(ladder: &[(String, Cost)]) -> Markup {
     }
 }
 
-fn summary(results: &Results) -> Markup {
+fn summary(results: &SceneRun) -> Markup {
     html! { pre { (results.text()) } }
 }
 
-fn energy(results: &Results) -> Markup {
+fn energy(results: &SceneRun) -> Markup {
     if results.energy.is_empty() {
         return html! {};
     }

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use super::bodies::{Ball, balls};
 use super::plan::Plan;
-use super::results::{Results, Touching};
+use super::results::{SceneRun, Touching};
 use super::{Part, Scene, SceneError};
 use crate::kernel::{Engine, PairRecord};
 
@@ -89,9 +89,9 @@ fn candidates(balls: &[Ball], bodies: usize) -> Vec<[usize; 2]> {
 ///
 /// # Errors
 /// When bodies cannot be read, or the engine fails.
-pub fn query(scene: &Scene, plan: &Plan, engine: &mut dyn Engine, name: &str) -> Result<Results, SceneError> {
+pub fn query(scene: &Scene, plan: &Plan, engine: &mut dyn Engine, name: &str) -> Result<SceneRun, SceneError> {
     let query = Query::of(scene)?;
-    let mut results = Results::begin(scene, plan, name.to_owned())?;
+    let mut results = SceneRun::begin(scene, plan, name.to_owned())?;
     let pairs = query.pairs();
     let begun = Instant::now();
     let contacts = if plan.has(Part::Hit) { engine.contacts(&pairs).map_err(SceneError::Engine)? } else { Vec::new() };

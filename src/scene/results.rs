@@ -63,7 +63,7 @@ pub struct Summary {
 
 /// A run.
 #[derive(Clone, Debug)]
-pub struct Results {
+pub struct SceneRun {
     /// The scene's name.
     pub name: String,
     /// The plan's rows.
@@ -116,7 +116,7 @@ impl<'a> From<&'a Row> for PlanRow<'a> {
     }
 }
 
-impl Results {
+impl SceneRun {
     pub(super) fn begin(scene: &Scene, plan: &Plan, engine: String) -> Result<Self, super::SceneError> {
         Ok(Self {
             name: scene.name.value.clone(),

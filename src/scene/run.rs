@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use super::bodies::{Ball, balls};
 use super::demand::Part;
 use super::plan::Plan;
-use super::results::{Energy, Results, Touching};
+use super::results::{Energy, SceneRun, Touching};
 use super::{Balance, Scene, SceneError, check_start};
 use crate::kernel::{ContactRecord, Engine, EngineError, Fields, PairRecord};
 use crate::ode::{Collider, Ode, Sleep, Sphere, Surface, World};
@@ -22,7 +22,7 @@ pub fn run(
     engine: &mut dyn Engine,
     name: &str,
     mut progress: impl FnMut(u64),
-) -> Result<Results, SceneError> {
+) -> Result<SceneRun, SceneError> {
     check_start(scene, plan)?;
     let bodies = balls(scene, &scene.bodies)?;
     let ode = Ode::start(Collider::Engine)?;
@@ -30,7 +30,7 @@ pub fn run(
     let spheres = set_up(&mut world, scene, plan, &bodies)?;
     let forces = forces(scene, &bodies);
     let surface = surface(scene);
-    let mut results = Results::begin(scene, plan, name.to_owned())?;
+    let mut results = SceneRun::begin(scene, plan, name.to_owned())?;
     let mut engine = Timed { inner: engine, fields: plan.config.contact, spent: Duration::ZERO, pairs: 0 };
     let mut step_times = Vec::new();
     let count = bodies.len() as u64;
@@ -171,7 +171,7 @@ fn surface(scene: &Scene) -> Surface {
     Surface { friction: value(&scene.effects.friction), bounce: value(&scene.effects.bounce), bounce_speed: 0.0 }
 }
 
-fn record(results: &mut Results, plan: &Plan, scene: &Scene, world: &World, bodies: &[Ball], is_first: bool) {
+fn record(results: &mut SceneRun, plan: &Plan, scene: &Scene, world: &World, bodies: &[Ball], is_first: bool) {
     if is_first || plan.has(Part::Trajectories) {
         results.places.push(world.spheres().map(|sphere| world.position(sphere)).collect());
     }

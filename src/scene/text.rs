@@ -2,7 +2,7 @@
 
 use super::cost::Cost;
 use super::plan::{Plan, Row};
-use super::results::Results;
+use super::results::SceneRun;
 use crate::pairs::npy_of_numbers;
 use crate::report::table::{grouped, table, words};
 
@@ -96,7 +96,7 @@ pub(super) fn cost_rows(all: &[&Cost]) -> Vec<Vec<String>> {
     rows
 }
 
-impl Results {
+impl SceneRun {
     /// What a run came to.
     pub fn text(&self) -> String {
         let s = &self.summary;

@@ -211,7 +211,7 @@ mod tests {
             pairs: 10,
             contacts: 3,
             mismatches: 0,
-            unmet: 0,
+            failed_checks: 0,
             cycles: 100,
             cycles_per_pair: Some(10.0),
             pairs_per_second: Some(2e7),

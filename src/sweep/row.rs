@@ -23,7 +23,8 @@ pub struct Row {
     /// Records that differ from the reference kernel's.
     pub mismatches: u64,
     /// Other checks that failed: status, counters, unused bits.
-    pub unmet: u64,
+    #[serde(rename = "unmet")]
+    pub failed_checks: u64,
     /// Clock cycles from start to done.
     pub cycles: u64,
     /// Clock cycles a pair; none without pairs.
@@ -68,7 +69,7 @@ impl Row {
             pairs: tally.pairs,
             contacts: tally.flows.contacts(),
             mismatches: tally.mismatches,
-            unmet: verdict.unmet.len() as u64,
+            failed_checks: verdict.failed_checks.len() as u64,
             cycles: tally.cycles,
             cycles_per_pair,
             pairs_per_second: cycles_per_pair.map(|cycles| 1e6 * config.clock_mhz / cycles),
@@ -94,7 +95,7 @@ impl Row {
 
     /// Whether every bit was right.
     pub fn passed(&self) -> bool {
-        self.mismatches == 0 && self.unmet == 0
+        self.mismatches == 0 && self.failed_checks == 0
     }
 
     /// The heading of the table for people.

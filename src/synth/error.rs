@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::afu::BuildError;
 use crate::files;
-use crate::hdl::Errors;
+use crate::hdl::BuildErrors;
 use crate::tools::MissingTool;
 
 /// Why a unit could not be measured.
@@ -19,7 +19,7 @@ pub enum SynthError {
     Generate(#[from] BuildError),
     /// The unit or its wrapper: a mistake of the generator, or a clock nothing can be cut for.
     #[error("the hardware is faulty:\n{0}")]
-    Hardware(#[from] Errors),
+    Hardware(#[from] BuildErrors),
     /// A program refused, with the last of what it said.
     #[error("{program} failed on {unit}:\n{text}")]
     Failed {

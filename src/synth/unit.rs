@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::afu::{Afu, Spec};
 use crate::config::{Config, Profile};
 use crate::hdl::verilog::{Style, emit};
-use crate::hdl::{DelayModel, Errors, Module};
+use crate::hdl::{BuildErrors, DelayModel, Module};
 use crate::operator::{Architecture, Domain, Operator, Values, pipelined};
 
 use super::{SynthError, Target};
@@ -147,7 +147,7 @@ impl Unit {
     }
 
     /// It in its wrapper.
-    pub(super) fn wrapped(&self) -> Result<Arc<Module>, Errors> {
+    pub(super) fn wrapped(&self) -> Result<Arc<Module>, BuildErrors> {
         super::wrapper::wrap(&self.module)
     }
 }

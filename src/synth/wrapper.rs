@@ -6,7 +6,7 @@
 
 use std::sync::Arc;
 
-use crate::hdl::{Errors, Graph, Module, Signal};
+use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
 /// The wrapper's module.
 pub const TOP: &str = "bench";
@@ -23,7 +23,7 @@ pub const RESULTS: &str = "result_register";
 ///
 /// # Errors
 /// A fault of the generator.
-pub fn wrap(unit: &Arc<Module>) -> Result<Arc<Module>, Errors> {
+pub fn wrap(unit: &Arc<Module>) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new(TOP);
     graph.about(format!("registers and scan chains around {}", unit.name));
     let ports = |output: bool| unit.ports.iter().filter(move |port| port.output == output);

@@ -1,4 +1,4 @@
-//! What came of a job, compared.
+//! The outcome of a job, compared with the reference.
 
 use std::fmt;
 
@@ -13,15 +13,15 @@ use crate::kernel::{ContactRecord, Fields, Flow, PairRecord, settle};
 /// Mismatches that a verdict's text shows in full.
 const SHOWN: usize = 3;
 
-/// What a job came to. As text: whether it is good, else what is wrong and how to run the job again.
+/// What the checks of a job found. As text: whether it is good, else what is wrong and how to run the job again.
 #[derive(Clone, Debug)]
 pub struct Verdict {
     /// The AFU, the link and the seed.
     pub setup: Setup,
     /// Pairs of the job.
     pub pairs: usize,
-    /// What came back, from destination memory, the unsettled settled: for each pair, or only for those that touch.
-    /// Zero words where nothing was written, and for what is not asked for.
+    /// The contacts in destination memory, with unsettled pairs resolved by the host: one per pair, or only those that
+    /// touch. Words that were not written or not asked for are zero.
     pub contacts: Vec<ContactRecord>,
     /// For each of `contacts` its pair's number in the job, from 0.
     pub numbers: Vec<u32>,
@@ -29,8 +29,8 @@ pub struct Verdict {
     pub unsettled: u64,
     /// Records that differ from the reference's.
     pub mismatches: Vec<Mismatch>,
-    /// What else is not as it should be: status, counters, unused bits.
-    pub unmet: Vec<String>,
+    /// Other checks that failed: status, counters, unused bits.
+    pub failed_checks: Vec<String>,
     /// The job as the driver saw it.
     pub outcome: Outcome,
     /// Seconds the simulation took, without building the model and without the reference.
@@ -40,7 +40,7 @@ pub struct Verdict {
 impl Verdict {
     /// Whether everything is as it should be.
     pub fn is_good(&self) -> bool {
-        self.mismatches.is_empty() && self.unmet.is_empty()
+        self.mismatches.is_empty() && self.failed_checks.is_empty()
     }
 
     /// Panics unless the verdict [is good](Self::is_good), for tests. The message is the verdict's text: the first
@@ -60,7 +60,7 @@ impl Verdict {
         let mut flows = Flow::ALL.map(of);
         if config.contact == Fields::HIT || config.results == Results::Hits {
             let invalid = u64::from(self.outcome.invalid);
-            let touching = flows[Flow::Grazing as usize] + flows[Flow::Real as usize];
+            let touching = flows[Flow::Coincident as usize] + flows[Flow::Real as usize];
             flows[Flow::Invalid as usize] = invalid;
             flows[Flow::Fake as usize] = (self.pairs as u64).saturating_sub(touching + invalid);
         }
@@ -82,16 +82,16 @@ impl Verdict {
 
 impl fmt::Display for Verdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { setup, pairs, mismatches, unmet, .. } = self;
+        let Self { setup, pairs, mismatches, failed_checks, .. } = self;
         if self.is_good() {
             return write!(f, "{pairs} pairs, every bit as in the reference");
         }
-        let checks = if unmet.len() == 1 { "check" } else { "checks" };
+        let checks = if failed_checks.len() == 1 { "check" } else { "checks" };
         write!(
             f,
             "{} of {pairs} records differ from the reference, {} other {checks} failed",
             mismatches.len(),
-            unmet.len()
+            failed_checks.len()
         )?;
         for mismatch in mismatches.iter().take(SHOWN) {
             write!(f, "\nmismatch: {mismatch}")?;
@@ -99,7 +99,7 @@ impl fmt::Display for Verdict {
         if mismatches.len() > SHOWN {
             write!(f, "\n({} more mismatches)", mismatches.len() - SHOWN)?;
         }
-        for check in unmet {
+        for check in failed_checks {
             write!(f, "\nfailed check: {check}")?;
         }
         write!(f, "\nreplay: {setup}")
@@ -116,20 +116,20 @@ pub(super) fn check(
     seconds: f64,
 ) -> Verdict {
     let memory = Contacts::new(layout, &outcome.lines);
-    let mut unmet = Vec::new();
+    let mut failed_checks = Vec::new();
     if let Some(error) = outcome.job_error() {
-        unmet.push(format!("the job ended with error {} ({error:?})", outcome.error));
+        failed_checks.push(format!("the job ended with error {} ({error:?})", outcome.error));
     }
     let job = Job { pairs, reference, memory: &memory, outcome: &outcome };
-    let came = if layout.number_bits() > 0 { job.hits(&mut unmet) } else { job.all() };
-    if !memory.rest_is_zero(came.records) {
-        unmet.push("unused bits of the destination lines are not zero".to_owned());
+    let received = if layout.number_bits() > 0 { job.hits(&mut failed_checks) } else { job.all() };
+    if !memory.rest_is_zero(received.records) {
+        failed_checks.push("unused bits of the destination lines are not zero".to_owned());
     }
-    job.status(&mut unmet);
-    let Came { numbers, mut contacts, mismatches, .. } = came;
+    job.status(&mut failed_checks);
+    let Received { numbers, mut contacts, mismatches, .. } = received;
     // With contacts alone as results nothing is unsettled: the profile exact refuses them.
     let unsettled = if layout.number_bits() > 0 { 0 } else { settle(pairs, &mut contacts, setup.config.contact) };
-    Verdict { setup, pairs: pairs.len(), contacts, numbers, unsettled, mismatches, unmet, outcome, seconds }
+    Verdict { setup, pairs: pairs.len(), contacts, numbers, unsettled, mismatches, failed_checks, outcome, seconds }
 }
 
 /// What is compared with what.
@@ -140,9 +140,9 @@ struct Job<'a> {
     outcome: &'a Outcome,
 }
 
-/// What came back.
+/// What destination memory held.
 #[derive(Default)]
-struct Came {
+struct Received {
     /// Records there must be in destination memory.
     records: usize,
     numbers: Vec<u32>,
@@ -163,57 +163,57 @@ impl Job<'_> {
     }
 
     /// A record for each pair.
-    fn all(&self) -> Came {
-        let mut came = Came { records: self.pairs.len(), ..Came::default() };
+    fn all(&self) -> Received {
+        let mut received = Received { records: self.pairs.len(), ..Received::default() };
         for (number, &record) in self.reference.iter().enumerate() {
-            let (expected, got) = (self.memory.seen(record), self.memory.get(number));
-            came.numbers.push(number as u32);
-            came.contacts.push(got.unwrap_or_default());
+            let (expected, got) = (self.memory.as_stored(record), self.memory.get(number));
+            received.numbers.push(number as u32);
+            received.contacts.push(got.unwrap_or_default());
             if got != Some(expected) {
-                came.mismatches.push(self.mismatch(number, Some(number), expected, got));
+                received.mismatches.push(self.mismatch(number, Some(number), expected, got));
             }
         }
-        came
+        received
     }
 
     /// A record for each pair that touches: as many as the AFU counted, in the order of their numbers, and nothing
     /// behind.
-    fn hits(&self, unmet: &mut Vec<String>) -> Came {
-        let mut came = Came { records: self.outcome.contacts as usize, ..Came::default() };
+    fn hits(&self, failed_checks: &mut Vec<String>) -> Received {
+        let mut received = Received { records: self.outcome.contacts as usize, ..Received::default() };
         // Where the pairs' records lie.
         let mut place = vec![None; self.pairs.len()];
         let mut last = None;
-        for index in 0..came.records {
+        for index in 0..received.records {
             let Some((number, contact)) = self.memory.hit(index) else {
-                unmet.push(format!("contact {index} of {} was never written", came.records));
+                failed_checks.push(format!("contact {index} of {} was never written", received.records));
                 break;
             };
             let Some(free) = place.get_mut(number as usize).filter(|_| last < Some(number)) else {
                 let after = last.map_or_else(|| "none".to_owned(), |last| format!("pair {last}"));
-                unmet
+                failed_checks
                     .push(format!("contact {index} is of pair {number}, after {after}, of {} pairs", self.pairs.len()));
                 break;
             };
             (*free, last) = (Some(index), Some(number));
-            came.numbers.push(number);
-            came.contacts.push(contact);
+            received.numbers.push(number);
+            received.contacts.push(contact);
         }
-        let lines = came.records.checked_sub(1).map_or(0, |last| self.memory.line(last) + 1);
+        let lines = received.records.checked_sub(1).map_or(0, |last| self.memory.line(last) + 1);
         if self.outcome.lines.iter().skip(lines).any(Option::is_some) {
-            unmet.push("a line behind the last contact's was written".to_owned());
+            failed_checks.push("a line behind the last contact's was written".to_owned());
         }
         for (number, (&record, &index)) in self.reference.iter().zip(&place).enumerate() {
-            let expected = record.is_contact().then(|| self.memory.seen(record));
-            let got = index.map(|index| came.contacts[index]);
+            let expected = record.is_contact().then(|| self.memory.as_stored(record));
+            let got = index.map(|index| received.contacts[index]);
             if got != expected {
-                came.mismatches.push(self.mismatch(number, index, expected.unwrap_or_default(), got));
+                received.mismatches.push(self.mismatch(number, index, expected.unwrap_or_default(), got));
             }
         }
-        came
+        received
     }
 
     /// What the AFU says of the job beside its records.
-    fn status(&self, unmet: &mut Vec<String>) {
+    fn status(&self, failed_checks: &mut Vec<String>) {
         let (reference, outcome) = (self.reference, self.outcome);
         let count = |test: fn(&ContactRecord) -> bool| reference.iter().filter(|record| test(record)).count();
         let hits = count(|record| record.is_contact());
@@ -221,7 +221,7 @@ impl Job<'_> {
         let first = reference.iter().position(|record| record.flow() == Some(Flow::Invalid));
         let mut counter = |what: &str, got: String, expected: String| {
             if got != expected {
-                unmet.push(format!("status: {what} is {got}, should be {expected}"));
+                failed_checks.push(format!("status: {what} is {got}, should be {expected}"));
             }
         };
         counter("contacts", outcome.contacts.to_string(), hits.to_string());
@@ -289,7 +289,7 @@ mod tests {
         let wrong = |records: &[(u32, ContactRecord)]| {
             let verdict = judge(records);
             let numbers: Vec<_> = verdict.mismatches.iter().map(|mismatch| mismatch.number).collect();
-            (numbers, verdict.unmet.len())
+            (numbers, verdict.failed_checks.len())
         };
         let mut flipped = hit(3);
         flipped.1.0[6] ^= 1;
@@ -305,7 +305,7 @@ mod tests {
         let mut more = outcome(&[hit(1), hit(3), hit(4)], 5);
         more.lines[4] = Some([0; 16]);
         assert_eq!(
-            check(&layout, setup(), &pairs, &reference, more, 0.0).unmet,
+            check(&layout, setup(), &pairs, &reference, more, 0.0).failed_checks,
             ["a line behind the last contact's was written"]
         );
     }
@@ -325,7 +325,7 @@ mod tests {
             numbers: Vec::new(),
             unsettled: 0,
             mismatches: Vec::new(),
-            unmet: Vec::new(),
+            failed_checks: Vec::new(),
             outcome: outcome(&[], 0),
             seconds: 0.0,
         };
@@ -333,7 +333,7 @@ mod tests {
         assert_eq!(verdict.to_string(), "1000 pairs, every bit as in the reference");
 
         verdict.mismatches = [3, 5, 8, 13, 21].map(mismatch).to_vec();
-        verdict.unmet = vec!["status: contacts is 5, should be 6".to_owned()];
+        verdict.failed_checks = vec!["status: contacts is 5, should be 6".to_owned()];
         let panic = std::panic::catch_unwind(|| verdict.assert_good()).expect_err("it is not good");
         let text = panic.downcast_ref::<String>().expect("a message");
         // The pair's words are those of a mismatch's own text.

@@ -38,18 +38,18 @@ impl<'a> BenchEngine<'a> {
     }
 }
 
-/// A batch that the AFU did not do as the reference kernel does it.
+/// A batch in which the AFU and the reference kernel disagree.
 #[derive(Debug, thiserror::Error)]
-#[error("job {job} of the simulated AFU: {mismatches} of {pairs} records differ from the reference{}", unmet.iter().map(|text| format!("; {text}")).collect::<String>())]
-pub struct Differs {
+#[error("job {job} of the simulated AFU: {mismatches} of {pairs} records differ from the reference{}", failed_checks.iter().map(|text| format!("; {text}")).collect::<String>())]
+pub struct Disagreement {
     /// The job's number, from 0.
     pub job: u64,
     /// Its pairs.
     pub pairs: usize,
     /// Records that differ.
     pub mismatches: usize,
-    /// What else is not as it should be.
-    pub unmet: Vec<String>,
+    /// Other checks that failed.
+    pub failed_checks: Vec<String>,
 }
 
 impl Engine for BenchEngine<'_> {
@@ -59,7 +59,12 @@ impl Engine for BenchEngine<'_> {
         let verdict = run.map_err(|error: VerifyError| Box::new(error) as EngineError)?;
         if !verdict.is_good() {
             let mismatches = verdict.mismatches.len();
-            return Err(Box::new(Differs { job, pairs: pairs.len(), mismatches, unmet: verdict.unmet }));
+            return Err(Box::new(Disagreement {
+                job,
+                pairs: pairs.len(),
+                mismatches,
+                failed_checks: verdict.failed_checks,
+            }));
         }
         self.totals.jobs += 1;
         self.totals.pairs += pairs.len() as u64;

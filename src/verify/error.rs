@@ -38,7 +38,7 @@ pub enum VerifyError {
 
 impl VerifyError {
     /// Whether a job that began went wrong, by itself or by the AFU: it does not finish, breaks the protocol, or stops.
-    pub fn is_the_job_s(&self) -> bool {
+    pub fn is_job_failure(&self) -> bool {
         matches!(
             self,
             Self::Drive(DriveError::TimedOut { .. } | DriveError::Protocol { .. })

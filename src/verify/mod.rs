@@ -12,7 +12,7 @@ mod replay;
 pub use account::{Part, account};
 pub use bench::{Bench, Origin, Progress, rtl_sha256};
 pub use check::Verdict;
-pub use engine::{BenchEngine, Differs, Totals};
+pub use engine::{BenchEngine, Disagreement, Totals};
 pub use error::VerifyError;
 pub use mismatch::{CONTACT_FIELDS, Mismatch};
 pub use replay::{Command, Setup};

@@ -42,7 +42,7 @@ fn verdict(config: &Config, file: &str, left: &str, right: impl Fn(&str) -> Stri
 fn a_wrong_gate_a_wrong_rounding_and_a_flipped_bit_are_mismatches() {
     let config = config(2, "bfloat", "depth");
     let right = verdict(&config, "fp_square_e8f7.v", "wire round_up = ", str::to_owned);
-    assert!(right.is_good(), "without a fault: {:?} {:?}", right.mismatches.first(), right.unmet);
+    assert!(right.is_good(), "without a fault: {:?} {:?}", right.mismatches.first(), right.failed_checks);
     // Truncated squares; a gate of another kind; the lowest bit of what a subtraction takes away.
     let truncated = verdict(&config, "fp_square_e8f7.v", "wire round_up = ", |_| "1'b0".to_owned());
     let gate = verdict(&config, "fp_sub_e8f7.v", "wire effective_subtraction = ", |value| value.replace('^', "|"));

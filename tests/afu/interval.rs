@@ -81,7 +81,7 @@ fn the_exact_profile() {
         let config = Config { scpus, interval, profile: Profile::EXACT, ..Config::default() };
         let bench = Bench::new(&config).expect("a model");
         let run = bench.run(&Set::Hard(1_700).pairs(8), &LinkModel::hostile(), 5).expect("a job");
-        assert!(run.is_good(), "{:?} {:?}", run.mismatches.first(), run.unmet);
+        assert!(run.is_good(), "{:?} {:?}", run.mismatches.first(), run.failed_checks);
         assert!(run.unsettled > 50, "{} unsettled", run.unsettled);
     }
 }

@@ -33,7 +33,7 @@ fn run(module: &Arc<Module>, interval: u64, pairs: &[PairRecord], random: &mut i
     let inputs = PAIR_FIELDS.map(|name| evaluator.pin(name).unwrap());
     let [take, valid] = ["take", "valid"].map(|name| evaluator.pin(name).unwrap());
     let outputs = OUTPUTS.map(|name| evaluator.pin(name));
-    let [hit, grazing, invalid] = ["hit", "grazing", "invalid_pair"].map(|name| evaluator.pin(name).unwrap());
+    let [hit, coincident, invalid] = ["hit", "grazing", "invalid_pair"].map(|name| evaluator.pin(name).unwrap());
     let unsettled = evaluator.pin("unsettled");
     let mut entry = random.random_range(1..40_u64);
     let entries: Vec<u64> = pairs
@@ -60,11 +60,11 @@ fn run(module: &Arc<Module>, interval: u64, pairs: &[PairRecord], random: &mut i
             let pair = &pairs[contacts.len()];
             let mut words = outputs.map(|pin| pin.map_or(0, |pin| evaluator.read(pin) as u32)).to_vec();
             assert_eq!(evaluator.read(invalid) == 0, pair.is_valid(), "{pair:?}");
-            let flow = match (pair.is_valid(), evaluator.read(hit), evaluator.read(grazing)) {
+            let flow = match (pair.is_valid(), evaluator.read(hit), evaluator.read(coincident)) {
                 (false, ..) => Flow::Invalid,
                 (true, 0, _) => Flow::Fake,
                 (true, _, 0) => Flow::Real,
-                _ => Flow::Grazing,
+                _ => Flow::Coincident,
             };
             let is_unsettled = unsettled.is_some_and(|pin| evaluator.read(pin) == 1);
             words.push(if is_unsettled { ContactRecord::UNSETTLED.flags() } else { flow.flags() });

@@ -1,6 +1,6 @@
 //! Kernels read with wires: what is made, when it is there, and what is refused.
 
-use contact_afu::hdl::{DelayModel, Errors, Evaluator, Module, Op};
+use contact_afu::hdl::{BuildErrors, DelayModel, Evaluator, Module, Op};
 use contact_afu::number::{Format, Number, Soft};
 use contact_afu::pipeline::{Bit, Kernel, KernelReport, Ports, Wire, trace};
 use std::sync::Arc;
@@ -15,7 +15,7 @@ fn traced(body: impl FnOnce(&Ports)) -> Arc<Module> {
     pipeline(&trace("kernel", body).unwrap())
 }
 
-fn refused(body: impl FnOnce(&Ports)) -> Errors {
+fn refused(body: impl FnOnce(&Ports)) -> BuildErrors {
     trace("kernel", body).unwrap_err()
 }
 

@@ -48,7 +48,7 @@ fn run_in(module: &Arc<Module>, pairs: &[PairRecord], record: Format) -> Vec<Con
     let inputs = PAIR_FIELDS.map(|name| evaluator.pin(name).unwrap());
     let valid = evaluator.pin("valid").unwrap();
     let outputs = OUTPUTS.map(|name| evaluator.pin(name));
-    let [hit, grazing] = ["hit", "grazing"].map(|name| evaluator.pin(name).unwrap());
+    let [hit, coincident] = ["hit", "grazing"].map(|name| evaluator.pin(name).unwrap());
     let unsettled = evaluator.pin("unsettled");
     let latency = module.latency as usize;
     let mut contacts = Vec::with_capacity(pairs.len());
@@ -59,11 +59,11 @@ fn run_in(module: &Arc<Module>, pairs: &[PairRecord], record: Format) -> Vec<Con
             for (word, pin) in words.iter_mut().zip(outputs) {
                 *word = pin.map_or(0, |pin| widen(evaluator.read(pin) as u32, record));
             }
-            let flow = match (is_valid(pair), evaluator.read(hit), evaluator.read(grazing)) {
+            let flow = match (is_valid(pair), evaluator.read(hit), evaluator.read(coincident)) {
                 (false, ..) => Flow::Invalid,
                 (true, 0, _) => Flow::Fake,
                 (true, _, 0) => Flow::Real,
-                _ => Flow::Grazing,
+                _ => Flow::Coincident,
             };
             words[7] = flow.flags();
             if unsettled.is_some_and(|pin| evaluator.read(pin) == 1) {

@@ -1,6 +1,6 @@
 //! Errors as the studies of accuracy have them, against computations of their own.
 
-use contact_afu::accuracy::{Answer, Contender, Contenders, Errors, Formula, Profiled, Row, assess, measure};
+use contact_afu::accuracy::{Answer, Contender, Contenders, ErrorStatistics, Formula, Profiled, Row, assess, measure};
 use contact_afu::kernel::{EngineError, PairRecord};
 use contact_afu::pairs::Set;
 
@@ -101,11 +101,11 @@ fn a_known_row_is_not_measured_again() {
     let mut row = rows(pairs, vec![profiled("wide")]).remove(0);
     let (tally, errors) = assess(pairs, &profiled("wide").answers(pairs).expect("answers"));
     assert_eq!((row.tally, row.errors), (tally, errors));
-    row.errors = Errors::default();
+    row.errors = ErrorStatistics::default();
     let mut contenders = vec![profiled("wide"), profiled("paper")];
     let (again, known) = measure("dense", pairs, &mut contenders, &[row.clone()], |_| {}).expect("answers");
     assert_eq!((known, &again[0]), (1, &row));
-    assert_ne!(again[1].errors, Errors::default());
+    assert_ne!(again[1].errors, ErrorStatistics::default());
     let (others, known) = measure("dense", &pairs[1..], &mut contenders, &[row], |_| {}).expect("answers");
     assert_eq!((known, others.len()), (0, 2), "other pairs are other rows");
 }

@@ -3,7 +3,7 @@
 use crate::support::swap;
 use crate::support::watched::raises;
 use contact_afu::accuracy::{Answer, Judgement, Standard, judge};
-use contact_afu::kernel::{ContactRecord, Errors, Fields, Flow, PairRecord, Reference, Truth, ulp};
+use contact_afu::kernel::{ContactRecord, Fields, Flow, PairRecord, Reference, Truth, UlpErrors, ulp};
 use contact_afu::number::Format;
 use contact_afu::pairs::{CATEGORIES, Set, read_pairs};
 use std::path::{Path, PathBuf};
@@ -47,7 +47,7 @@ fn the_truth_is_what_the_corpus_says() {
             assert_eq!(truth.flow(), Flow::Fake, "{name}");
             assert!(truth.margin() > 0.0 && truth.margin() < 1.2e-7, "{name}");
         } else if name.starts_with("coincident") || name.starts_with("identical") {
-            assert_eq!(truth.flow(), Flow::Grazing, "{name}");
+            assert_eq!(truth.flow(), Flow::Coincident, "{name}");
         } else if name.starts_with("cancel") && !name.ends_with("-touch") {
             let bits: i32 = name.split('-').nth(1).unwrap().parse().unwrap();
             // The only number with a significand of ones.
@@ -75,7 +75,7 @@ fn the_truth_is_what_more_bits_tend_to() {
     for pair in Set::Hard(8_500).pairs(11) {
         let truth = Truth::of(&pair);
         let (record, found) = (truth.record(), fine.run(&pair));
-        if let Some(Errors { depth, normal, position }) = truth.errors(record) {
+        if let Some(UlpErrors { depth, normal, position }) = truth.errors(record) {
             assert!(depth <= 0.5 && normal <= 0.5 && position <= 0.5, "{pair:?}");
         }
         let judgement = judge(&Standard::of(&pair), &Answer::from(record));

@@ -142,8 +142,8 @@ fn the_decision_is_right() {
             let (truth, found) = (Truth::of(&pair), kernel.run(&pair));
             let near = !kernel.is_exact && truth.margin() < 1.0 / f64::from(1 << 20);
             prop_assert!(found.is_contact() == truth.is_contact() || near);
-            if truth.flow() == Flow::Grazing {
-                prop_assert_eq!(found.flow(), Some(Flow::Grazing));
+            if truth.flow() == Flow::Coincident {
+                prop_assert_eq!(found.flow(), Some(Flow::Coincident));
                 prop_assert_eq!(found.0[..6].to_vec(), truth.record().0[..6].to_vec());
                 prop_assert!(
                     (f64::from(found.depth()) - f64::from(truth.record().depth())).abs() <= ulp(found.depth())

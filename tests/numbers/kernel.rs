@@ -72,11 +72,11 @@ fn a_real_contact() {
 }
 
 #[test]
-fn a_grazing_contact() {
+fn a_contact_of_coincident_centres() {
     let pair = PairRecord::from_spheres([1.0, 2.0, 3.0, 0.5], [1.0, 2.0, 3.0, 0.25]);
     for format in [Format::BINARY32, Format::WIDE] {
         let contact = Reference::new(format, Fields::ALL).run(&pair);
-        assert_eq!(contact.flow(), Some(Flow::Grazing));
+        assert_eq!(contact.flow(), Some(Flow::Coincident));
         assert_eq!((contact.position(), contact.normal(), contact.depth()), ([1.0, 2.0, 3.0], [1.0, 0.0, 0.0], 0.75));
     }
 }

@@ -22,14 +22,14 @@ fn collisions_are_those_of_the_steps_in_order_and_of_runs_begun_anew() {
 fn only_the_kind_that_is_asked_for_counts() {
     let ode = Ode::start(Collider::Own).unwrap();
     let reference = Reference::new(Format::BINARY32, Fields::ALL);
-    for (flow, gap, count) in [(Flow::Fake, 0.0, 96), (Flow::Real, 0.0, 36), (Flow::Grazing, -1.0, 300)] {
+    for (flow, gap, count) in [(Flow::Fake, 0.0, 96), (Flow::Real, 0.0, 36), (Flow::Coincident, -1.0, 300)] {
         let recording = Benchmark { diamond: Diamond::new(3, gap), flow, ..Benchmark::paper(count) }.run(&ode).unwrap();
         assert_eq!(recording.steps, 0, "{flow}: the first step has as many");
         let pairs = recording.pairs(count);
         assert!(pairs.len() == count && pairs.iter().all(|pair| reference.run(pair).flow() == Some(flow)), "{flow}");
     }
-    let none = Benchmark { flow: Flow::Grazing, most_steps: 50, ..Benchmark::paper(1) }.run(&ode).unwrap_err();
-    assert!(matches!(none, Error::TooFew { flow: Flow::Grazing, found: 0, wanted: 1, steps: 50 }), "{none}");
+    let none = Benchmark { flow: Flow::Coincident, most_steps: 50, ..Benchmark::paper(1) }.run(&ode).unwrap_err();
+    assert!(matches!(none, Error::TooFew { flow: Flow::Coincident, found: 0, wanted: 1, steps: 50 }), "{none}");
     assert!(matches!(Benchmark { flow: Flow::Invalid, ..Benchmark::paper(1) }.run(&ode), Err(Error::Flow(_))));
 }
 

@@ -36,7 +36,7 @@ fn the_kernel_read_in_binary64_is_odes_collider() {
                 let expected_bits = [p.x, p.y, p.z, n.x, n.y, n.z, expected.depth].map(|v| v.bits() as u64);
                 assert_eq!([a, b, c, d, e, f, depth].map(f64::to_bits), expected_bits, "{record:?}");
                 touching += 1;
-                coincident += usize::from(expected.grazing);
+                coincident += usize::from(expected.coincident);
             }
         }
     }

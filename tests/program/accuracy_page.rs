@@ -1,12 +1,12 @@
 //! The page of `afu accuracy` in a browser, and `afu choose`, both of the results that are part of the crate.
 
 use assert_cmd::Command;
-use contact_afu::accuracy::trade::{Bounds, Results, Time, choose, committed, front, page, steps, write};
+use contact_afu::accuracy::trade::{Bounds, Study, Time, choose, committed, front, page, steps, write};
 use contact_afu::afu::{Afu, Spec};
 use contact_afu::config;
 use std::fs;
 
-fn results() -> Results {
+fn results() -> Study {
     committed().expect("results that this version reads")
 }
 
@@ -66,7 +66,7 @@ fn files_hold_every_point_and_steps_are_computed() {
     let csv = fs::read_to_string(room.path().join("results.csv")).expect("written");
     assert_eq!(csv.lines().count(), results.points.len() + 1);
     let json = fs::read(room.path().join("results.json")).expect("written");
-    let read: Results = serde_json::from_slice(&json).expect("results");
+    let read: Study = serde_json::from_slice(&json).expect("results");
     assert!(read.points.iter().map(|point| &point.name).eq(results.points.iter().map(|point| &point.name)));
     for svg in ["front.svg", "throughput.svg", "link.svg"] {
         let text = fs::read_to_string(room.path().join(svg)).expect("written");

@@ -189,7 +189,7 @@ fn of_the_program() -> Vec<Kind> {
             form: Form::Json,
             seeds: vec![serde_json::to_vec(&results).unwrap()],
             read: |path| {
-                let results = serde_json::from_slice::<trade::Results>(&fs::read(path).unwrap());
+                let results = serde_json::from_slice::<trade::Study>(&fs::read(path).unwrap());
                 results.is_ok_and(|results| {
                     let bounds = Bounds { error: Some(1e-3), bad: Some(0.0), ..Bounds::default() };
                     let _ = trade::choose(&results, &bounds, Time::Link);

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use contact_afu::afu::Afu;
-use contact_afu::config::{Config, Record, Results, Shell};
+use contact_afu::config::{Config, RecordFormat, Results, Shell};
 
 use super::{generate, root, run_yosys, succeeded, verilators, write};
 
@@ -48,7 +48,7 @@ fn the_package_s_own_bench_passes() {
     for config in [
         Config::shipped(),
         Config { results: Results::Hits, ..Config::default() },
-        Config { results: Results::Hits, record: Record::F16, interval: 3, ..line() },
+        Config { results: Results::Hits, record: RecordFormat::F16, interval: 3, ..line() },
         Config { contact: "hit".parse().unwrap(), prefix: Some("left".into()), ..line() },
         Config { contact: "depth".parse().unwrap(), radius: Some(0.75), ..line() },
         Config { profile: "exact".parse().unwrap(), ..line() },

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use contact_afu::config::{Config, Record, Results, Shell};
+use contact_afu::config::{Config, RecordFormat, Results, Shell};
 
 use super::{generate, root, write};
 
@@ -31,9 +31,9 @@ fn ports_md_says_all_that_a_stranger_needs() {
     let depth = "depth".parse().unwrap();
     for config in [
         line(),
-        Config { results: Results::Hits, record: Record::F16, interval: 2, ..line() },
+        Config { results: Results::Hits, record: RecordFormat::F16, interval: 2, ..line() },
         Config { contact: depth, radius: Some(0.5), interval: 3, prefix: Some("other".into()), ..line() },
-        Config { contact: "hit".parse().unwrap(), record: Record::Bf16, ..line() },
+        Config { contact: "hit".parse().unwrap(), record: RecordFormat::Bf16, ..line() },
     ] {
         let (folder, _) = write(&generate(config.clone()));
         let output = bench(folder.path());

@@ -1,8 +1,8 @@
 //! A study of `afu accuracy` that is interrupted goes on where it was, and comes to what it would have come to.
 
-use contact_afu::accuracy::trade::{Named, Plan, Results, Size, Work, run};
+use contact_afu::accuracy::trade::{Named, Plan, Size, Study, Work, run};
 use contact_afu::accuracy::{Contenders, Profiled, measure};
-use contact_afu::config::{Config, Profile, Record, Shell};
+use contact_afu::config::{Config, Profile, RecordFormat, Shell};
 use contact_afu::pairs::Set;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -14,7 +14,7 @@ fn plan() -> Plan {
     let profile: Profile = "e8f3z".parse().expect("a profile");
     let config =
         |record| Config { scpus: 1, shell: Shell::Line, profile: profile.clone(), record, ..Config::default() };
-    plan.choices = vec![("a", config(Record::F32)), ("b", config(Record::F16))];
+    plan.choices = vec![("a", config(RecordFormat::F32)), ("b", config(RecordFormat::F16))];
     let named = |set: Set| Named { name: set.to_string(), is_scene: true, pairs: set.pairs(1) };
     plan.sets = vec![named(Set::Diamond(4)), named(Set::Dense(500))];
     plan.synthesis = false;
@@ -22,7 +22,7 @@ fn plan() -> Plan {
 }
 
 /// The study in a folder, stopped by force after so many pieces of work; and how many cosims it began.
-fn study(folder: &Path, stop_after: usize) -> (Option<Results>, usize) {
+fn study(folder: &Path, stop_after: usize) -> (Option<Study>, usize) {
     let (mut done, mut begun, mut configurations) = (0, 0, 0);
     let (mut planned, mut worked) = (0.0, 0.0);
     let ran = catch_unwind(AssertUnwindSafe(|| {
@@ -49,7 +49,7 @@ fn study(folder: &Path, stop_after: usize) -> (Option<Results>, usize) {
 }
 
 /// Without what is timed on this machine.
-fn figures(mut results: Results) -> Results {
+fn figures(mut results: Study) -> Study {
     results.kernels.clear();
     results.points.iter_mut().for_each(|point| point.software_ns = None);
     results
@@ -90,7 +90,7 @@ fn an_interrupted_study_goes_on_and_comes_to_the_same() {
 /// Errors over f16 are of the pair that was given: its rounding is part of them.
 #[test]
 fn a_record_s_rounding_is_part_of_the_error() {
-    let configs = [("wide", Record::F32), ("wide", Record::F16), ("half", Record::F16)];
+    let configs = [("wide", RecordFormat::F32), ("wide", RecordFormat::F16), ("half", RecordFormat::F16)];
     let mut contenders = Contenders::new();
     for (profile, record) in configs {
         contenders.push(Box::new(Profiled::over(&profile.parse().expect("a profile"), record)));

@@ -17,7 +17,7 @@ fn the_afu_is_the_reference_and_the_host_settles_the_rest() {
     let mixed: Vec<_> = hard.chunks(3).flat_map(|some| some.iter().copied().chain([invalid])).collect();
 
     let alone = bench.run(&hard, &LinkModel::hostile(), 5).expect("a job");
-    assert!(alone.is_good(), "{:?} {:?}", alone.mismatches.first(), alone.unmet);
+    assert!(alone.is_good(), "{:?} {:?}", alone.mismatches.first(), alone.failed_checks);
     assert!(alone.unsettled > 100, "{} unsettled", alone.unsettled);
     for (pair, contact) in hard.iter().zip(&alone.contacts) {
         let truth = Truth::of(pair);
@@ -26,7 +26,7 @@ fn the_afu_is_the_reference_and_the_host_settles_the_rest() {
     }
 
     let together = bench.run(&mixed, &LinkModel::hostile(), 6).expect("a job");
-    assert!(together.is_good(), "{:?} {:?}", together.mismatches.first(), together.unmet);
+    assert!(together.is_good(), "{:?} {:?}", together.mismatches.first(), together.failed_checks);
     let valid: Vec<_> = together.contacts.into_iter().filter(|c| c.flow() != Some(Flow::Invalid)).collect();
     assert_eq!(valid, alone.contacts);
     assert_eq!(together.unsettled, alone.unsettled);

@@ -1,7 +1,7 @@
 //! The AFU as generated today against the reference kernel, over every preset link.
 
 use contact_afu::afu::{Afu, Capability, Spec};
-use contact_afu::config::{Config, Multipliers, Record, Results, Shell};
+use contact_afu::config::{Config, Multipliers, RecordFormat, Results, Shell};
 use contact_afu::kernel::PairRecord;
 use contact_afu::link::spl2::Spl2Model;
 use contact_afu::link::{Description, Direction, LinkModel, Stalls};
@@ -11,7 +11,12 @@ use contact_afu::verify::{Bench, Verdict};
 
 fn good(verdict: &Verdict, what: &str) {
     let first = verdict.mismatches.first();
-    assert!(verdict.is_good(), "{what}: {} mismatches, first {first:?}; {:?}", verdict.mismatches.len(), verdict.unmet);
+    assert!(
+        verdict.is_good(),
+        "{what}: {} mismatches, first {first:?}; {:?}",
+        verdict.mismatches.len(),
+        verdict.failed_checks
+    );
 }
 
 #[test]
@@ -61,10 +66,10 @@ fn records_of_16_bits_come_back_as_the_reference_has_them() {
     let random = Set::Random(701).pairs(9);
     let diamond = Set::Diamond(5).pairs(1);
     for (scpus, interval, record, contact, results, shell, radius) in [
-        (1, 1, Record::F16, "depth,normal,position", Results::All, Shell::Line, Some(0.5)),
-        (3, 1, Record::F16, "hit", Results::All, Shell::Line, None),
-        (5, 3, Record::F16, "depth,normal,position", Results::All, Shell::Line, None),
-        (10, 1, Record::Bf16, "depth,normal,position", Results::Hits, Shell::Spl2, None),
+        (1, 1, RecordFormat::F16, "depth,normal,position", Results::All, Shell::Line, Some(0.5)),
+        (3, 1, RecordFormat::F16, "hit", Results::All, Shell::Line, None),
+        (5, 3, RecordFormat::F16, "depth,normal,position", Results::All, Shell::Line, None),
+        (10, 1, RecordFormat::Bf16, "depth,normal,position", Results::Hits, Shell::Spl2, None),
     ] {
         let profile = "e8f3z".parse().expect("a format");
         let contact = contact.parse().expect("fields");
@@ -141,7 +146,7 @@ fn never_given_up(shell: Shell) {
     let creeping = LinkModel { read: one_at_a_time, write: one_at_a_time, lines_per_cycle: 0.06, ..ideal() };
     let blocked = Direction { stalls: Stalls { chance: 0.5, longest: 200 }, ..Direction::steady(9, 0) };
     let stalling = LinkModel { read: blocked, write: blocked, ..ideal() };
-    let bf16 = |config: Config| Config { record: Record::Bf16, ..config };
+    let bf16 = |config: Config| Config { record: RecordFormat::Bf16, ..config };
     let hits = |config: Config| Config { results: Results::Hits, ..config };
     let paper = Config { profile: "paper".parse().expect("a profile"), multipliers: Multipliers::Spare, ..slow(1, 31) };
     let cases = [

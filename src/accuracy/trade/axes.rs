@@ -1,6 +1,6 @@
 //! The configurations of a study.
 
-use crate::config::{Config, Profile, Record, Shell};
+use crate::config::{Config, Profile, RecordFormat, Shell};
 use crate::number::{Format, Roots};
 
 /// A configuration as studies have it: one SCPU, nothing around the line port. What more SCPUs give follows from it.
@@ -42,8 +42,8 @@ fn intervals(cycles: &[u32]) -> Vec<Choice> {
     cycles.iter().map(|&interval| ("interval", one(Config { interval, ..Config::default() }))).collect()
 }
 
-fn records(choices: &[(&str, Record)]) -> Vec<Choice> {
-    let of = |&(name, record): &(&str, Record)| profile(name).map(|config| Config { record, ..config });
+fn records(choices: &[(&str, RecordFormat)]) -> Vec<Choice> {
+    let of = |&(name, record): &(&str, RecordFormat)| profile(name).map(|config| Config { record, ..config });
     choices.iter().filter_map(of).map(|config| ("record", config)).collect()
 }
 
@@ -72,13 +72,13 @@ pub(super) fn each_alone() -> Vec<Choice> {
         profiles("roots", &["paper+faithful", "e10f15zr", "e10f19zr"]),
         clocks(&[50.0, 100.0, 150.0, 250.0, 300.0]),
         records(&[
-            ("half", Record::F16),
-            ("bfloat", Record::Bf16),
-            ("e8f15", Record::F16),
-            ("e8f15", Record::Bf16),
-            ("wide", Record::F16),
-            ("wide", Record::Bf16),
-            ("wide+faithful", Record::F16),
+            ("half", RecordFormat::F16),
+            ("bfloat", RecordFormat::Bf16),
+            ("e8f15", RecordFormat::F16),
+            ("e8f15", RecordFormat::Bf16),
+            ("wide", RecordFormat::F16),
+            ("wide", RecordFormat::Bf16),
+            ("wide+faithful", RecordFormat::F16),
         ]),
         intervals(&[2, 4]),
     ]
@@ -108,7 +108,9 @@ pub(super) fn neighbours(config: &Config) -> Vec<Choice> {
     };
     let formats = formats.into_iter().flatten().map(|profile| Config { profile, ..config.clone() });
     let clocks = [0.75, 1.25].map(|factor| Config { clock_mhz: (config.clock_mhz * factor).round(), ..config.clone() });
-    let others = [Record::F32, Record::F16, Record::Bf16].into_iter().filter(|&record| record != config.record);
+    let others = [RecordFormat::F32, RecordFormat::F16, RecordFormat::Bf16]
+        .into_iter()
+        .filter(|&record| record != config.record);
     let records = others.map(|record| Config { record, ..config.clone() });
     formats.chain(clocks).chain(records).map(|config| ("neighbour of the front", config)).collect()
 }

@@ -1,6 +1,6 @@
 //! The cheapest configuration that meets bounds, out of a study's results.
 
-use super::{Point, Results, Time};
+use super::{Point, Study, Time};
 use crate::config::{Config, SCPUS};
 
 /// What a configuration must meet; none: anything goes.
@@ -41,7 +41,7 @@ impl Bound {
         }
     }
 
-    fn figure(self, results: &Results, point: &Point, time: Time) -> Option<f64> {
+    fn figure(self, results: &Study, point: &Point, time: Time) -> Option<f64> {
         match self {
             Self::Error => Some(results.worst(point)),
             Self::Ns => time.of(point, results),
@@ -72,10 +72,10 @@ pub struct Instead<'a> {
     pub point: &'a Point,
 }
 
-/// The point with the fewest LUTs of the [comparable](Results::comparable) ones that meet `bounds` (then the one with
+/// The point with the fewest LUTs of the [comparable](Study::comparable) ones that meet `bounds` (then the one with
 /// the least time); where none does, for each bound what it would take if it alone gave way. That is empty where even
 /// then nothing meets the others.
-pub fn choose<'a>(results: &'a Results, bounds: &Bounds, time: Time) -> Result<&'a Point, Vec<Instead<'a>>> {
+pub fn choose<'a>(results: &'a Study, bounds: &Bounds, time: Time) -> Result<&'a Point, Vec<Instead<'a>>> {
     let figure = |bound: Bound, point: &Point| bound.figure(results, point, time);
     let meets = |bound: Bound, point: &Point| {
         bound.of(bounds).is_none_or(|most| figure(bound, point).is_some_and(|value| value <= most))
@@ -104,7 +104,7 @@ pub fn choose<'a>(results: &'a Results, bounds: &Bounds, time: Time) -> Result<&
 /// The configuration to build of a point: its arithmetic, with the default shell; one SCPU, or, where the time is a
 /// full device's, as many as it holds. Its stages are cut as the point's were, and its clock is the one that its times
 /// are of: the router's, rounded down, or the delay model's if nothing was routed.
-pub fn to_build(results: &Results, point: &Point, time: Time) -> Config {
+pub fn to_build(results: &Study, point: &Point, time: Time) -> Config {
     let default = Config::default();
     let full = point.on_device(results.target).unwrap_or(1).clamp((*SCPUS.start()).into(), (*SCPUS.end()).into());
     let scpus = if time == Time::Device { full as u32 } else { point.config.scpus };

@@ -1,6 +1,6 @@
 //! The columns of a study's table: one list for the page and for the CSV.
 
-use super::{Point, Results, Time};
+use super::{Point, Study, Time};
 use crate::report::table::grouped;
 use crate::synth::Area;
 
@@ -22,14 +22,14 @@ pub(super) struct Column {
     /// Its heading for people.
     pub heading: &'static str,
     /// The figure; none where it was not measured.
-    pub value: fn(&Results, &Point) -> Option<f64>,
+    pub value: fn(&Study, &Point) -> Option<f64>,
     /// How it is written.
     pub show: Show,
 }
 
 impl Column {
     /// The figure for people.
-    pub fn text(&self, results: &Results, point: &Point) -> String {
+    pub fn text(&self, results: &Study, point: &Point) -> String {
         let Some(value) = (self.value)(results, point) else { return "–".to_owned() };
         match self.show {
             Show::Count => grouped(value as u64),
@@ -44,7 +44,7 @@ const fn column(
     key: &'static str,
     heading: &'static str,
     show: Show,
-    value: fn(&Results, &Point) -> Option<f64>,
+    value: fn(&Study, &Point) -> Option<f64>,
 ) -> Column {
     Column { key, heading, value, show }
 }
@@ -53,7 +53,7 @@ fn area(point: &Point, of: fn(Area) -> u64) -> Option<f64> {
     point.area().map(|area| of(area) as f64)
 }
 
-fn ulps(results: &Results, point: &Point, which: usize) -> Option<f64> {
+fn ulps(results: &Study, point: &Point, which: usize) -> Option<f64> {
     let errors = point.errors(&results.scenes());
     [errors.depth_ulps, errors.normal_ulps, errors.position_ulps].get(which).map(|spread| spread.largest)
 }

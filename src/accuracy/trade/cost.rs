@@ -42,7 +42,7 @@ pub fn cycles(
     let mut mismatches = 0;
     let mut tally = |pairs: &[PairRecord], link: &LinkModel| {
         let verdict = bench.run(pairs, link, seed)?;
-        mismatches += (verdict.mismatches.len() + verdict.unmet.len()) as u64;
+        mismatches += (verdict.mismatches.len() + verdict.failed_checks.len()) as u64;
         Ok::<_, VerifyError>(Tally::of(&verdict, bench.config()))
     };
     let ideal = LinkModel::ideal();

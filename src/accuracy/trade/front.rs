@@ -1,7 +1,7 @@
 //! The best of points: those that no other beats in error and time at once.
 
 use super::table::BASE;
-use super::{Point, Results};
+use super::{Point, Study};
 use crate::report::table::grouped;
 use std::collections::BTreeSet;
 
@@ -21,7 +21,7 @@ impl Time {
     pub const ALL: [Self; 3] = [Self::Lone, Self::Device, Self::Link];
 
     /// A point's, ns.
-    pub fn of(self, point: &Point, results: &Results) -> Option<f64> {
+    pub fn of(self, point: &Point, results: &Study) -> Option<f64> {
         match self {
             Self::Lone => Some(point.lone_ns()),
             Self::Device => point.device_ns(results.target),
@@ -41,7 +41,7 @@ impl Time {
 
 /// The front: indices of the points of `among` that have a finite error and time of which no other has both at most as
 /// large and one smaller, from the fastest to the most accurate.
-pub fn front(results: &Results, time: Time, among: impl Fn(&Point) -> bool) -> Vec<usize> {
+pub fn front(results: &Study, time: Time, among: impl Fn(&Point) -> bool) -> Vec<usize> {
     let placed: Vec<(usize, f64, f64)> = results
         .points
         .iter()
@@ -54,7 +54,7 @@ pub fn front(results: &Results, time: Time, among: impl Fn(&Point) -> bool) -> V
 }
 
 /// The points on a front of any time.
-pub(super) fn on_fronts(results: &Results) -> Vec<usize> {
+pub(super) fn on_fronts(results: &Study) -> Vec<usize> {
     let all: BTreeSet<usize> = Time::ALL.into_iter().flat_map(|time| front(results, time, |_| true)).collect();
     all.into_iter().collect()
 }
@@ -65,7 +65,7 @@ const SCATTER: f64 = 0.01;
 /// The points on a front of any time if each is routed as most are: a clock of the model's is taken less what place and
 /// route left of the others', in the middle. (Over a link it is the link's time that counts, which no clock changes.)
 /// Without those that are no faster than a routed point as good; with the one that times are compared with.
-pub(super) fn worth_routing(results: &Results) -> Vec<usize> {
+pub(super) fn worth_routing(results: &Study) -> Vec<usize> {
     let mut left: Vec<f64> =
         results.points.iter().filter_map(|point| Some(point.routed_mhz()? / point.modelled_mhz)).collect();
     left.sort_by(f64::total_cmp);
@@ -101,7 +101,7 @@ fn best(points: &[(usize, f64, f64)]) -> Vec<usize> {
 }
 
 /// A sentence for a step from one point to the next along a front.
-pub fn step(results: &Results, time: Time, from: &Point, to: &Point) -> String {
+pub fn step(results: &Study, time: Time, from: &Point, to: &Point) -> String {
     let ratio = time.of(to, results).zip(time.of(from, results)).map(|(to, from)| to / from);
     let ratio = ratio.map_or_else(String::new, |ratio| format!(", for {ratio:.2} × the {}", time.words()));
     let luts = to.area().zip(from.area()).map(|(to, from)| to.luts as f64 / from.luts.max(1) as f64);

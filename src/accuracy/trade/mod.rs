@@ -29,7 +29,7 @@ pub use page::{page, steps};
 pub use picture::picture;
 pub use plan::{Named, Plan, Size};
 pub use point::{Counted, Point};
-pub use results::{Results, ResultsError, SCHEMA, SetFigures, committed};
+pub use results::{ResultsError, SCHEMA, SetFigures, Study, committed};
 pub use run::{TradeError, Work, run};
 pub use scene::{Drift, GAP, LAYERS, STEPS};
 pub use table::table;

@@ -1,7 +1,7 @@
 //! What a study leaves in its folder beside its store.
 
 use super::columns::COLUMNS;
-use super::{Results, ResultsError, Time, page, picture};
+use super::{ResultsError, Study, Time, page, picture};
 use crate::report::folder::replace_file;
 use std::path::Path;
 use std::{fs, io};
@@ -11,7 +11,7 @@ use std::{fs, io};
 ///
 /// # Errors
 /// When the file system refuses.
-pub fn write(results: &Results, folder: &Path) -> Result<(), ResultsError> {
+pub fn write(results: &Study, folder: &Path) -> Result<(), ResultsError> {
     let file = |name: &str, text: &[u8]| replace_file(&folder.join(name), text);
     let mut json = serde_json::to_vec_pretty(results).map_err(ResultsError::write)?;
     json.push(b'\n');
@@ -33,7 +33,7 @@ fn remove(path: &Path) -> Result<(), ResultsError> {
     }
 }
 
-fn csv(results: &Results) -> Result<Vec<u8>, ResultsError> {
+fn csv(results: &Study) -> Result<Vec<u8>, ResultsError> {
     let mut out = csv::Writer::from_writer(Vec::new());
     let heading = ["configuration", "axis", "profile"].into_iter().chain(COLUMNS.iter().map(|column| column.key));
     out.write_record(heading).map_err(ResultsError::write)?;

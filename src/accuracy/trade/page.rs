@@ -2,7 +2,7 @@
 
 use super::columns::{COLUMNS, Column};
 use super::front::{Time, front, step};
-use super::{GAP, LAYERS, Point, Results, STEPS, picture};
+use super::{GAP, LAYERS, Point, STEPS, Study, picture};
 use crate::report::page;
 use crate::report::table::grouped;
 use maud::{Markup, html};
@@ -11,7 +11,7 @@ use maud::{Markup, html};
 const SCRIPT: &str = include_str!("report.js");
 
 /// The page.
-pub fn page(results: &Results) -> String {
+pub fn page(results: &Study) -> String {
     let body = html! {
         p { "Each point is a configuration of the AFU: its error, measured against the truth in arbitrary precision, over "
             "its time, counted by simulating its Verilog. Down is more accurate, left is faster. A hollow one is at the delay "
@@ -32,7 +32,7 @@ pub fn page(results: &Results) -> String {
 }
 
 /// The sentences for each step along the fronts.
-pub fn steps(results: &Results) -> Vec<(Time, Vec<String>)> {
+pub fn steps(results: &Study) -> Vec<(Time, Vec<String>)> {
     let of = |time: Time| {
         let front = front(results, time, |point| results.is_comparable(point));
         let pairs = front.windows(2).map(|two| step(results, time, &results.points[two[0]], &results.points[two[1]]));
@@ -41,7 +41,7 @@ pub fn steps(results: &Results) -> Vec<(Time, Vec<String>)> {
     results.times().into_iter().map(of).collect()
 }
 
-fn sentences(results: &Results) -> Markup {
+fn sentences(results: &Study) -> Markup {
     html! {
         h2 { "Step by step" }
         @for (time, steps) in steps(results) {
@@ -55,7 +55,7 @@ fn sentences(results: &Results) -> Markup {
     }
 }
 
-fn table(results: &Results) -> Markup {
+fn table(results: &Study) -> Markup {
     html! {
         div.wide {
             table #points {
@@ -71,12 +71,12 @@ fn table(results: &Results) -> Markup {
 }
 
 /// The columns in which anything is known.
-fn known(results: &Results) -> impl Iterator<Item = &'static Column> {
+fn known(results: &Study) -> impl Iterator<Item = &'static Column> {
     let is_known = |column: &&Column| results.points.iter().any(|point| (column.value)(results, point).is_some());
     COLUMNS.iter().filter(is_known)
 }
 
-fn row(results: &Results, point: &Point) -> Markup {
+fn row(results: &Study, point: &Point) -> Markup {
     html! {
         tr data-name=(point.name) {
             td { (point.name) }
@@ -90,7 +90,7 @@ fn row(results: &Results, point: &Point) -> Markup {
     }
 }
 
-fn method(results: &Results) -> Markup {
+fn method(results: &Study) -> Markup {
     html! {
         ul {
             li { "Pairs: "

@@ -1,11 +1,11 @@
 //! The pictures: time across, error up.
 
 use super::front::{Time, front};
-use super::{Point, Results};
+use super::{Point, Study};
 use crate::plot::{Axis, Line, Marker, Plot, Scale, Series};
 
 /// The picture of a time.
-pub fn picture(results: &Results, time: Time) -> Plot {
+pub fn picture(results: &Study, time: Time) -> Plot {
     let routed = |point: &Point| point.routed_mhz().is_some();
     let place = |point: &Point| Some((time.of(point, results)?, results.worst(point)));
     let of = |which: &dyn Fn(&Point) -> bool| -> (Vec<(f64, f64)>, Vec<String>) {

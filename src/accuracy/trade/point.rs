@@ -2,7 +2,7 @@
 
 use super::cost::{Cycles, Hardware};
 use super::scene::Drift;
-use crate::accuracy::{Errors, Row, Tally};
+use crate::accuracy::{ErrorStatistics, Row, Tally};
 use crate::config::Config;
 use crate::synth::{Area, Target};
 use serde::{Deserialize, Serialize};
@@ -117,8 +117,8 @@ impl Point {
     }
 
     /// Its errors on the sets of these names.
-    pub fn errors(&self, sets: &[String]) -> Errors {
+    pub fn errors(&self, sets: &[String]) -> ErrorStatistics {
         let rows = self.rows.iter().filter(|row| sets.contains(&row.category));
-        rows.fold(Errors::default(), |sum, row| sum.plus(&row.errors))
+        rows.fold(ErrorStatistics::default(), |sum, row| sum.plus(&row.errors))
     }
 }

@@ -97,7 +97,7 @@ pub struct SetFigures {
 /// Everything a study came to.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Results {
+pub struct Study {
     /// [`SCHEMA`].
     pub schema: String,
     /// This crate's.
@@ -124,7 +124,7 @@ pub struct Results {
     pub points: Vec<Point>,
 }
 
-impl Results {
+impl Study {
     /// Without points.
     pub(super) fn new(plan: &Plan) -> Self {
         let set = |set: &super::Named| SetFigures {
@@ -186,7 +186,7 @@ impl Results {
         self.points.iter().find(|point| point.name == name)
     }
 
-    /// A point's largest error on the scenes, relative ([`Errors::contact`](crate::accuracy::Errors)).
+    /// A point's largest relative error on the scenes ([`contact`](crate::accuracy::ErrorStatistics::contact)).
     pub fn worst(&self, point: &Point) -> f64 {
         point.errors(&self.scenes()).contact.largest
     }
@@ -201,6 +201,6 @@ impl Results {
 ///
 /// # Errors
 /// When the file of the crate is not what this version reads; a test holds that it is.
-pub fn committed() -> Result<Results, ResultsError> {
+pub fn committed() -> Result<Study, ResultsError> {
     serde_json::from_str(include_str!("committed.json")).map_err(ResultsError::write)
 }

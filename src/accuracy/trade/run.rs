@@ -5,8 +5,8 @@ use super::cost::{Cycles, Hardware, cycles, cycles_key, hardware, hardware_key};
 use super::front::{on_fronts, worth_routing};
 use super::results::Store;
 use super::software;
-use super::{Counted, Plan, Point, Results, ResultsError};
-use crate::accuracy::{Contenders, Failed, Profiled, Row, measure};
+use super::{Counted, Plan, Point, ResultsError, Study};
+use crate::accuracy::{ContenderError, Contenders, Profiled, Row, measure};
 use crate::config::Config;
 use crate::link::LinkError;
 use crate::synth::{SynthError, Unit};
@@ -22,7 +22,7 @@ use std::thread;
 pub enum TradeError {
     /// A kernel failed.
     #[error(transparent)]
-    Engine(#[from] Failed),
+    Engine(#[from] ContenderError),
     /// No model, or no end of a job.
     #[error(transparent)]
     Verify(#[from] VerifyError),
@@ -81,9 +81,9 @@ fn cost_seconds(plan: &Plan) -> f64 {
 /// # Errors
 /// When a program refuses, a job does not end, or the folder is not ours or cannot be written. A missing synthesis
 /// program is no error: the results say so.
-pub fn run(plan: &Plan, folder: Option<(&Path, bool)>, mut progress: impl FnMut(Work)) -> Result<Results, TradeError> {
+pub fn run(plan: &Plan, folder: Option<(&Path, bool)>, mut progress: impl FnMut(Work)) -> Result<Study, TradeError> {
     let mut store = Store::open(folder)?;
-    let mut results = Results::new(plan);
+    let mut results = Study::new(plan);
     if !plan.synthesis {
         results.left_out.push("areas, and the throughput of a full device: nothing was synthesised".to_owned());
     }
@@ -115,8 +115,8 @@ pub fn run(plan: &Plan, folder: Option<(&Path, bool)>, mut progress: impl FnMut(
 
 /// Where each arithmetic leads the diamond's spheres: an arithmetic once.
 #[cfg(feature = "ode")]
-fn drift(results: &mut Results) -> Result<(), TradeError> {
-    let fail = |error: crate::ode::Error| Failed { contender: "the diamond".to_owned(), error: error.into() };
+fn drift(results: &mut Study) -> Result<(), TradeError> {
+    let fail = |error: crate::ode::Error| ContenderError { contender: "the diamond".to_owned(), error: error.into() };
     let scene = super::scene::Scene::new().map_err(fail)?;
     for index in 0..results.points.len() {
         let (known, rest) = results.points.split_at_mut(index);
@@ -131,13 +131,13 @@ fn drift(results: &mut Results) -> Result<(), TradeError> {
 }
 
 #[cfg(not(feature = "ode"))]
-fn drift(results: &mut Results) -> Result<(), TradeError> {
+fn drift(results: &mut Study) -> Result<(), TradeError> {
     results.left_out.push(super::scene::ABSENT.to_owned());
     Ok(())
 }
 
 /// Configurations a step from those on a front that are not there yet: as many as the plan has, those of each in turn.
-fn beside_the_front(plan: &Plan, results: &Results) -> Vec<Choice> {
+fn beside_the_front(plan: &Plan, results: &Study) -> Vec<Choice> {
     let mut around: Vec<VecDeque<Choice>> =
         on_fronts(results).into_iter().map(|index| neighbours(&results.points[index].config).into()).collect();
     let there = |choices: &[Choice], config: &Config| choices.iter().any(|(_, other)| is_same(other, config));
@@ -158,7 +158,7 @@ fn beside_the_front(plan: &Plan, results: &Results) -> Vec<Choice> {
 fn route(
     plan: &Plan,
     mut guessed: f64,
-    results: &mut Results,
+    results: &mut Study,
     store: &mut Store,
     progress: &mut impl FnMut(Work),
 ) -> Result<(), TradeError> {
@@ -194,7 +194,7 @@ fn route(
 fn add(
     plan: &Plan,
     choices: &[Choice],
-    results: &mut Results,
+    results: &mut Study,
     store: &mut Store,
     progress: &mut impl FnMut(Work),
 ) -> Result<(), TradeError> {

@@ -1,6 +1,6 @@
 //! The table for people: a row a configuration, every time beside that of `paper`.
 
-use super::{Point, Results};
+use super::{Point, Study};
 use crate::report::table::{grouped, table as drawn};
 
 /// What times are compared with.
@@ -12,7 +12,7 @@ const SAME: f64 = 0.05;
 const LIMITED: f64 = 0.09;
 
 /// The table, and below it what its words mean.
-pub fn table(results: &Results) -> String {
+pub fn table(results: &Study) -> String {
     let has_areas = results.has_areas();
     let mut heading = vec!["", "wrong", "BAD", "worst error", "typical", "lone pair, ns", "×", "link, ns", "×"];
     if has_areas {
@@ -46,7 +46,7 @@ pub fn table(results: &Results) -> String {
     text.trim_end().to_owned()
 }
 
-fn row(results: &Results, point: &Point, base: Option<&Point>, has_areas: bool) -> Vec<String> {
+fn row(results: &Study, point: &Point, base: Option<&Point>, has_areas: bool) -> Vec<String> {
     let times = |time: &dyn Fn(&Point) -> Option<f64>| {
         let mine = time(point);
         let ratio = mine.zip(base.and_then(time)).map(|(mine, base)| mine / base);

@@ -5,13 +5,13 @@
 use std::sync::Arc;
 
 use crate::hdl::delay_model::DelayModel;
-use crate::hdl::error::Errors;
+use crate::hdl::error::BuildErrors;
 use crate::hdl::graph::{Graph, Inner};
 use crate::hdl::module::{Instance, InstanceCount, Module, NodeId, Op, Primitive};
 
 /// Puts an instance of a multiplier block in the place of the product `id`, whose operands are those of the block's
 /// first rank.
-pub(super) fn instantiate_multiplier(inner: &mut Inner, id: NodeId, model: &DelayModel) -> Result<(), Errors> {
+pub(super) fn instantiate_multiplier(inner: &mut Inner, id: NodeId, model: &DelayModel) -> Result<(), BuildErrors> {
     let operands = inner.nodes[id.index()].operands.clone();
     let [a, b] = [0, 1].map(|position: usize| inner.nodes[operands[position].index()].width);
     // The wider factor first: so the factors' order makes no second module.
@@ -23,7 +23,12 @@ pub(super) fn instantiate_multiplier(inner: &mut Inner, id: NodeId, model: &Dela
 
 /// Puts an instance of a block memory in the place of the table `id`, whose operand is that of its first rank. Its
 /// module belongs to that table alone, in the module of this name.
-pub(super) fn instantiate_table(inner: &mut Inner, id: NodeId, owner: &str, model: &DelayModel) -> Result<(), Errors> {
+pub(super) fn instantiate_table(
+    inner: &mut Inner,
+    id: NodeId,
+    owner: &str,
+    model: &DelayModel,
+) -> Result<(), BuildErrors> {
     let node = &inner.nodes[id.index()];
     let Op::Lookup(table) = node.op.clone() else { return Ok(()) };
     let (width, index) = (node.width, node.operands[0]);
@@ -44,7 +49,7 @@ pub(super) fn instantiate_table(inner: &mut Inner, id: NodeId, owner: &str, mode
 }
 
 /// Puts an instance of the target's carry chain in the place of the difference or sum `id`.
-pub(super) fn instantiate_sub_add(inner: &mut Inner, id: NodeId, primitive: Primitive) -> Result<(), Errors> {
+pub(super) fn instantiate_sub_add(inner: &mut Inner, id: NodeId, primitive: Primitive) -> Result<(), BuildErrors> {
     let node = &inner.nodes[id.index()];
     let (operands, module) = (node.operands.clone(), sub_add(node.width, primitive)?);
     let inputs: Vec<_> = ["a", "b", "add"].into_iter().zip(operands).collect();
@@ -70,7 +75,7 @@ fn replace(inner: &mut Inner, id: NodeId, module: &Arc<Module>, inputs: &[(&str,
 }
 
 /// a − b, or a + b.
-fn sub_add(width: u32, primitive: Primitive) -> Result<Arc<Module>, Errors> {
+fn sub_add(width: u32, primitive: Primitive) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new(format!("sub_add_{width}{}", primitive.suffix()));
     graph.about("a - b, or a + b where add is set: one carry chain, the complement in its own look-up tables");
     let (a, b) = (graph.input("a", width), graph.input("b", width));
@@ -81,7 +86,7 @@ fn sub_add(width: u32, primitive: Primitive) -> Result<Arc<Module>, Errors> {
 }
 
 /// a · b, with registers before and behind the product.
-fn multiplier([a_bits, b_bits]: [u32; 2], model: &DelayModel) -> Result<Arc<Module>, Errors> {
+fn multiplier([a_bits, b_bits]: [u32; 2], model: &DelayModel) -> Result<Arc<Module>, BuildErrors> {
     let suffix = model.multiplier_primitive.map_or("", |primitive| primitive.suffix());
     let graph = Graph::new(format!("multiplier_{a_bits}x{b_bits}{suffix}"));
     graph.about("a * b, both unsigned, with registers in and out: one multiplier block");

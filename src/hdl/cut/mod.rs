@@ -11,7 +11,7 @@ use std::sync::Arc;
 use place::Plan;
 
 use super::delay_model::DelayModel;
-use super::error::{Error, Errors};
+use super::error::{BuildErrors, Error};
 use super::graph::{Graph, Inner};
 use super::module::{Module, Node, NodeId, Op};
 
@@ -40,12 +40,12 @@ pub struct Timing {
 /// # Errors
 /// A clock that is not a positive number; anything in `module` that is clocked, and instances.
 #[track_caller]
-pub fn cut(module: &Module, model: &DelayModel, clock_mhz: f64) -> Result<Arc<Module>, Errors> {
+pub fn cut(module: &Module, model: &DelayModel, clock_mhz: f64) -> Result<Arc<Module>, BuildErrors> {
     let place = Location::caller();
     let wrong = problems(module, clock_mhz);
     if !wrong.is_empty() {
         let error = |message| Error { module: module.name.clone(), message, place };
-        return Err(Errors(wrong.into_iter().map(error).collect()));
+        return Err(BuildErrors(wrong.into_iter().map(error).collect()));
     }
     let mut plan = Plan::as_soon_as_possible(module, model, model.budget(clock_mhz));
     plan.save_registers();
@@ -87,7 +87,7 @@ fn registered(
     plan: &Plan<'_>,
     model: &DelayModel,
     place: &'static Location<'static>,
-) -> Result<Inner, Errors> {
+) -> Result<Inner, BuildErrors> {
     let mut inner = Graph::new(module.name.clone()).inner.into_inner();
     inner.about.clone_from(&module.about);
     inner.parameters.clone_from(&module.parameters);

@@ -139,7 +139,7 @@ fn flow(touch: bool, [[x1, y1, z1, _], [x2, y2, z2, _]]: [[f64; 4]; 2]) -> Flow 
     let (x, y, z) = (x1 - x2, y1 - y2, z1 - z2);
     match touch {
         false => Flow::Fake,
-        true if (x * x + y * y) + z * z <= 0.0 => Flow::Grazing,
+        true if (x * x + y * y) + z * z <= 0.0 => Flow::Coincident,
         true => Flow::Real,
     }
 }

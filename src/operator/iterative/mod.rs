@@ -13,7 +13,7 @@ use recurrence::Recurrence;
 use sqrt::Root;
 
 use super::{Domain, Operator};
-use crate::hdl::{DelayModel, Errors, Module};
+use crate::hdl::{BuildErrors, DelayModel, Module};
 use crate::number::Roots;
 
 /// A correctly rounded root, [`Operator::Recip`] or [`Operator::Sqrt`], for one number every `interval` cycles at most;
@@ -33,7 +33,7 @@ pub fn iterative(
     clock_mhz: f64,
     interval: u32,
     area: impl Fn(&Module) -> u32,
-) -> Result<Option<Arc<Module>>, Errors> {
+) -> Result<Option<Arc<Module>>, BuildErrors> {
     let domain = domain.into();
     if domain.format().roots() == Roots::Faithful || interval < 2 {
         return Ok(None);

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::recurrence::Recurrence;
-use crate::hdl::{DelayModel, Errors, Graph, Instantiated, Module, Signal, Timing, cut};
+use crate::hdl::{BuildErrors, DelayModel, Graph, Instantiated, Module, Signal, Timing, cut};
 use crate::operator::Operator;
 
 /// More steps than this in one cycle are never worth it.
@@ -20,7 +20,7 @@ pub(super) fn smallest(
     clock_mhz: f64,
     interval: u32,
     area: impl Fn(&Module) -> u32,
-) -> Result<Arc<Module>, Errors> {
+) -> Result<Arc<Module>, BuildErrors> {
     let mut best: Option<Arc<Module>> = None;
     for at_once in 1..=MOST_STEPS {
         let logic = longest(recurrence, model, at_once)?;
@@ -34,11 +34,11 @@ pub(super) fn smallest(
         }
     }
     // One step a cycle is always there.
-    best.ok_or_else(|| Errors(Vec::new()))
+    best.ok_or_else(|| BuildErrors(Vec::new()))
 }
 
 /// How long so many steps take, and the choice behind them.
-fn longest(recurrence: &dyn Recurrence, model: &DelayModel, at_once: u32) -> Result<f64, Errors> {
+fn longest(recurrence: &dyn Recurrence, model: &DelayModel, at_once: u32) -> Result<f64, BuildErrors> {
     let graph = Graph::new("steps");
     let (first, kept) = recurrence.begin(graph.input("a", recurrence.domain().width()));
     let steps = recurrence.steps();
@@ -66,7 +66,7 @@ struct Unit<'a> {
 }
 
 impl Unit<'_> {
-    fn build(&self, model: &DelayModel, clock_mhz: f64, rank_mhz: f64) -> Result<Arc<Module>, Errors> {
+    fn build(&self, model: &DelayModel, clock_mhz: f64, rank_mhz: f64) -> Result<Arc<Module>, BuildErrors> {
         let Self { recurrence, at_once, interval, .. } = *self;
         let steps = recurrence.steps();
         let ranks = steps.div_ceil(at_once).div_ceil(interval);
@@ -138,7 +138,7 @@ impl Unit<'_> {
     }
 
     /// What comes before the first step.
-    fn before(&self, name: &str) -> Result<Arc<Module>, Errors> {
+    fn before(&self, name: &str) -> Result<Arc<Module>, BuildErrors> {
         let graph = Graph::new(format!("{name}_first"));
         graph.about(format!("what comes before the steps of {}", self.operator.name()));
         let (state, kept) = self.recurrence.begin(graph.input("a", self.recurrence.domain().width()));
@@ -149,7 +149,7 @@ impl Unit<'_> {
     }
 
     /// What comes behind the last.
-    fn after(&self, name: &str) -> Result<Arc<Module>, Errors> {
+    fn after(&self, name: &str) -> Result<Arc<Module>, BuildErrors> {
         let recurrence = self.recurrence;
         let widths = {
             let probe = Graph::new("probe");

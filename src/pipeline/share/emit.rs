@@ -6,14 +6,14 @@ use super::keep::{Keeper, Phases};
 use super::kinds::{Kind, Kinds};
 use super::mux::Chooser;
 use super::schedule::Plan;
-use crate::hdl::{Errors, Graph, Module, Register, Signal};
+use crate::hdl::{BuildErrors, Graph, Module, Register, Signal};
 use crate::operator::INPUTS;
 use crate::pipeline::kernel::{Kernel, Source, ValueId};
 use crate::pipeline::names::Names;
 
 /// # Errors
 /// What the graph recorded.
-pub(super) fn emit(kernel: &Kernel, kinds: &Kinds, plan: &Plan) -> Result<Arc<Module>, Errors> {
+pub(super) fn emit(kernel: &Kernel, kinds: &Kinds, plan: &Plan) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new(kernel.name.as_str());
     kernel.about.iter().for_each(|line| graph.about(line.as_str()));
     let Plan { interval, latency, .. } = *plan;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::Library;
 use super::cost::{area, choice, tables};
-use crate::hdl::{Errors, Module};
+use crate::hdl::{BuildErrors, Module};
 use crate::operator::Operator;
 use crate::pipeline::kernel::{Kernel, Source};
 use crate::pipeline::range::{Ranges, Unit};
@@ -44,7 +44,7 @@ pub(super) struct Kinds {
 impl Kinds {
     /// # Errors
     /// What the library could not make.
-    pub fn of(kernel: &Kernel, interval: u32, library: &mut Library<'_>) -> Result<Self, Errors> {
+    pub fn of(kernel: &Kernel, interval: u32, library: &mut Library<'_>) -> Result<Self, BuildErrors> {
         let units = Ranges::of(kernel).units;
         let live = kernel.live();
         let mut negated = vec![false; units.len()];
@@ -96,7 +96,7 @@ fn merge(
     general: Operator,
     interval: u32,
     library: &mut Library<'_>,
-) -> Result<(), Errors> {
+) -> Result<(), BuildErrors> {
     let domains: Vec<_> = uses.keys().filter(|unit| unit.0 == special).map(|unit| unit.1).collect();
     for domain in domains {
         let (few, many) = ((special, domain), (general, domain));

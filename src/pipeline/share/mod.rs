@@ -22,7 +22,7 @@ use schedule::Plan;
 
 use super::kernel::Kernel;
 use super::range::Unit;
-use crate::hdl::{DelayModel, Errors, Module};
+use crate::hdl::{BuildErrors, DelayModel, Module};
 use crate::operator::{iterative, pipelined};
 
 /// Makes each operator's module once.
@@ -34,11 +34,11 @@ struct Library<'a> {
 
 impl Library<'_> {
     /// The one that does a number in an interval with less, if there is such.
-    fn iterative(&self, unit: Unit, interval: u32) -> Result<Option<Arc<Module>>, Errors> {
+    fn iterative(&self, unit: Unit, interval: u32) -> Result<Option<Arc<Module>>, BuildErrors> {
         iterative(unit.0, unit.1, self.model, self.clock_mhz, interval, cost::area)
     }
 
-    fn module(&mut self, unit: Unit) -> Result<Arc<Module>, Errors> {
+    fn module(&mut self, unit: Unit) -> Result<Arc<Module>, BuildErrors> {
         if let Some(module) = self.modules.get(&unit) {
             return Ok(module.clone());
         }
@@ -57,7 +57,12 @@ impl Kernel {
     ///
     /// # Errors
     /// What a graph recorded, or a clock no operator can be cut for.
-    pub fn pipeline_every(&self, model: &DelayModel, clock_mhz: f64, interval: u32) -> Result<Arc<Module>, Errors> {
+    pub fn pipeline_every(
+        &self,
+        model: &DelayModel,
+        clock_mhz: f64,
+        interval: u32,
+    ) -> Result<Arc<Module>, BuildErrors> {
         let interval = interval.max(2);
         let mut library = Library { model, clock_mhz, modules: BTreeMap::new() };
         let kinds = Kinds::of(self, interval, &mut library)?;

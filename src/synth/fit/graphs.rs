@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::hdl::{Errors, Graph, Module, Signal};
+use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
 /// A small combinational graph of one kind and size.
 #[derive(Clone, Copy)]
@@ -57,7 +57,7 @@ impl Sample {
     ///
     /// # Errors
     /// A fault of this list.
-    pub fn module(&self) -> Result<Arc<Module>, Errors> {
+    pub fn module(&self) -> Result<Arc<Module>, BuildErrors> {
         let graph = Graph::new(self.name());
         let result = self.logic(&graph);
         graph.output("result", result);
@@ -74,7 +74,7 @@ pub fn port(name: &str) -> String {
 ///
 /// # Errors
 /// A fault of this list.
-pub fn together(samples: &[Sample]) -> Result<Arc<Module>, Errors> {
+pub fn together(samples: &[Sample]) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new("samples");
     graph.about("small graphs side by side, for fitting a delay model");
     for sample in samples {

@@ -16,7 +16,7 @@ use super::route::Run;
 use super::yosys::{Design, synthesise as cells};
 use super::{SynthError, Target, Unit, wrapper};
 use crate::config::Profile;
-use crate::hdl::{DelayModel, Errors};
+use crate::hdl::{BuildErrors, DelayModel};
 use crate::tools::Program;
 
 /// The schema of the JSON.
@@ -70,7 +70,7 @@ pub fn fit(target: Target, seeds: &[u32], mut progress: impl FnMut(&str)) -> Res
     let (yosys, nextpnr, cache) = (Program::yosys()?, Program::nextpnr(architecture)?, Cache::open()?);
     let start = DelayModel::guess();
     let delay = |sample: Sample| Ok((start.longest(&*sample.module()?), sample));
-    let mut sorted = samples().into_iter().map(delay).collect::<Result<Vec<_>, Errors>>()?;
+    let mut sorted = samples().into_iter().map(delay).collect::<Result<Vec<_>, BuildErrors>>()?;
     sorted.sort_by(|(a, _), (b, _)| a.total_cmp(b));
     let samples: Vec<Sample> = sorted.iter().map(|(_, sample)| *sample).collect();
 

@@ -1,10 +1,10 @@
 //! Energy and momentum behave as the named effects say.
 
-use contact_afu::scene::{Energy, Plan, Results, Scene, run};
+use contact_afu::scene::{Energy, Plan, Scene, SceneRun, run};
 
 use super::scene;
 
-fn results(scene: &Scene) -> Results {
+fn results(scene: &Scene) -> SceneRun {
     let plan = Plan::of(scene).unwrap();
     let mut engine = plan.config.profile.reference(plan.config.contact);
     run(scene, &plan, &mut engine, "test", |_| {}).unwrap()

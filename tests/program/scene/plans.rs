@@ -197,7 +197,7 @@ fn the_bytes_over_the_link_are_the_plan_s() {
         // The line port itself: a shell reads and writes lines of its own too.
         let config = Config { shell: Shell::Line, profile: small, ..plan.config.clone() };
         let verdict = Bench::new(&config).unwrap().run(&pairs, &LinkModel::ideal(), 1).unwrap();
-        assert!(verdict.is_good(), "{example}: {:?}", verdict.unmet);
+        assert!(verdict.is_good(), "{example}: {:?}", verdict.failed_checks);
         let everything = config.profile.reference(Fields::ALL).run_all(&pairs);
         let hits: Vec<bool> = everything.iter().map(|contact| contact.is_contact()).collect();
         let found: Vec<bool> = verdict.by_pair().iter().map(|contact| contact.is_contact()).collect();

@@ -1,7 +1,7 @@
 //! Transactions with the AFU in software: what goes right, and what is refused.
 
 use contact_afu::afu::shell::spl2::map::{self, identity, pointers, status};
-use contact_afu::config::{Config, Record};
+use contact_afu::config::{Config, RecordFormat};
 use contact_afu::host::{Expected, HostError, Session, Software, Transport, TransportError, Workspace};
 use contact_afu::kernel::{Engine, PairRecord};
 use contact_afu::link::LinkModel;
@@ -181,7 +181,7 @@ fn invalid_pairs_are_named_by_number_and_field() {
     let done = session.transaction().send(&pairs).unwrap().start().unwrap().confirm().unwrap().wait().unwrap();
     let results = done.retrieve().unwrap().end().unwrap();
     let error = results.strict(&pairs).unwrap_err();
-    assert_eq!(error, HostError::InvalidPairs { count: 2, first: 5, field: "r2", record: Record::F32 });
+    assert_eq!(error, HostError::InvalidPairs { count: 2, first: 5, field: "r2", record: RecordFormat::F32 });
     let good = session.transaction().send(&pairs[..5]).unwrap().start().unwrap().confirm().unwrap().wait().unwrap();
     assert_eq!(good.retrieve().unwrap().end().unwrap().strict(&pairs[..5]), Ok(()));
 }
@@ -190,7 +190,7 @@ fn invalid_pairs_are_named_by_number_and_field() {
 #[test]
 fn records_of_16_bits_are_agreed_on() {
     let pairs = pairs(1000);
-    for record in [Record::F16, Record::Bf16] {
+    for record in [RecordFormat::F16, RecordFormat::Bf16] {
         let config = Config { record, ..config() };
         let expected = Expected::new(&config).unwrap();
         assert_eq!(expected.layout.pairs_per_line(), 4);
@@ -203,7 +203,7 @@ fn records_of_16_bits_are_agreed_on() {
         assert!(error.to_string().contains("records (0: f32, 1: f16, 2: bf16) of"), "{error}");
     }
     // A number beyond f16 makes a pair invalid there, and the host says so.
-    let config = Config { record: Record::F16, ..config() };
+    let config = Config { record: RecordFormat::F16, ..config() };
     let expected = Expected::new(&config).unwrap();
     let device = Software::new(&config, LinkModel::ideal()).unwrap();
     let mut session = Session::new(device, Workspace::new(expected.layout, 1, 7).unwrap(), expected);

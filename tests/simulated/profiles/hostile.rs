@@ -15,7 +15,7 @@ fn pairs(seed: u64) -> Vec<PairRecord> {
 fn job(name: &str, bench: &Bench, link: &LinkModel, seed: u64) -> u64 {
     let pairs = pairs(seed);
     let verdict = bench.run(&pairs, link, seed).unwrap_or_else(|error| panic!("{name}, seed {seed}: {error}"));
-    assert!(verdict.is_good(), "{name}, seed {seed}: {:?} {:?}", verdict.mismatches.first(), verdict.unmet);
+    assert!(verdict.is_good(), "{name}, seed {seed}: {:?} {:?}", verdict.mismatches.first(), verdict.failed_checks);
     assert_eq!(verdict.contacts.len(), pairs.len(), "{name}, seed {seed}");
     verdict.outcome.cycles
 }

@@ -42,7 +42,7 @@ fn an_invalid_pair_has_no_effect_on_its_neighbours() {
         let alone = bench.run(&valid, &LinkModel::hostile(), 5).expect("a job");
         let together = bench.run(&mixed, &LinkModel::hostile(), 6).expect("a job");
         for job in [&alone, &together] {
-            assert!(job.is_good(), "{name}: {:?} {:?}", job.mismatches.first(), job.unmet);
+            assert!(job.is_good(), "{name}: {:?} {:?}", job.mismatches.first(), job.failed_checks);
         }
         assert_eq!((alone.outcome.invalid, alone.outcome.first_invalid), (0, None), "{name}");
         assert_eq!((together.outcome.invalid, together.outcome.first_invalid), (spoilt as u32, first), "{name}");

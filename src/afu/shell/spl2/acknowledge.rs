@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::hdl::{Errors, Graph, Module};
+use crate::hdl::{BuildErrors, Graph, Module};
 
 use super::port::{MDATA_BITS, SHELL_EPOCH_BITS, is_core_s};
 use crate::afu::counter::up_down;
@@ -10,7 +10,7 @@ use crate::afu::{EPOCH_BITS, Spec};
 
 /// Builds the module `spl2_acknowledge`. Channel 0 goes straight to the core; channel 1 waits for a cycle in which
 /// channel 0 brings nothing. As many can wait as writes can be outstanding, and those of other jobs are dropped before.
-pub(super) fn acknowledge(spec: &Spec) -> Result<Arc<Module>, Errors> {
+pub(super) fn acknowledge(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new("spl2_acknowledge");
     graph.about("brings write responses of two channels to the core, one a cycle");
     let slots = spec.max_outstanding;

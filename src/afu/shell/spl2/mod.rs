@@ -13,14 +13,14 @@ mod transmit;
 use std::sync::Arc;
 
 use crate::config::Results;
-use crate::hdl::{Errors, Graph, Module};
+use crate::hdl::{BuildErrors, Graph, Module};
 
 use crate::afu::control::{ERROR_BITS, JobError};
 use crate::afu::{EPOCH_BITS, MAX_SCPUS, SCPU_BITS, Spec};
 use port::{MDATA_BITS, RX_HEADER_BITS, is_core_s};
 
 /// The top `afu_top` around `core`, the module that is the top of the shell `line`.
-pub(in crate::afu) fn afu_top(spec: &Spec, core: &Arc<Module>) -> Result<Arc<Module>, Errors> {
+pub(in crate::afu) fn afu_top(spec: &Spec, core: &Arc<Module>) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new("afu_top");
     graph.about("collision-detection accelerator below SPL2 of Intel HARP v1");
     graph.parameter("SCPUS", spec.config.scpus, 1..=MAX_SCPUS, SCPU_BITS);

@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use crate::hdl::{Errors, Graph, Module, Signal};
+use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
 use super::map::{self, Csr, identity, scratch};
 use super::port::MDATA_BITS;
@@ -15,7 +15,7 @@ use crate::afu::{ADDRESS_BITS, Spec};
 const BYTE_BITS: u32 = 6;
 
 /// Builds the module `spl2_registers`.
-pub(super) fn registers(spec: &Spec) -> Result<Arc<Module>, Errors> {
+pub(super) fn registers(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new("spl2_registers");
     graph.about("takes CSR writes, answers them in the DSM");
     let power_on = graph.input("power_on", 1);

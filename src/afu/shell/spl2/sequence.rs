@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use crate::config::Results;
-use crate::hdl::{Errors, Graph, Module, Signal};
+use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
 use super::map::{self, control, latency, performance, pointers, status};
 use super::port::{MDATA_BITS, NUMBER_BITS, is_own};
@@ -18,7 +18,7 @@ const BYTE_BITS: u32 = 6;
 const CYCLE_BITS: u32 = 32;
 
 /// Builds the module `spl2_sequence`.
-pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, Errors> {
+pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new("spl2_sequence");
     graph.about("reads the context, polls the control memory, runs jobs, writes counters and status");
     let constant = |width: u32, value: u128| graph.constant(width, value);

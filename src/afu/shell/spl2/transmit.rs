@@ -7,13 +7,13 @@
 
 use std::sync::Arc;
 
-use crate::hdl::{Errors, Graph, Module, Register, Signal};
+use crate::hdl::{BuildErrors, Graph, Module, Register, Signal};
 
 use super::port::{self, NUMBER_BITS, Request, SHELL_EPOCH_BITS, TX_HEADER_BITS};
 use crate::afu::{ADDRESS_BITS, EPOCH_BITS, Spec};
 
 /// Builds the module `spl2_transmit`.
-pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, Errors> {
+pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new("spl2_transmit");
     graph.about("puts requests of core and shell into the transmit ports, and numbers them");
     let slot_bits = spec.max_outstanding.ilog2();

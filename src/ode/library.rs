@@ -32,11 +32,11 @@ impl fmt::Display for Collider {
 /// ODE has no way to bring its own collider back but a new start, so all that live at one time have one collider.
 #[derive(Clone, Debug)]
 pub struct Ode {
-    session: Rc<Session>,
+    guard: Rc<LibraryGuard>,
 }
 
 #[derive(Debug)]
-struct Session {
+struct LibraryGuard {
     collider: Collider,
 }
 
@@ -45,8 +45,8 @@ static TAKEN: Mutex<bool> = Mutex::new(false);
 static RETURNED: Condvar = Condvar::new();
 
 thread_local! {
-    /// The session of this thread, if it has one.
-    static SESSION: RefCell<Weak<Session>> = const { RefCell::new(Weak::new()) };
+    /// The guard of this thread, if it has one.
+    static GUARD: RefCell<Weak<LibraryGuard>> = const { RefCell::new(Weak::new()) };
 }
 
 impl Ode {
@@ -57,8 +57,8 @@ impl Ode {
     /// # Errors
     /// When this thread has ODE with another collider, or the library can't be started or is of single precision.
     pub fn start(collider: Collider) -> Result<Self, Error> {
-        if let Some(session) = SESSION.with_borrow(Weak::upgrade) {
-            let ode = Self { session };
+        if let Some(guard) = GUARD.with_borrow(Weak::upgrade) {
+            let ode = Self { guard };
             return ode.needs(collider).map(|()| ode);
         }
         let mut taken = TAKEN.lock().unwrap_or_else(PoisonError::into_inner);
@@ -67,22 +67,22 @@ impl Ode {
         }
         initialise()?;
         *taken = true;
-        let session = Rc::new(Session { collider });
-        SESSION.set(Rc::downgrade(&session));
+        let guard = Rc::new(LibraryGuard { collider });
+        GUARD.set(Rc::downgrade(&guard));
         if collider == Collider::Engine {
             replace::install();
         }
-        Ok(Self { session })
+        Ok(Self { guard })
     }
 
     /// What collides two spheres.
     pub fn collider(&self) -> Collider {
-        self.session.collider
+        self.guard.collider
     }
 
     /// Refuses what only the other collider can do.
     pub(super) fn needs(&self, wanted: Collider) -> Result<(), Error> {
-        let running = self.session.collider;
+        let running = self.guard.collider;
         if running == wanted { Ok(()) } else { Err(Error::OtherCollider { running, wanted }) }
     }
 }
@@ -104,7 +104,7 @@ fn initialise() -> Result<(), Error> {
     Ok(())
 }
 
-impl Drop for Session {
+impl Drop for LibraryGuard {
     fn drop(&mut self) {
         let mut taken = TAKEN.lock().unwrap_or_else(PoisonError::into_inner);
         // SAFETY: started in `start`, by this thread. All that is made of ODE holds an `Ode`, so nothing is left.

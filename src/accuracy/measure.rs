@@ -1,7 +1,7 @@
-//! Contenders on a set of pairs, judged: the one engine of every study of accuracy.
+//! Contenders on a set of pairs, judged against the truth and measured.
 
 use super::spread::Gathered;
-use super::{Answer, Contender, Errors, Row, Standard, Tally, judge};
+use super::{Answer, Contender, ErrorStatistics, Row, Standard, Tally, judge};
 use crate::kernel::{EngineError, PairRecord};
 use sha2::{Digest, Sha256};
 use std::thread;
@@ -12,7 +12,7 @@ const BATCH: usize = 4096;
 /// A contender that failed.
 #[derive(Debug, thiserror::Error)]
 #[error("{contender}: {error}")]
-pub struct Failed {
+pub struct ContenderError {
     /// Which.
     pub contender: String,
     /// Its own error.
@@ -30,7 +30,7 @@ pub fn measure(
     contenders: &mut [Box<dyn Contender>],
     earlier: &[Row],
     mut progress: impl FnMut(u64),
-) -> Result<(Vec<Row>, usize), Failed> {
+) -> Result<(Vec<Row>, usize), ContenderError> {
     let mut rows: Vec<Row> =
         contenders.iter().map(|contender| Row::new(set, &contender.name(), key(&contender.name(), pairs))).collect();
     let mut open = Vec::new();
@@ -50,7 +50,8 @@ pub fn measure(
         let standards = standards(batch);
         for (index, errors) in &mut open {
             let contender = &mut contenders[*index];
-            let answers = contender.answers(batch).map_err(|error| Failed { contender: contender.name(), error })?;
+            let answers =
+                contender.answers(batch).map_err(|error| ContenderError { contender: contender.name(), error })?;
             let (tally, found) = count_up(&standards, &answers);
             rows[*index].tally = rows[*index].tally.plus(&tally);
             errors.extend(found);
@@ -93,7 +94,7 @@ fn count_up(standards: &[Standard], answers: &[Answer]) -> (Tally, Gathered) {
 }
 
 /// The tally and the errors of answers to valid pairs, whoever gave them.
-pub fn assess(pairs: &[PairRecord], answers: &[Answer]) -> (Tally, Errors) {
+pub fn assess(pairs: &[PairRecord], answers: &[Answer]) -> (Tally, ErrorStatistics) {
     let (tally, errors) = count_up(&standards(pairs), answers);
     (tally, errors.errors())
 }
