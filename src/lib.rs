@@ -50,6 +50,7 @@ pub mod number;
 #[cfg(feature = "ode")]
 pub mod ode;
 pub mod operator;
+pub mod outcome;
 pub mod pairs;
 #[cfg(feature = "cosim")]
 pub mod paper;

@@ -94,8 +94,8 @@ impl From<contact_afu::verify::VerifyError> for Failure {
             }
             VerifyError::Model(CosimError::MissingTool { .. }) => Kind::Tool,
             VerifyError::Model(CosimError::Source(_)) => Kind::Usage,
-            VerifyError::Drive(_) | VerifyError::Machine(_) if error.is_job_failure() => Kind::Failed,
-            VerifyError::Model(_) | VerifyError::Drive(_) | VerifyError::Machine(_) => Kind::Other,
+            VerifyError::Drive(_) | VerifyError::Host(_) if error.is_job_failure() => Kind::Failed,
+            VerifyError::Model(_) | VerifyError::Drive(_) | VerifyError::Host(_) => Kind::Other,
         };
         Self::caused(kind, error)
     }

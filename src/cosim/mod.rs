@@ -14,7 +14,8 @@ mod source;
 pub mod spl2;
 pub mod verilate;
 
-pub use drive::{Driver, Job, Outcome};
+pub use crate::outcome::Outcome;
+pub use drive::{Driver, Job};
 pub use error::{CosimError, SimulationError};
 pub use instance::{Clock, Instance};
 pub use model::Model;

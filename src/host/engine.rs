@@ -15,7 +15,7 @@ impl<T: Transport> Session<T> {
         let mut contacts = Vec::with_capacity(pairs.len());
         for pairs in pairs.chunks(capacity) {
             let done = self.transaction().send(pairs)?.start()?.confirm()?.wait()?;
-            contacts.extend(done.retrieve()?.end()?.contacts);
+            contacts.extend(done.retrieve()?.end()?.by_pair());
         }
         Ok(contacts)
     }

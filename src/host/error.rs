@@ -11,9 +11,9 @@ pub enum HostError {
     /// No workspace is like that.
     #[error("a workspace of {0} pages of 2 MB: give it 1 to 1024")]
     Pages(u64),
-    /// An AFU that sends contacts alone.
-    #[error("this host takes a record for each pair: generate the AFU with --results all")]
-    OnlyHits,
+    /// Source and destination cannot lie there.
+    #[error("the buffers: {0}")]
+    Buffers(&'static str),
     /// An address that is not the workspace's.
     #[error("virtual address {0:#x} is not in the workspace: give it more pages")]
     Outside(u64),
@@ -67,32 +67,26 @@ pub enum HostError {
     },
     /// The status never came.
     #[error(
-        "Status never set, {cycles} cycles after the start word ({reads} reads and {writes} writes without a response): end the \
-         transaction, which resets the AFU, and send it again; a watchdog would have ended the job earlier"
+        "the job did not finish after {cycles} cycles: no status, waiting for {} ({reads} reads and {writes} writes without a \
+         response); end the transaction, which resets the AFU, and send it again",
+        if (*reads, *writes) == (0, 0) { "the AFU" } else { "the link" }
     )]
     NoStatus {
-        /// Cycles waited.
+        /// Cycles since the start word.
         cycles: u64,
         /// Reads that were asked for and not answered.
         reads: u64,
         /// Writes likewise.
         writes: u64,
     },
-    /// The results are another transaction's.
-    #[error(
-        "the status is of transaction {found}, not of {expected}: these results were read too early, wait for their status"
-    )]
-    Stale {
-        /// This one's number.
-        expected: u32,
-        /// The status's.
-        found: u32,
-    },
     /// A line of the results that was never written.
     #[error(
         "line {0} of the destination was never written, though the job ended well: the link lost a write; send it again"
     )]
     Unwritten(u64),
+    /// Records that cannot be those of the pairs that touch.
+    #[error("{0}, though the job ended well: send it again, or load an AFU of this program's version")]
+    Hit(#[from] HitError),
     /// The device ended the job with an error.
     #[error("the AFU ended the job with error {code} ({what}): {advice}")]
     Job {
@@ -120,6 +114,34 @@ pub enum HostError {
     /// The transport.
     #[error(transparent)]
     Transport(#[from] TransportError),
+}
+
+/// Why the records of an AFU that returns only contacts are not believed from here on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum HitError {
+    /// A record's line was never written.
+    #[error("contact {index} of {count} was never written")]
+    Unwritten {
+        /// The record, from 0.
+        index: usize,
+        /// Records that the AFU counted.
+        count: u32,
+    },
+    /// Numbers of pairs must ascend, and be those of pairs.
+    #[error(
+        "contact {index} is of pair {number}, after {}, of {pairs} pairs",
+        after.map_or_else(|| "none".to_owned(), |last| format!("pair {last}"))
+    )]
+    Number {
+        /// The record, from 0.
+        index: usize,
+        /// Its pair's number.
+        number: u32,
+        /// The number before it.
+        after: Option<u32>,
+        /// Pairs of the job.
+        pairs: usize,
+    },
 }
 
 impl HostError {

@@ -8,6 +8,8 @@
 mod engine;
 mod error;
 pub(crate) mod lines;
+mod open;
+pub(crate) mod received;
 mod report;
 mod results;
 mod session;
@@ -18,9 +20,11 @@ mod transport;
 mod verilated;
 mod workspace;
 
-pub use error::HostError;
+pub use error::{HitError, HostError};
 pub use report::Report;
 pub use results::JobResults;
+#[cfg(feature = "cosim")]
+pub(crate) use session::PROGRESS_CYCLES;
 pub use session::{Expected, Session};
 pub use software::Software;
 pub use transaction::{Done, Loaded, Pointed, Retrieved, Running, Started, Transaction};

@@ -1,6 +1,7 @@
 //! What a transaction gave.
 
 use super::error::HostError;
+use super::received::by_pair;
 use super::report::Report;
 use crate::config::RecordFormat;
 use crate::kernel::{ContactRecord, PAIR_FIELDS, PairRecord};
@@ -8,9 +9,12 @@ use crate::kernel::{ContactRecord, PAIR_FIELDS, PairRecord};
 /// The contacts of a transaction, with what the AFU said at its end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JobResults {
-    /// One for each pair, in their order; words that the AFU does not compute are zero.
+    /// A record for each pair, or only for each pair that touches, as the AFU's results are, in the pairs' order. Words
+    /// that the AFU does not compute are zero.
     pub contacts: Vec<ContactRecord>,
-    /// Contacts among them, as the AFU counted.
+    /// For each of `contacts` its pair's number in the job, from 0.
+    pub numbers: Vec<u32>,
+    /// Contacts, as the AFU counted.
     pub hits: u32,
     /// Invalid pairs, as the AFU counted.
     pub invalid: u32,
@@ -25,6 +29,11 @@ pub struct JobResults {
 }
 
 impl JobResults {
+    /// A contact for each pair, in their order; where only contacts come back, the others read as pairs without one.
+    pub fn by_pair(&self) -> Vec<ContactRecord> {
+        by_pair(usize::try_from(self.report.pairs).unwrap_or(usize::MAX), &self.numbers, &self.contacts)
+    }
+
     /// Nothing, if every pair was one.
     ///
     /// # Errors

@@ -1,6 +1,8 @@
 //! A device with its workspace, and what transactions do with both.
 
 use super::error::HostError;
+use super::lines::pack;
+use super::received::{Begin, Status};
 use super::report::Report;
 use super::transaction::{Pointed, Transaction};
 use super::transport::{Transport, TransportError};
@@ -8,18 +10,25 @@ use super::workspace::{AFU_DSM, SPL_CONTEXT, SPL_DSM, Workspace};
 use crate::afu::shell::spl2::map::{self, Csr, control, identity, status};
 use crate::afu::{Afu, BuildError, Capability, Layout, Spec};
 use crate::config::Config;
+use crate::kernel::PairRecord;
 use crate::link::spl2::CsrOffset;
-use crate::link::{LINE_BYTES, Line};
-use crate::patience::{self, Work};
+use crate::link::{LINE_BYTES, Line, Traffic};
+use crate::patience::{self, Patience, Work};
 
-/// Cycles between two looks at memory.
-const POLL_CYCLES: u64 = 16;
+/// Cycles between two calls for progress.
+pub(crate) const PROGRESS_CYCLES: u64 = 4096;
+/// The part of a capability word that says the number of SCPUs.
+const SCPUS: u64 = 0xff;
+/// Bits of a line.
+const LINE_BITS: u32 = 8 * LINE_BYTES as u32;
 
 /// The AFU that a session expects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Expected {
     /// Its capability word.
     pub capability: u64,
+    /// The bits of that word in which the AFU must agree.
+    pub compared: u64,
     /// Where records lie in its lines.
     pub layout: Layout,
 }
@@ -31,7 +40,13 @@ impl Expected {
     /// When it cannot be generated.
     pub fn new(config: &Config) -> Result<Self, BuildError> {
         let afu = Afu::generate(Spec::from(config.clone()))?;
-        Ok(Self { capability: afu.capability(), layout: afu.layout() })
+        Ok(Self { capability: afu.capability(), compared: u64::MAX, layout: afu.layout() })
+    }
+
+    /// An AFU of a configuration whose Verilog may have been edited: of its capability word only the number of SCPUs is
+    /// compared.
+    pub fn edited(config: &Config) -> Self {
+        Self { capability: config.scpus.into(), compared: SCPUS, layout: Layout::of(LINE_BITS, config) }
     }
 
     /// Compares the parts of a capability word.
@@ -46,7 +61,7 @@ impl Expected {
             ("an SCPU latency (another profile or clock) of", 32, 12),
         ];
         for (what, low, bits) in parts {
-            let part = |word: u64| word >> low & ((1 << bits) - 1);
+            let part = |word: u64| (word & self.compared) >> low & ((1 << bits) - 1);
             let (expected, found) = (part(self.capability), part(found));
             if expected != found {
                 return Err(HostError::Capability { what, expected, found });
@@ -62,6 +77,8 @@ pub struct Session<T: Transport> {
     pub(super) transport: T,
     pub(super) workspace: Workspace,
     expected: Expected,
+    /// The AFU as it says itself, once it did.
+    afu: Capability,
     /// The last transaction's number.
     pub(super) sequence: u32,
     /// Cycles without a response, with one owed, after which the AFU gives a job up; 0: never.
@@ -74,7 +91,8 @@ pub struct Session<T: Transport> {
 impl<T: Transport> Session<T> {
     /// A session with the device behind `transport`, over `workspace`, which is to be of the expected AFU's layout.
     pub fn new(transport: T, workspace: Workspace, expected: Expected) -> Self {
-        Self { transport, workspace, expected, sequence: 0, watchdog: 0, max_cycles: None, reports: Vec::new() }
+        let afu = Capability::from_bits(expected.capability);
+        Self { transport, workspace, expected, afu, sequence: 0, watchdog: 0, max_cycles: None, reports: Vec::new() }
     }
 
     /// A transaction: the paper's step 1, in which the host gets its pointers.
@@ -85,6 +103,12 @@ impl<T: Transport> Session<T> {
     /// The workspace.
     pub fn workspace(&self) -> &Workspace {
         &self.workspace
+    }
+
+    /// From the next transaction on, `workspace` takes the place of the one before: writes that a reset left on their
+    /// way may still arrive there.
+    pub fn set_workspace(&mut self, workspace: Workspace) {
+        self.workspace = workspace;
     }
 
     /// The device.
@@ -113,23 +137,45 @@ impl<T: Transport> Session<T> {
         (first..first + lines).for_each(|line| self.transport.memory_mut().set(line, &[0; 16]));
     }
 
-    /// Cycles that so many pairs may take.
-    pub(super) fn patience(&self, pairs: u64) -> u64 {
+    /// How long so many pairs may take.
+    fn patience(&self, pairs: u64) -> Patience {
         let layout = self.workspace.layout();
         let (reads, writes) = (layout.source_lines(pairs), layout.destination_lines(pairs));
         let work = Work { pairs, reads, writes, watchdog: self.watchdog };
-        let afu = Capability::from_bits(self.expected.capability);
-        patience::spl2(&afu, self.transport.link(), &self.transport.spl2(), &work).whole
+        patience::spl2(&self.afu, self.transport.link(), &self.transport.spl2(), &work)
+    }
+
+    /// Puts pairs into the source as the next job, whose start word is still to come.
+    pub(super) fn load(&mut self, pairs: &[PairRecord]) -> Result<(), HostError> {
+        let (layout, count) = (*self.workspace.layout(), pairs.len() as u64);
+        self.put(self.workspace.source(), map::CONTROL_LINE.into(), &[0; 16])?;
+        for (number, line) in (u64::from(map::DATA_LINE)..).zip(pack(&layout, pairs)) {
+            self.put(self.workspace.source(), number, &line)?;
+        }
+        for number in 0..layout.destination_lines(count) {
+            let at = self.workspace.line(self.workspace.destination(), number)?;
+            self.transport.memory_mut().forget(at..at + 1);
+        }
+        self.sequence = self.sequence.wrapping_add(1);
+        Ok(())
+    }
+
+    fn put(&mut self, base: u64, number: u64, line: &Line) -> Result<(), HostError> {
+        let at = self.workspace.line(base, number)?;
+        self.transport.memory_mut().set(at, line);
+        Ok(())
     }
 
     /// Resets SPL and AFU, gives them their memory, waits for the AFU to say who it is, enables it.
     pub(super) fn start_spl(&mut self) -> Result<(), HostError> {
         let pair = |high: Csr, low: Csr| (high.offset, low.offset);
+        self.transport.limit(None);
         self.transport.write_csr(CsrOffset::Control as u32, 1)?;
         self.zero(SPL_DSM, 1);
         self.write_pointer(CsrOffset::DsmHigh as u32, CsrOffset::DsmLow as u32, SPL_DSM)?;
         self.wait_for(|session| session.line_at(SPL_DSM)[0] != 0)?;
         self.zero(AFU_DSM, map::DSM_BYTES / LINE_BYTES);
+        self.transport.watch(AFU_DSM / LINE_BYTES..(AFU_DSM + map::DSM_BYTES) / LINE_BYTES);
         let (high, low) = pair(map::DSM_BASE_HIGH, map::DSM_BASE_LOW);
         self.write_pointer(high, low, AFU_DSM)?;
         self.wait_for(|session| identity::AFU_ID.get(&session.dsm(map::IDENTITY_LINE)) != 0)?;
@@ -151,25 +197,27 @@ impl<T: Transport> Session<T> {
 
     /// Waits for an identity in a DSM.
     fn wait_for(&mut self, is_there: impl Fn(&Self) -> bool) -> Result<(), HostError> {
-        let (begun, patience) = (self.transport.cycle(), self.patience(0));
+        let (begun, patience) = (self.transport.cycle(), self.patience(0).whole);
         while !is_there(self) {
             let waited = self.transport.cycle() - begun;
             if waited > patience {
                 return Err(HostError::NoIdentity(waited));
             }
-            self.transport.advance(POLL_CYCLES)?;
+            self.transport.advance(1)?;
         }
         Ok(())
     }
 
     /// Whether the DSM is of the AFU that is expected.
-    pub(super) fn check_identity(&self) -> Result<(), HostError> {
+    pub(super) fn check_identity(&mut self) -> Result<(), HostError> {
         let line = self.dsm(map::IDENTITY_LINE);
         let (afu_id, version) = (identity::AFU_ID.get(&line), identity::VERSION.get(&line) as u32);
         if (afu_id, version) != (map::AFU_ID, map::VERSION) {
             return Err(HostError::Identity { afu_id, version });
         }
-        self.expected.check(identity::CAPABILITY.get(&line) as u64)
+        let found = identity::CAPABILITY.get(&line) as u64;
+        self.afu = Capability::from_bits(found);
+        self.expected.check(found)
     }
 
     fn line_at(&self, address: u64) -> Line {
@@ -189,29 +237,45 @@ impl<T: Transport> Session<T> {
         control::ABORT.set(&mut line, abort.into());
         control::WATCHDOG.set(&mut line, self.watchdog.into());
         control::START.set(&mut line, map::START_WORD.into());
-        let at = self.workspace.line(self.workspace.source(), map::CONTROL_LINE.into())?;
-        self.transport.memory_mut().set(at, &line);
-        Ok(())
+        self.put(self.workspace.source(), map::CONTROL_LINE.into(), &line)
     }
 
-    /// The status of the transaction that runs, among the device's writes from `logged` on: the line, its cycle.
-    fn arrived(&self, logged: usize) -> Result<Option<(Line, u64)>, HostError> {
-        let at = self.workspace.line(self.workspace.context(), map::STATUS_LINE.into())?;
-        let of_this = |line: &Line| status::SEQUENCE.get(line) == self.sequence.into() && status::DONE.get(line) == 1;
-        let new = self.transport.device_writes().get(logged..).unwrap_or_default();
-        Ok(new.iter().find(|write| write.address == at && of_this(&write.data)).map(|write| (write.data, write.cycle)))
+    /// Begins the job that is loaded: from now on the device may touch its lines only.
+    pub(super) fn start(&mut self, pairs: u32) -> Result<Begin, HostError> {
+        let Self { transport, workspace, .. } = self;
+        transport.limit(Some(workspace.limits(pairs.into())));
+        let (cycle, traffic, logged) = (transport.cycle(), transport.traffic(), transport.device_writes().len());
+        self.set_control(pairs, false)?;
+        Ok(Begin { cycle, traffic, logged })
     }
 
-    /// Waits for the status.
-    pub(super) fn wait_for_status(&mut self, logged: usize, patience: u64) -> Result<(Line, u64), HostError> {
-        let (begun, before) = (self.transport.cycle(), self.transport.traffic());
+    /// The status of the job that began so, once it is there.
+    pub(super) fn status(&self, begin: &Begin) -> Option<Status> {
+        let status_line = u64::from(map::STATUS_LINE) * LINE_BYTES;
+        let at = self.workspace.physical(self.workspace.context() + status_line)?;
+        let of_job = |line: &Line| status::SEQUENCE.get(line) == self.sequence.into() && status::DONE.get(line) == 1;
+        let new = self.transport.device_writes().get(begin.logged..)?;
+        let write = new.iter().find(|write| write.address == at && of_job(&write.data))?;
+        Some(Status { line: write.data, cycle: write.cycle })
+    }
+
+    /// Waits for the status of a job of `pairs` pairs; `progress` hears now and then what went over the link so far.
+    pub(super) fn wait_for_status(
+        &mut self,
+        begin: &Begin,
+        pairs: u32,
+        progress: &mut dyn FnMut(Traffic),
+    ) -> Result<Status, HostError> {
+        let patience = self.patience(pairs.into());
+        let whole = self.max_cycles.unwrap_or(patience.whole);
         loop {
-            if let Some(status) = self.arrived(logged)? {
+            if let Some(status) = self.status(begin) {
                 return Ok(status);
             }
-            let cycles = self.transport.cycle() - begun;
-            if cycles > patience {
-                let now = self.transport.traffic();
+            let now = self.transport.cycle();
+            let (cycles, quiet) = (now - begin.cycle, now - self.transport.last_work().max(begin.cycle));
+            if cycles > whole || quiet > patience.quiet {
+                let (before, now) = (begin.traffic, self.transport.traffic());
                 let owed = |asked: u64, answered: u64| asked.saturating_sub(answered);
                 return Err(HostError::NoStatus {
                     cycles,
@@ -219,7 +283,10 @@ impl<T: Transport> Session<T> {
                     writes: owed(now.writes - before.writes, now.write_responses - before.write_responses),
                 });
             }
-            self.transport.advance(POLL_CYCLES)?;
+            self.transport.advance(1)?;
+            if self.transport.cycle().is_multiple_of(PROGRESS_CYCLES) {
+                progress(self.transport.traffic());
+            }
         }
     }
 }

@@ -77,8 +77,7 @@ impl Software {
         self.memory.set(address, line);
         self.traffic.writes += 1;
         self.traffic.write_responses += 1;
-        let in_dsm = self.dsm.is_some_and(|first| (first..first + DSM_LINES).contains(&address));
-        if in_dsm || self.watched.iter().any(|lines| lines.contains(&address)) {
+        if self.watched.iter().any(|lines| lines.contains(&address)) {
             self.log.push(DeviceWrite { address, data: *line, cycle: self.cycle });
         }
     }
@@ -117,7 +116,7 @@ impl Software {
             let low = self.csrs.get(&(CsrOffset::ContextLow as u32)).copied().unwrap_or(0);
             let context = self.address(CsrOffset::ContextHigh as u32, low);
             let pages = Pages::read(&self.memory, context);
-            self.pages = Some(pages.map_err(|error| TransportError::Device(error.to_string()))?);
+            self.pages = Some(pages.map_err(|what| TransportError::Protocol { cycle: self.cycle, what })?);
         }
         Ok(())
     }

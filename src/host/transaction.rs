@@ -1,15 +1,14 @@
 //! A transaction as types: the paper's seven steps (section IV.A, Figure 3), each possible only after the one before.
 
 use super::error::HostError;
-use super::lines::{Contacts, pack};
-use super::report::Report;
+use super::open::Open;
+use super::received::{Begin, Status};
 use super::results::JobResults;
 use super::session::Session;
 use super::transport::Transport;
-use super::workspace::pages_for;
-use crate::afu::shell::spl2::map::{self, performance, status};
-use crate::kernel::{ContactRecord, PairRecord, settle};
-use crate::link::{LINE_BYTES, Line, Traffic};
+use crate::kernel::PairRecord;
+use crate::link::Traffic;
+use crate::outcome::Outcome;
 
 /// After step 1: the pointers are known.
 #[derive(Debug)]
@@ -20,32 +19,23 @@ pub struct Loaded(());
 /// After step 3: the start word is in the control memory.
 #[derive(Debug)]
 pub struct Started {
-    clock: Begin,
+    begin: Begin,
 }
 /// After step 4: the AFU said who it is.
 #[derive(Debug)]
 pub struct Running {
-    clock: Begin,
+    begin: Begin,
 }
 /// After step 5: the status is there.
 #[derive(Debug)]
 pub struct Done {
-    clock: Begin,
-    status: Line,
-    cycle: u64,
+    begin: Begin,
+    status: Status,
 }
 /// After step 6: the results are the host's.
 #[derive(Debug)]
 pub struct Retrieved {
     results: JobResults,
-}
-
-/// When a job began: the cycle, the traffic before it, the device's writes before it.
-#[derive(Clone, Copy, Debug)]
-struct Begin {
-    cycle: u64,
-    traffic: Traffic,
-    logged: usize,
 }
 
 /// A transaction at the step that `S` names. Each step takes the transaction and gives the next, so none can be left
@@ -113,53 +103,15 @@ pub struct Transaction<'s, T: Transport, S> {
     state: S,
 }
 
-/// What has to be undone, by the last step or by dropping.
-#[derive(Debug)]
-struct Open<'s, T: Transport> {
-    session: &'s mut Session<T>,
-    is_spl_started: bool,
-    /// Pairs, once they are in the source.
-    pairs: u32,
-    /// They themselves, for those that the AFU leaves unsettled.
-    sent: Vec<PairRecord>,
-    report: Report,
-}
-
-impl<T: Transport> Open<'_, T> {
-    /// Stops SPL and frees what the transaction used of the workspace.
-    fn finish(&mut self) -> Result<(), HostError> {
-        if !std::mem::take(&mut self.is_spl_started) {
-            return Ok(());
-        }
-        let begun = self.session.transport.cycle();
-        let stopped = self.session.stop_spl();
-        self.report.tear_down = self.session.transport.cycle() - begun;
-        let Session { transport, workspace, .. } = &mut *self.session;
-        let (layout, pairs) = (*workspace.layout(), u64::from(self.pairs));
-        let used = [
-            (workspace.source(), layout.source_lines(pairs) + u64::from(map::DATA_LINE)),
-            (workspace.destination(), layout.destination_lines(pairs)),
-        ];
-        for (base, lines) in used {
-            for line in (0..lines).filter_map(|line| workspace.line(base, line).ok()) {
-                transport.memory_mut().forget(line..line + 1);
-            }
-        }
-        stopped
-    }
-}
-
-impl<T: Transport> Drop for Open<'_, T> {
-    fn drop(&mut self) {
-        // Whatever goes wrong now, there is nobody to tell; the next transaction begins with a reset.
-        let _ = self.finish();
-    }
-}
-
 impl<'s, T: Transport, S> Transaction<'s, T, S> {
     /// The device, with the memory.
     pub fn transport(&self) -> &T {
         &self.open.session.transport
+    }
+
+    /// The device, to plant faults.
+    pub fn transport_mut(&mut self) -> &mut T {
+        &mut self.open.session.transport
     }
 
     fn to<N>(self, state: impl FnOnce(S) -> N) -> Transaction<'s, T, N> {
@@ -169,10 +121,7 @@ impl<'s, T: Transport, S> Transaction<'s, T, S> {
 
 impl<'s, T: Transport> Transaction<'s, T, Pointed> {
     pub(super) fn new(session: &'s mut Session<T>) -> Self {
-        let Session { transport, .. } = &*session;
-        let stated = transport.link().session;
-        let report = Report { stated_set_up: stated.set_up, stated_tear_down: stated.tear_down, ..Report::default() };
-        Self { open: Open { session, is_spl_started: false, pairs: 0, sent: Vec::new(), report }, state: Pointed(()) }
+        Self { open: Open::new(session), state: Pointed(()) }
     }
 
     /// pVAFU2_CNTXT: virtual byte address of the AFU's context.
@@ -195,27 +144,8 @@ impl<'s, T: Transport> Transaction<'s, T, Pointed> {
     /// # Errors
     /// More pairs than the buffers hold; no AFU_ID, or not that of the AFU expected; what the device did wrong.
     pub fn send(mut self, pairs: &[PairRecord]) -> Result<Transaction<'s, T, Loaded>, HostError> {
-        self.open.session.workspace.layout().check(pairs)?;
-        self.open.sent = pairs.to_vec();
-        let Open { session, is_spl_started, report, pairs: sent, .. } = &mut self.open;
-        let capacity = session.workspace.capacity();
-        let (layout, count) = (*session.workspace.layout(), pairs.len() as u64);
-        let too_many = || HostError::TooManyPairs { pairs: count, capacity, pages: pages_for(&layout, count) };
-        *sent = u32::try_from(count).ok().filter(|_| count <= capacity).ok_or_else(too_many)?;
-        report.pairs = count;
-        for (number, line) in (u64::from(map::DATA_LINE)..).zip(pack(&layout, pairs)) {
-            let at = session.workspace.line(session.workspace.source(), number)?;
-            session.transport.memory_mut().set(at, &line);
-        }
-        for number in 0..layout.destination_lines(count) {
-            let at = session.workspace.line(session.workspace.destination(), number)?;
-            session.transport.memory_mut().forget(at..at + 1);
-        }
-        session.sequence = session.sequence.wrapping_add(1);
-        let begun = session.transport.cycle();
-        *is_spl_started = true;
-        session.start_spl()?;
-        report.set_up = session.transport.cycle() - begun;
+        self.open.load(pairs)?;
+        self.open.start_spl()?;
         Ok(self.to(|_| Loaded(())))
     }
 }
@@ -225,11 +155,9 @@ impl<'s, T: Transport> Transaction<'s, T, Loaded> {
     ///
     /// # Errors
     /// [`HostError::Outside`], which a workspace cannot give.
-    pub fn start(self) -> Result<Transaction<'s, T, Started>, HostError> {
-        let transport = &self.open.session.transport;
-        let (cycle, traffic, logged) = (transport.cycle(), transport.traffic(), transport.device_writes().len());
-        self.open.session.set_control(self.open.pairs, false)?;
-        Ok(self.to(|_| Started { clock: Begin { cycle, traffic, logged } }))
+    pub fn start(mut self) -> Result<Transaction<'s, T, Started>, HostError> {
+        let begin = self.open.start()?;
+        Ok(self.to(|_| Started { begin }))
     }
 }
 
@@ -241,7 +169,7 @@ impl<'s, T: Transport> Transaction<'s, T, Started> {
     /// When it is another by now.
     pub fn confirm(self) -> Result<Transaction<'s, T, Running>, HostError> {
         self.open.session.check_identity()?;
-        Ok(self.to(|started| Running { clock: started.clock }))
+        Ok(self.to(|Started { begin }| Running { begin }))
     }
 }
 
@@ -251,7 +179,7 @@ impl<'s, T: Transport> Transaction<'s, T, Running> {
     /// # Errors
     /// [`HostError::Outside`], which a workspace cannot give.
     pub fn abort(&mut self) -> Result<(), HostError> {
-        self.open.session.set_control(self.open.pairs, true)
+        self.open.abort()
     }
 
     /// Lets time pass without looking.
@@ -259,83 +187,82 @@ impl<'s, T: Transport> Transaction<'s, T, Running> {
     /// # Errors
     /// What the device did wrong meanwhile.
     pub fn idle(&mut self, cycles: u64) -> Result<(), HostError> {
-        Ok(self.open.session.transport.advance(cycles)?)
+        Ok(self.transport_mut().advance(cycles)?)
+    }
+
+    /// Whether the status is there.
+    pub fn is_done(&self) -> bool {
+        self.open.session.status(&self.state.begin).is_some()
     }
 
     /// Step 5: waits for the status.
     ///
     /// # Errors
-    /// [`HostError::NoStatus`] when it does not come in as many cycles as a right AFU needs at most
-    /// ([`patience`](crate::patience)), or as [`Session::max_cycles`] says; what the device did wrong.
+    /// [`HostError::NoStatus`] when the AFU takes, or is silent for, longer than a right one at most
+    /// ([`patience`](crate::patience)), or takes longer than [`Session::max_cycles`]; what the device did wrong.
     pub fn wait(self) -> Result<Transaction<'s, T, Done>, HostError> {
-        let session = &mut *self.open.session;
-        let patience = session.max_cycles.unwrap_or_else(|| session.patience(self.open.pairs.into()));
-        let (status, cycle) = session.wait_for_status(self.state.clock.logged, patience)?;
-        Ok(self.to(|running| Done { clock: running.clock, status, cycle }))
+        self.wait_with(|_| {})
+    }
+
+    /// [`wait`](Self::wait) that calls `progress`, now and then, with what went over the link so far.
+    ///
+    /// # Errors
+    /// As `wait`.
+    pub fn wait_with(self, mut progress: impl FnMut(Traffic)) -> Result<Transaction<'s, T, Done>, HostError> {
+        let status = self.open.session.wait_for_status(&self.state.begin, self.open.count(), &mut progress)?;
+        Ok(self.to(|Running { begin }| Done { begin, status }))
     }
 }
 
 impl<'s, T: Transport> Transaction<'s, T, Done> {
+    /// The outcome as it stands in memory, also of a job that ended with an error: the AFU's counts, each destination
+    /// line, and the cycle in which it was written.
+    pub fn outcome(&self) -> Outcome {
+        self.open.outcome(&self.state.begin, &self.state.status)
+    }
+
     /// Step 6: takes the results from the destination.
     ///
     /// # Errors
-    /// [`HostError::Job`] when the AFU ended the job with an error; [`HostError::Stale`], [`HostError::Unwritten`] when
+    /// [`HostError::Job`] when the AFU ended the job with an error; [`HostError::Unwritten`], [`HostError::Hit`] when
     /// memory does not hold what the status promises.
     pub fn retrieve(mut self) -> Result<Transaction<'s, T, Retrieved>, HostError> {
-        let Done { clock, status, cycle } = self.state;
-        let session = &*self.open.session;
-        let found = status::SEQUENCE.get(&status) as u32;
-        if found != session.sequence {
-            return Err(HostError::Stale { expected: session.sequence, found });
-        }
-        HostError::of_status(status::ERROR.get(&status) as u8).map_or(Ok(()), Err)?;
-
-        let (workspace, memory) = (&session.workspace, session.transport.memory());
-        let layout = workspace.layout();
-        let mut lines = Vec::new();
-        for number in 0..layout.destination_lines(self.open.pairs.into()) {
-            let line = memory.get(workspace.line(workspace.destination(), number)?);
-            lines.push(Some(*line.ok_or(HostError::Unwritten(number))?));
-        }
-        let memory = Contacts::new(layout, &lines);
-        let read = (0..self.open.pairs as usize).filter_map(|pair| memory.get(pair));
-        let mut contacts: Vec<ContactRecord> = read.collect();
-        // Before anyone reads them: what the profile exact could not settle.
-        let unsettled = settle(&self.open.sent, &mut contacts, layout.fields());
-
-        let figures = session.dsm(map::PERFORMANCE_LINE);
-        let traffic = session.transport.traffic();
-        let reads = traffic.read_responses - clock.traffic.read_responses;
-        let writes = traffic.write_responses - clock.traffic.write_responses;
-        let report = &mut self.open.report;
-        report.run = performance::BUSY.get(&figures) as u64;
-        report.handshake = (cycle - clock.cycle).saturating_sub(report.run);
-        (report.bytes_read, report.bytes_written) = (reads * LINE_BYTES, writes * LINE_BYTES);
-        report.link_limit = session.transport.link().limit_cycles(reads, writes);
-        let word = |field: map::Field| field.get(&status) as u32;
-        let results = JobResults {
-            contacts,
-            hits: word(status::CONTACTS),
-            invalid: word(status::INVALID),
-            first_invalid: Some(word(status::FIRST_INVALID)).filter(|&pair| pair != u32::MAX),
-            unsettled,
-            record: layout.record(),
-            report: *report,
-        };
+        let results = self.open.results(&self.outcome())?;
         Ok(self.to(|_| Retrieved { results }))
+    }
+
+    /// Step 2 again, for another job: puts these pairs in the place of the last ones, while SPL and AFU go on.
+    ///
+    /// # Errors
+    /// More pairs than the buffers hold.
+    pub fn send_next(mut self, pairs: &[PairRecord]) -> Result<Transaction<'s, T, Loaded>, HostError> {
+        self.open.load(pairs)?;
+        Ok(self.to(|_| Loaded(())))
     }
 }
 
-impl<T: Transport> Transaction<'_, T, Retrieved> {
+impl<'s, T: Transport> Transaction<'s, T, Retrieved> {
+    /// The results.
+    pub fn results(&self) -> &JobResults {
+        &self.state.results
+    }
+
+    /// Step 2 again, for another job: puts these pairs in the place of the last ones, while SPL and AFU go on.
+    ///
+    /// # Errors
+    /// More pairs than the buffers hold.
+    pub fn send_next(mut self, pairs: &[PairRecord]) -> Result<Transaction<'s, T, Loaded>, HostError> {
+        self.open.load(pairs)?;
+        Ok(self.to(|_| Loaded(())))
+    }
+
     /// Step 7: stops SPL and frees the workspace.
     ///
     /// # Errors
     /// What the device did wrong meanwhile.
     pub fn end(mut self) -> Result<JobResults, HostError> {
-        self.open.finish()?;
-        let mut results = self.state.results;
-        results.report = self.open.report;
-        self.open.session.reports.push(self.open.report);
-        Ok(results)
+        let report = self.open.finish()?;
+        self.open.session.reports.push(report);
+        Ok(JobResults { report, ..self.state.results })
     }
 }

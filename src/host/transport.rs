@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::link::spl2::{DeviceWrite, Spl2Model};
+use crate::link::spl2::{DeviceWrite, Limits, Spl2Error, Spl2Model};
 use crate::link::{LinkModel, Memory, Traffic};
 
 /// A device below SPL2, with the memory that it shares with the host.
@@ -28,11 +28,26 @@ pub trait Transport {
     /// Cycles so far.
     fn cycle(&self) -> u64;
 
-    /// From now on the device's writes to these physical lines are logged, as those to its DSM always are.
+    /// From now on the device's writes to these physical lines are logged.
     fn watch(&mut self, lines: Range<u64>);
 
-    /// The device's writes to its DSM and to watched lines, in the order in which they arrived.
+    /// The device's writes to watched lines, in the order in which they arrived.
     fn device_writes(&self) -> &[DeviceWrite];
+
+    /// From now on the device may touch only the lines of a job, or again all. A simulated device fails when it touches
+    /// another; a device that nobody can observe ignores this.
+    fn limit(&mut self, _limits: Option<Limits>) {}
+
+    /// The cycle in which the device sent a line of the limited job's results. `None` if it did not, or cannot be
+    /// observed.
+    fn sent(&self, _virtual_line: u64) -> Option<u64> {
+        None
+    }
+
+    /// The cycle of the device's last request that was not a poll. A device that cannot be observed is never idle.
+    fn last_work(&self) -> u64 {
+        self.cycle()
+    }
 
     /// The link between device and memory.
     fn link(&self) -> &LinkModel;
@@ -58,6 +73,14 @@ pub enum TransportError {
         what: &'static str,
         /// The virtual line address.
         line: u64,
+    },
+    /// The device broke the protocol of its port.
+    #[error("protocol broken in cycle {cycle}: {what}")]
+    Protocol {
+        /// The cycle, counted from the device's first.
+        cycle: u64,
+        /// What it did.
+        what: Spl2Error,
     },
     /// Anything else.
     #[error("the device: {0}")]

@@ -2,17 +2,25 @@
 
 use std::ops::Range;
 
+use super::error::HostError;
 use super::transport::{Transport, TransportError};
 use crate::cosim::spl2::{Machine, MachineError};
-use crate::link::spl2::{DeviceWrite, Spl2Error, Spl2Model};
+use crate::link::spl2::{DeviceWrite, Limits, Spl2Error, Spl2Model};
 use crate::link::{LinkModel, Memory, Traffic};
 
 impl From<MachineError> for TransportError {
     fn from(error: MachineError) -> Self {
         match error {
             MachineError::Protocol { what: Spl2Error::PageFault { what, line }, .. } => Self::PageFault { what, line },
+            MachineError::Protocol { cycle, what } => Self::Protocol { cycle, what },
             error => Self::Device(error.to_string()),
         }
+    }
+}
+
+impl From<MachineError> for HostError {
+    fn from(error: MachineError) -> Self {
+        Self::Transport(error.into())
     }
 }
 
@@ -22,11 +30,11 @@ impl Transport for Machine<'_> {
     }
 
     fn memory(&self) -> &Memory {
-        Machine::memory(self)
+        &self.spl().link().memory
     }
 
     fn memory_mut(&mut self) -> &mut Memory {
-        Machine::memory_mut(self)
+        &mut self.spl_mut().link_mut().memory
     }
 
     fn advance(&mut self, cycles: u64) -> Result<(), TransportError> {
@@ -42,7 +50,19 @@ impl Transport for Machine<'_> {
     }
 
     fn device_writes(&self) -> &[DeviceWrite] {
-        Machine::device_writes(self)
+        self.spl().log()
+    }
+
+    fn limit(&mut self, limits: Option<Limits>) {
+        self.spl_mut().limit(limits);
+    }
+
+    fn sent(&self, virtual_line: u64) -> Option<u64> {
+        self.spl().written(virtual_line)
+    }
+
+    fn last_work(&self) -> u64 {
+        Machine::last_work(self)
     }
 
     fn link(&self) -> &LinkModel {

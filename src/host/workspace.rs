@@ -12,14 +12,14 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use super::error::HostError;
 use crate::afu::Layout;
 use crate::afu::shell::spl2::map::{self, pointers};
-use crate::link::spl2::{MAX_PAGES, PAGE_BYTES};
+use crate::link::spl2::{Limits, MAX_PAGES, PAGE_BYTES};
 use crate::link::{LINE_BYTES, Line, Memory};
 
 const PAGE_LINES: u64 = PAGE_BYTES / LINE_BYTES;
 /// The virtual byte address of a workspace.
 const BASE: u64 = 0x0000_7F12_3460_0000;
-/// Bytes of the AFU's context.
-const CONTEXT_BYTES: u64 = 128;
+/// Lines of the AFU's context.
+const CONTEXT_LINES: u64 = 2;
 /// Physical pages that a workspace's may be among: the second terabyte.
 const PHYSICAL: Range<u64> = (1 << 40) / PAGE_BYTES..(1 << 41) / PAGE_BYTES;
 
@@ -35,17 +35,19 @@ pub struct Workspace {
     /// Physical page numbers, in the order of virtual pages.
     pages: Vec<u64>,
     layout: Layout,
+    /// Lines from the beginning to the source, and to the destination.
+    source: u64,
+    destination: u64,
+    /// Lines of each.
+    lines: u64,
 }
 
 impl Workspace {
     /// A workspace of 1 to 1024 pages for records of `layout`; `seed` scatters the pages over physical memory.
     ///
     /// # Errors
-    /// [`HostError::Pages`]; [`HostError::OnlyHits`] where only contacts come back.
+    /// [`HostError::Pages`].
     pub fn new(layout: Layout, pages: u64, seed: u64) -> Result<Self, HostError> {
-        if layout.number_bits() > 0 {
-            return Err(HostError::OnlyHits);
-        }
         if !(1..=MAX_PAGES).contains(&pages) {
             return Err(HostError::Pages(pages));
         }
@@ -57,7 +59,24 @@ impl Workspace {
                 scattered.push(page);
             }
         }
-        Ok(Self { pages: scattered, layout })
+        let lines = half_lines(pages);
+        Ok(Self { pages: scattered, layout, source: CONTEXT_LINES, destination: CONTEXT_LINES + lines, lines })
+    }
+
+    /// The same pages with source and destination elsewhere: in lines from the beginning, each `lines` long.
+    ///
+    /// # Errors
+    /// [`HostError::Buffers`] if they overlap, or do not fit behind the context.
+    pub fn with_buffers(self, source: u64, destination: u64, lines: u32) -> Result<Self, HostError> {
+        let (lines, all) = (u64::from(lines), self.pages() * PAGE_LINES);
+        let ends_inside = source.max(destination).checked_add(lines).is_some_and(|end| end <= all);
+        if !ends_inside || source.min(destination) < CONTEXT_LINES {
+            return Err(HostError::Buffers("they do not fit behind the context: give the workspace more pages"));
+        }
+        if source.abs_diff(destination) < lines {
+            return Err(HostError::Buffers("they overlap"));
+        }
+        Ok(Self { source, destination, lines, ..self })
     }
 
     /// The least workspace that holds `pairs` pairs and their contacts.
@@ -85,7 +104,8 @@ impl Workspace {
 
     /// Pairs that a transaction may have: as many as source and destination hold, and a count can say.
     pub fn capacity(&self) -> u64 {
-        capacity(&self.layout, self.pages())
+        let pairs = self.lines.saturating_sub(map::DATA_LINE.into()) * u64::from(self.layout.pairs_per_line());
+        pairs.min(self.lines * u64::from(self.layout.contacts_per_line())).min(u32::MAX.into())
     }
 
     /// Virtual byte address of the AFU's context.
@@ -95,20 +115,20 @@ impl Workspace {
 
     /// pSource: virtual byte address of the control memory, behind which the pairs lie.
     pub fn source(&self) -> u64 {
-        BASE + CONTEXT_BYTES
+        BASE + self.source * LINE_BYTES
     }
 
     /// pDest: virtual byte address of the first contact.
     pub fn destination(&self) -> u64 {
-        self.source() + half_lines(self.pages()) * LINE_BYTES
+        BASE + self.destination * LINE_BYTES
     }
 
     /// Lines of source, and of destination.
     pub fn buffer_lines(&self) -> u64 {
-        half_lines(self.pages())
+        self.lines
     }
 
-    /// The physical line of a virtual byte address; nothing outside of the workspace.
+    /// The physical line of a virtual byte address; `None` outside of the workspace.
     pub fn physical(&self, address: u64) -> Option<u64> {
         let line = address.checked_sub(BASE)? / LINE_BYTES;
         let page = self.pages.get(usize::try_from(line / PAGE_LINES).ok()?)?;
@@ -119,6 +139,19 @@ impl Workspace {
     pub(super) fn line(&self, base: u64, line: u64) -> Result<u64, HostError> {
         let address = base + line * LINE_BYTES;
         self.physical(address).ok_or(HostError::Outside(address))
+    }
+
+    /// The lines that a job of so many pairs may touch.
+    pub(super) fn limits(&self, pairs: u64) -> Limits {
+        let line = |address: u64| address / LINE_BYTES;
+        let (context, source, destination) = (line(self.context()), line(self.source()), line(self.destination()));
+        let [pointers, status] = [map::POINTERS_LINE, map::STATUS_LINE].map(|number| context + u64::from(number));
+        let source_lines = u64::from(map::DATA_LINE) + self.layout.source_lines(pairs);
+        Limits {
+            reads: vec![pointers..pointers + 1, source..source + source_lines],
+            status: status..status + 1,
+            results: destination..destination + self.layout.destination_lines(pairs),
+        }
     }
 
     /// Writes SPL's context, the page table, and the AFU's context.
@@ -149,25 +182,18 @@ impl Workspace {
 
 /// Lines of each half behind the context: (length − 128) / 2, a whole number of lines for any number of pages.
 fn half_lines(pages: u64) -> u64 {
-    (pages * PAGE_BYTES - CONTEXT_BYTES) / 2 / LINE_BYTES
-}
-
-fn capacity(layout: &Layout, pages: u64) -> u64 {
-    let half = half_lines(pages);
-    let pairs = (half - u64::from(map::DATA_LINE)) * u64::from(layout.pairs_per_line());
-    pairs.min(half * u64::from(layout.contacts_per_line())).min(u32::MAX.into())
+    (pages * PAGE_LINES - CONTEXT_LINES) / 2
 }
 
 /// Pages that so many pairs need, be they more than there can be.
 pub(super) fn pages_for(layout: &Layout, pairs: u64) -> u64 {
     let half = (layout.source_lines(pairs) + u64::from(map::DATA_LINE)).max(layout.destination_lines(pairs));
-    (2 * half + CONTEXT_BYTES / LINE_BYTES).div_ceil(PAGE_LINES)
+    (2 * half + CONTEXT_LINES).div_ceil(PAGE_LINES)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::{Config, Results};
     use crate::kernel::Fields;
 
     fn layout() -> Layout {
@@ -212,8 +238,15 @@ mod tests {
     fn impossible_sizes_say_what_to_do() {
         let text = |result: Result<Workspace, HostError>| result.unwrap_err().to_string();
         assert_eq!(text(Workspace::new(layout(), 0, 1)), "a workspace of 0 pages of 2 MB: give it 1 to 1024");
-        let hits = Layout::of(512, &Config { results: Results::Hits, ..Config::default() });
-        assert_eq!(Workspace::new(hits, 1, 1).unwrap_err(), HostError::OnlyHits);
         assert!(text(Workspace::for_pairs(layout(), 1 << 33, 1)).contains("give it 1 to 1024"));
+        let with = |source, destination, lines| {
+            Workspace::new(layout(), 1, 1).unwrap().with_buffers(source, destination, lines).map(|it| it.capacity())
+        };
+        assert_eq!((with(2, PAGE_LINES - 4, 4), with(PAGE_LINES - 4, 2, 4)), (Ok(6), Ok(6)));
+        let outside = "the buffers: they do not fit behind the context: give the workspace more pages";
+        for (source, destination) in [(2, PAGE_LINES - 3), (1, 9), (u64::MAX, 9)] {
+            assert_eq!(with(source, destination, 4).unwrap_err().to_string(), outside);
+        }
+        assert_eq!(with(5, 8, 4).unwrap_err().to_string(), "the buffers: they overlap");
     }
 }

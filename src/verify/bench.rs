@@ -6,19 +6,17 @@ use std::time::Instant;
 use super::check::{Verdict, check};
 use super::error::VerifyError;
 use super::replay::Setup;
-use crate::afu::{Afu, Layout, Spec, file_list, top_name};
+use crate::afu::{Afu, Spec, file_list, top_name};
 use crate::config::{self, Config, Results, Shell};
-use crate::cosim::spl2::{Machine, Place, Session};
+use crate::cosim::spl2::Machine;
 use crate::cosim::{CosimError, Driver, File, Instance, Job, Model, Outcome, Source, Trace};
-use crate::host::lines;
+use crate::host::{Expected, HostError, PROGRESS_CYCLES, Session, Workspace, lines};
 use crate::kernel::{PairRecord, Reference};
 use crate::link::spl2::{Spl2, Spl2Model};
 use crate::link::{Link, LinkModel, Traffic};
 
 /// Its parameter that says how many SCPUs.
 const SCPUS: &str = "SCPUS";
-/// Bits of a line: what links carry.
-const LINE_BITS: u32 = 512;
 /// How far a job has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Progress {
@@ -27,9 +25,6 @@ pub enum Progress {
     /// The simulation has ended; the host compares with the reference.
     Comparing,
 }
-
-/// Cycles between two calls for progress.
-const PROGRESS_CYCLES: u64 = 4096;
 
 /// Where a model came from.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -47,7 +42,7 @@ pub struct Bench {
     folder: Option<PathBuf>,
     source: Source,
     model: Model,
-    layout: Layout,
+    expected: Expected,
     reference: Reference,
 }
 
@@ -109,7 +104,7 @@ impl Bench {
             folder: None,
             source,
             model,
-            layout: Layout::of(LINE_BITS, config),
+            expected: Expected::edited(config),
             reference: config.reference(),
         })
     }
@@ -155,14 +150,9 @@ impl Bench {
         waveform: Option<&Path>,
         mut progress: impl FnMut(Progress),
     ) -> Result<Verdict, VerifyError> {
+        let layout = self.expected.layout;
         let count = u32::try_from(pairs.len()).map_err(|_| VerifyError::Pairs(pairs.len()))?;
-        self.layout.check(pairs)?;
-        let source = lines::pack(&self.layout, pairs);
-        let mut job = Job::new(&source, count, self.layout.destination_lines(u64::from(count)));
-        job.scpus = Some(self.config.scpus);
-        let only_hits = self.config.results == Results::Hits;
-        job.hits_per_line = only_hits.then(|| self.layout.contacts_per_line());
-
+        layout.check(pairs)?;
         let begun = Instant::now();
         let instance = self.model.instance(seed)?;
         if let Some(path) = waveform {
@@ -173,14 +163,14 @@ impl Bench {
         let link = Link::new(link.clone(), seed)?;
         let mut tell = |traffic: Traffic| {
             let pairs = match self.config.results {
-                Results::All => traffic.write_responses * u64::from(self.layout.contacts_per_line()),
-                Results::Hits => traffic.read_responses * u64::from(self.layout.pairs_per_line()),
+                Results::All => traffic.write_responses * u64::from(layout.contacts_per_line()),
+                Results::Hits => traffic.read_responses * u64::from(layout.pairs_per_line()),
             };
             progress(Progress::Simulated(pairs.min(count.into())));
         };
         let outcome = match self.config.shell {
-            Shell::Spl2 => spl2(&instance, link, seed, &job, &mut tell),
-            _ => line(&instance, link, &job, &mut tell),
+            Shell::Spl2 => self.below_spl2(&instance, link, seed, pairs, &mut tell),
+            _ => self.at_the_line_port(&instance, link, pairs, &mut tell),
         };
         // Of a job that failed the waveform is wanted most.
         let closed = if waveform.is_some() { instance.trace_close() } else { Ok(()) };
@@ -188,34 +178,49 @@ impl Bench {
         closed.map_err(CosimError::from)?;
         let seconds = begun.elapsed().as_secs_f64();
         progress(Progress::Comparing);
-        Ok(check(&self.layout, setup, pairs, &self.reference.run_all(pairs), outcome, seconds))
+        Ok(check(&layout, setup, pairs, &self.reference.run_all(pairs), outcome, seconds))
     }
-}
 
-/// Runs a job on the line port itself.
-fn line(afu: &Instance, link: Link, job: &Job, progress: &mut dyn FnMut(Traffic)) -> Result<Outcome, VerifyError> {
-    let mut driver = Driver::new(afu, link)?;
-    driver.start(job)?;
-    while !driver.step()? {
-        if driver.cycle().is_multiple_of(PROGRESS_CYCLES) {
-            progress(driver.link().traffic());
+    /// Runs a job through SPL2.
+    fn below_spl2(
+        &self,
+        afu: &Instance,
+        link: Link,
+        seed: u64,
+        pairs: &[PairRecord],
+        progress: &mut dyn FnMut(Traffic),
+    ) -> Result<Outcome, VerifyError> {
+        let spl = Spl2::new(Spl2Model::default(), link, seed);
+        let machine = Machine::new(afu, spl).map_err(HostError::from)?;
+        let workspace = Workspace::for_pairs(self.expected.layout, pairs.len() as u64, seed)?;
+        let mut session = Session::new(machine, workspace, self.expected);
+        let running = session.transaction().send(pairs)?.start()?.confirm()?;
+        Ok(running.wait_with(progress)?.outcome())
+    }
+
+    /// Runs a job at the line port, which has no registers and needs no host.
+    fn at_the_line_port(
+        &self,
+        afu: &Instance,
+        link: Link,
+        pairs: &[PairRecord],
+        progress: &mut dyn FnMut(Traffic),
+    ) -> Result<Outcome, VerifyError> {
+        let layout = &self.expected.layout;
+        let source = lines::pack(layout, pairs);
+        let mut job = Job::new(&source, pairs.len() as u32, layout.destination_lines(pairs.len() as u64));
+        job.scpus = Some(self.config.scpus);
+        let only_hits = self.config.results == Results::Hits;
+        job.hits_per_line = only_hits.then(|| layout.contacts_per_line());
+        let mut driver = Driver::new(afu, link)?;
+        driver.start(&job)?;
+        while !driver.step()? {
+            if driver.cycle().is_multiple_of(PROGRESS_CYCLES) {
+                progress(driver.link().traffic());
+            }
         }
+        Ok(driver.finish()?)
     }
-    Ok(driver.finish()?)
-}
-
-/// Runs a job through SPL2, with a host that does the least a host must do.
-fn spl2(
-    afu: &Instance,
-    link: Link,
-    seed: u64,
-    job: &Job,
-    progress: &mut dyn FnMut(Traffic),
-) -> Result<Outcome, VerifyError> {
-    let mut machine = Machine::new(afu, Spl2::new(Spl2Model::default(), link, seed))?;
-    let place = Place::for_lines(job.source.len() as u64, job.destination_lines);
-    let mut session = Session::open(&mut machine, place, job.scpus)?;
-    Ok(session.run_with(job, progress)?)
 }
 
 /// SHA-256 of the Verilog that would be generated for a configuration: [`Bench::rtl_sha256`] without a model.

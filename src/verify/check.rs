@@ -8,6 +8,7 @@ use crate::afu::Layout;
 use crate::config::{Config, Results};
 use crate::cosim::Outcome;
 use crate::host::lines::Contacts;
+use crate::host::received::{Records, by_pair};
 use crate::kernel::{ContactRecord, Fields, Flow, PairRecord, settle};
 
 /// Mismatches that a verdict's text shows in full.
@@ -69,14 +70,7 @@ impl Verdict {
 
     /// A contact for each pair, in their order; where only contacts came back, the others read as pairs without one.
     pub fn by_pair(&self) -> Vec<ContactRecord> {
-        let apart = ContactRecord([0, 0, 0, 0, 0, 0, 0, Flow::Fake.flags()]);
-        let mut all = vec![apart; self.pairs];
-        for (&number, &contact) in self.numbers.iter().zip(&self.contacts) {
-            if let Some(place) = all.get_mut(number as usize) {
-                *place = contact;
-            }
-        }
-        all
+        by_pair(self.pairs, &self.numbers, &self.contacts)
     }
 }
 
@@ -179,24 +173,15 @@ impl Job<'_> {
     /// A record for each pair that touches: as many as the AFU counted, in the order of their numbers, and nothing
     /// behind.
     fn hits(&self, failed_checks: &mut Vec<String>) -> Received {
-        let mut received = Received { records: self.outcome.contacts as usize, ..Received::default() };
+        let (records, error) = Records::hits(self.memory, self.pairs.len(), self.outcome.contacts);
+        failed_checks.extend(error.map(|error| error.to_string()));
+        let Records { numbers, contacts } = records;
+        let mut received =
+            Received { records: self.outcome.contacts as usize, numbers, contacts, ..Received::default() };
         // Where the pairs' records lie.
         let mut place = vec![None; self.pairs.len()];
-        let mut last = None;
-        for index in 0..received.records {
-            let Some((number, contact)) = self.memory.hit(index) else {
-                failed_checks.push(format!("contact {index} of {} was never written", received.records));
-                break;
-            };
-            let Some(free) = place.get_mut(number as usize).filter(|_| last < Some(number)) else {
-                let after = last.map_or_else(|| "none".to_owned(), |last| format!("pair {last}"));
-                failed_checks
-                    .push(format!("contact {index} is of pair {number}, after {after}, of {} pairs", self.pairs.len()));
-                break;
-            };
-            (*free, last) = (Some(index), Some(number));
-            received.numbers.push(number);
-            received.contacts.push(contact);
+        for (index, &number) in received.numbers.iter().enumerate() {
+            place[number as usize] = Some(index);
         }
         let lines = received.records.checked_sub(1).map_or(0, |last| self.memory.line(last) + 1);
         if self.outcome.lines.iter().skip(lines).any(Option::is_some) {

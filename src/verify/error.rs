@@ -4,7 +4,7 @@ use crate::afu::{BuildError, OtherRadius};
 use crate::config::ReadError;
 use crate::cosim::CosimError;
 use crate::cosim::drive::DriveError;
-use crate::cosim::spl2::MachineError;
+use crate::host::{HostError, TransportError};
 use crate::link::LinkError;
 
 /// Why there is no verdict. (A mismatch is a verdict.)
@@ -25,9 +25,9 @@ pub enum VerifyError {
     /// The job has no end, or the AFU broke the line port's protocol.
     #[error(transparent)]
     Drive(#[from] DriveError),
-    /// The same behind SPL2's port.
+    /// The same below SPL2.
     #[error(transparent)]
-    Machine(#[from] MachineError),
+    Host(#[from] HostError),
     /// A pair with another radius than the AFU's.
     #[error(transparent)]
     Radius(#[from] OtherRadius),
@@ -42,7 +42,10 @@ impl VerifyError {
         matches!(
             self,
             Self::Drive(DriveError::TimedOut { .. } | DriveError::Protocol { .. })
-                | Self::Machine(MachineError::NoStatus { .. } | MachineError::Protocol { .. })
+                | Self::Host(
+                    HostError::NoStatus { .. }
+                        | HostError::Transport(TransportError::PageFault { .. } | TransportError::Protocol { .. })
+                )
         )
     }
 }

@@ -1,11 +1,11 @@
-//! Jobs and what comes of them.
+//! Jobs at the line port.
 
 use std::ops::Range;
 
 use super::error::DriveError;
 use super::ports::Ports;
-use crate::afu::JobError;
 use crate::link::{LINE_BYTES, Line, Link, Memory, Replies, Requests, Traffic};
+use crate::outcome::Outcome;
 use crate::patience::{Patience, Work};
 
 /// Where sources lie unless the job says otherwise: a line address.
@@ -95,61 +95,6 @@ impl<'a> Job<'a> {
         }
         memory.forget(self.destination_range());
         memory.guard(self.source_range(), self.destination_range());
-    }
-}
-
-/// What came of a job.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Outcome {
-    /// Cycles from the one in which `start` was high to the one in which `done` is.
-    pub cycles: u64,
-    /// The AFU's error code: 0 if all went well.
-    pub error: u8,
-    /// Contacts, as the AFU counted them.
-    pub contacts: u32,
-    /// Invalid pairs, as the AFU counted them.
-    pub invalid: u32,
-    /// The first invalid pair's number.
-    pub first_invalid: Option<u32>,
-    /// Cycles of the job, as the AFU counted them.
-    pub cycles_busy: u64,
-    /// Cycles in which it waited for input.
-    pub cycles_input: u64,
-    /// Cycles in which it waited for its output to leave.
-    pub cycles_output: u64,
-    /// Cycles from the first read's data to the first write request; nothing if either never was.
-    pub latency_cycles: Option<u64>,
-    /// Bytes of the lines that were read.
-    pub bytes_read: u64,
-    /// Bytes of the lines that were written.
-    pub bytes_written: u64,
-    /// The cycles that these lines take at least over this link.
-    pub limit_cycles: f64,
-    /// The destination lines that were written, in order; a line that was not is nothing.
-    pub lines: Vec<Option<Line>>,
-    /// For each destination line the cycle of the job in which its last write was accepted.
-    pub write_cycles: Vec<Option<u64>>,
-}
-
-impl Outcome {
-    /// How the job failed, if it did; a code that no AFU should give is a failed mode.
-    pub fn job_error(&self) -> Option<JobError> {
-        match self.error {
-            0 => None,
-            1 => Some(JobError::Aborted),
-            2 => Some(JobError::Read),
-            3 => Some(JobError::Write),
-            4 => Some(JobError::Watchdog),
-            6 => Some(JobError::Overflow),
-            7 => Some(JobError::Response),
-            8 => Some(JobError::Room),
-            _ => Some(JobError::Mode),
-        }
-    }
-
-    /// The share of the link's speed that was reached.
-    pub fn efficiency(&self) -> f64 {
-        if self.cycles == 0 { 0.0 } else { self.limit_cycles / self.cycles as f64 }
     }
 }
 

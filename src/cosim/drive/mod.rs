@@ -9,13 +9,14 @@ mod monitor;
 mod ports;
 
 pub use error::{DriveError, Waiting};
-pub use job::{Job, Outcome};
+pub use job::Job;
 pub use monitor::ProtocolError;
 
 use super::instance::{Clock, Instance};
 use crate::afu::Capability;
 use crate::config::Results;
 use crate::link::{Link, Traffic};
+use crate::outcome::Outcome;
 use crate::patience;
 use job::Running;
 use monitor::Monitor;

@@ -3,9 +3,10 @@
 use super::{Machine, MachineError};
 use crate::afu::Capability;
 use crate::afu::shell::spl2::map::{self, Field, control, identity, latency, performance, pointers, status};
-use crate::cosim::drive::{Job, Outcome};
+use crate::cosim::drive::Job;
 use crate::link::spl2::{CsrOffset, Limits, MAX_PAGES, PAGE_BYTES};
 use crate::link::{LINE_BYTES, Line, Traffic};
+use crate::outcome::Outcome;
 use crate::patience::{self, Patience, Work};
 
 /// Physical byte addresses of what is not in the workspace.

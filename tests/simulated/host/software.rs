@@ -1,8 +1,8 @@
 //! Transactions with the AFU in software: what goes right, and what is refused.
 
-use contact_afu::afu::shell::spl2::map::{self, identity, pointers, status};
-use contact_afu::config::{Config, RecordFormat};
-use contact_afu::host::{Expected, HostError, Session, Software, Transport, TransportError, Workspace};
+use contact_afu::afu::shell::spl2::map::{self, control, identity, pointers, status};
+use contact_afu::config::{Config, RecordFormat, Results};
+use contact_afu::host::{Expected, HitError, HostError, Session, Software, Transport, TransportError, Workspace};
 use contact_afu::kernel::{Engine, PairRecord};
 use contact_afu::link::LinkModel;
 use contact_afu::link::spl2::CsrOffset;
@@ -107,7 +107,10 @@ fn a_dead_device_is_a_time_out_that_says_for_what() {
             assert!(text.starts_with("AFU_ID never seen in the DSM after "), "{text}");
         } else {
             assert!(matches!(error, HostError::NoStatus { .. }), "{left}: {text}");
-            assert!(text.starts_with("Status never set, ") && text.contains("end the transaction"), "{text}");
+            assert!(
+                text.starts_with("the job did not finish after ") && text.contains("end the transaction"),
+                "{text}"
+            );
         }
         let waited = match error {
             HostError::NoIdentity(cycles) | HostError::NoStatus { cycles, .. } => cycles,
@@ -122,8 +125,8 @@ fn a_dead_device_is_a_time_out_that_says_for_what() {
 }
 
 /// Does something to memory once the status of a job is there.
-fn at_status(mut meddle: impl FnMut(&mut Software, u64) + 'static) -> Meddled<Software> {
-    Meddled::new(software(), move |device: &mut Software| {
+fn at_status(device: Software, mut meddle: impl FnMut(&mut Software, u64) + 'static) -> Meddled<Software> {
+    Meddled::new(device, move |device: &mut Software| {
         let is_status = |line: &[u32; 16]| status::DONE.get(line) == 1 && status::AFU_ID.get(line) == map::AFU_ID;
         let found = device.device_writes().iter().rev().find(|write| is_status(&write.data)).map(|write| write.address);
         if let Some(at) = found {
@@ -137,7 +140,7 @@ fn a_line_that_was_never_written_is_no_result() {
     let mut plain = session(software(), 1);
     let lost = plain.workspace().physical(plain.workspace().destination() + 64).unwrap();
     plain.run(&pairs(6)).unwrap();
-    let device = at_status(move |device, _| device.memory_mut().forget(lost..lost + 1));
+    let device = at_status(software(), move |device, _| device.memory_mut().forget(lost..lost + 1));
     assert_eq!(refused(&mut session(device, 1), &pairs(6)), HostError::Unwritten(1));
 }
 
@@ -211,6 +214,89 @@ fn records_of_16_bits_are_agreed_on() {
     let done = session.transaction().send(&far).unwrap().start().unwrap().confirm().unwrap().wait().unwrap();
     let error = done.retrieve().unwrap().end().unwrap().strict(&far).unwrap_err().to_string();
     assert!(error.contains("pair 0, whose z1 is, as f16, NaN, infinite"), "{error}");
+}
+
+/// Only contacts: one record for each pair that touches, with its number. The engine still has one for each pair.
+#[test]
+fn hits_come_back_with_their_numbers() {
+    for contact in ["hit", "depth", "depth,normal,position"] {
+        let config = Config { results: Results::Hits, contact: contact.parse().unwrap(), ..config() };
+        let expected = Expected::new(&config).unwrap();
+        let device = Software::new(&config, LinkModel::ideal()).unwrap();
+        let mut session = Session::new(device, Workspace::new(expected.layout, 1, 7).unwrap(), expected);
+        for count in [500, 0, 1] {
+            let pairs = pairs(count);
+            let all = config.reference().run_all(&pairs);
+            let done = session.transaction().send(&pairs).unwrap().start().unwrap().confirm().unwrap().wait().unwrap();
+            let lines = done.outcome().lines;
+            let results = done.retrieve().unwrap().end().unwrap();
+            let touching: Vec<u32> = (0..).zip(&all).filter(|(_, one)| one.is_contact()).map(|(i, _)| i).collect();
+            assert_eq!(results.numbers, touching, "{contact}");
+            assert_eq!(lines.iter().flatten().count() as u64, expected.layout.destination_lines(touching.len() as u64));
+            let by_pair = results.by_pair();
+            assert_eq!((by_pair.len(), results.hits as usize), (pairs.len(), touching.len()));
+            for (number, (one, of_all)) in by_pair.iter().zip(&all).enumerate() {
+                assert_eq!(one.is_contact(), of_all.is_contact(), "{contact}: pair {number}");
+                let full = contact == "depth,normal,position" && one.is_contact();
+                assert!(!full || one == of_all, "{contact}: pair {number}");
+            }
+            assert_eq!(session.contacts(&pairs).unwrap(), by_pair);
+        }
+    }
+}
+
+/// Records of hits that cannot be right are no results.
+#[test]
+fn hits_that_are_missing_or_of_no_pair_are_refused() {
+    let config = Config { results: Results::Hits, ..config() };
+    let expected = Expected::new(&config).unwrap();
+    let workspace = Workspace::new(expected.layout, 1, 7).unwrap();
+    let first = workspace.physical(workspace.destination()).unwrap();
+    let touching = vec![PairRecord::from_spheres([0.0, 0.0, 0.0, 1.0], [1.0, 0.0, 0.0, 1.0]); 3];
+    let run = |meddle: fn(&mut Software, u64)| {
+        let software = Software::new(&config, LinkModel::ideal()).unwrap();
+        let device = at_status(software, move |device, _| meddle(device, first));
+        Session::new(device, workspace.clone(), expected).run(&touching).unwrap_err()
+    };
+    let error = run(|device, first| device.memory_mut().forget(first + 1..first + 2));
+    assert_eq!(error, HostError::Hit(HitError::Unwritten { index: 1, count: 3 }));
+    let error = run(|device, first| {
+        let line = device.memory().get(first).copied().unwrap();
+        device.memory_mut().set(first + 1, &line);
+    });
+    assert_eq!(error, HostError::Hit(HitError::Number { index: 1, number: 0, after: Some(0), pairs: 3 }));
+    let error = run(|device, first| device.memory_mut().set(first, &[3; 16]));
+    assert!(error.to_string().starts_with("contact 0 is of pair 3, after none, of 3 pairs, though"), "{error}");
+}
+
+/// Another job without another start of SPL, after results and after an error.
+#[test]
+fn the_next_job_needs_no_reset() {
+    let device = Meddled::new(software(), |_| ());
+    let csrs = device.csrs.clone();
+    let mut session = session(device, 1);
+    let at = session.workspace().physical(session.workspace().source()).unwrap();
+    let (many, few) = (pairs(300), pairs(40));
+    let done = session.transaction().send(&many).unwrap().start().unwrap().confirm().unwrap().wait().unwrap();
+    let retrieved = done.retrieve().unwrap();
+    assert_eq!(retrieved.results().contacts, contacts(&many));
+    let writes = csrs.borrow().len();
+    let mut started = retrieved.send_next(&few).unwrap().start().unwrap();
+    let mut line = started.transport().memory().get(at).copied().unwrap();
+    control::MODE.set(&mut line, 1);
+    started.transport_mut().memory_mut().set(at, &line);
+    let done = started.confirm().unwrap().wait().unwrap();
+    assert_eq!(done.outcome().error, 5);
+    let done = done.send_next(&few).unwrap().start().unwrap().confirm().unwrap().wait().unwrap();
+    assert_eq!(csrs.borrow().len(), writes, "no register was written");
+    let results = done.retrieve().unwrap().end().unwrap();
+    assert_eq!((results.contacts, results.report.pairs), (contacts(&few), 40));
+    let lines: Vec<_> = (1..150).map(|line| session.workspace().context() + 64 * line).collect();
+    let left = lines.iter().filter(|&&line| {
+        let at = session.workspace().physical(line).unwrap();
+        session.transport().memory().get(at).is_some()
+    });
+    assert_eq!(left.count(), 1, "only the status: the pairs of both jobs are gone");
 }
 
 /// Whatever step a transaction was dropped at, the device is stopped, the workspace free, and the next one right.

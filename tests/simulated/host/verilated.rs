@@ -3,9 +3,10 @@
 use std::sync::LazyLock;
 
 use contact_afu::afu::shell::spl2::map::{self, identity, latency, performance, status};
+use contact_afu::config::{Config, Results};
 use contact_afu::cosim::Instance;
 use contact_afu::cosim::spl2::Machine;
-use contact_afu::host::{HostError, Session, Software, Transport};
+use contact_afu::host::{Expected, HostError, Session, Software, Transport, Workspace};
 use contact_afu::kernel::Engine;
 use contact_afu::link::spl2::{DeviceWrite, Spl2, Spl2Model};
 use contact_afu::link::{Description, Fault, Line, Link, LinkModel};
@@ -98,6 +99,36 @@ fn harp1_carries_what_it_allows() {
     assert!((0.95..=1.0).contains(&report.efficiency()), "{report:?}");
     assert!(report.stated_set_up == 400 && report.set_up > 9 * 145, "{report:?}");
     println!("{report:?}: {:.2} ns a pair", report.stated_ns(200.0) / 90_000.0);
+}
+
+/// Contacts alone, job after job: both devices write the same lines, and each line's cycle is known.
+#[test]
+fn hits_come_back_and_each_line_has_its_cycle() {
+    let config = Config { scpus: 3, profile: "e8f3z".parse().unwrap(), results: Results::Hits, ..config() };
+    let bench = Bench::new(&config).unwrap();
+    let afu = bench.model().instance(3).unwrap();
+    let expected = Expected::new(&config).unwrap();
+    let workspace = || Workspace::new(expected.layout, 1, 7).unwrap();
+    let mut hardware = Session::new(machine(&afu, "harp1", 3), workspace(), expected);
+    let mut software = Session::new(Software::new(&config, link("harp1")).unwrap(), workspace(), expected);
+    let mut loaded = hardware.transaction().send(&[]).unwrap();
+    for count in [301, 0, 1000] {
+        let pairs = pairs(count);
+        let done = loaded.start().unwrap().confirm().unwrap().wait().unwrap();
+        let retrieved = done.send_next(&pairs).unwrap().start().unwrap().confirm().unwrap().wait().unwrap();
+        let outcome = retrieved.outcome();
+        let retrieved = retrieved.retrieve().unwrap();
+        let other = software.transaction().send(&pairs).unwrap().start().unwrap().confirm().unwrap().wait().unwrap();
+        assert_eq!(outcome.lines, other.outcome().lines, "{count}");
+        let results = retrieved.results();
+        let touching: Vec<bool> = config.reference().run_all(&pairs).iter().map(|one| one.is_contact()).collect();
+        assert_eq!(results.by_pair().iter().map(|one| one.is_contact()).collect::<Vec<_>>(), touching, "{count}");
+        let written = outcome.write_cycles.iter().map(Option::is_some);
+        assert!(written.eq(outcome.lines.iter().map(Option::is_some)), "{count}");
+        let cycles: Vec<u64> = outcome.write_cycles.iter().flatten().copied().collect();
+        assert!(cycles.is_sorted() && cycles.iter().all(|&cycle| (50..outcome.cycles).contains(&cycle)), "{cycles:?}");
+        loaded = retrieved.send_next(&[]).unwrap();
+    }
 }
 
 /// A read whose response is lost: a time-out, and never data; then all is well.

@@ -1,0 +1,110 @@
+//! What memory holds once a job's status is there: the outcome of the job, and its records.
+
+use super::error::{HitError, HostError};
+use super::lines::Contacts;
+use super::session::Session;
+use super::transport::Transport;
+use crate::afu::Layout;
+use crate::afu::shell::spl2::map::{self, latency, performance, status};
+use crate::kernel::{ContactRecord, Flow};
+use crate::link::{LINE_BYTES, Line, Traffic};
+use crate::outcome::Outcome;
+
+/// The beginning of a job: the cycle of its start word, the link's traffic and the device's writes before it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Begin {
+    pub(super) cycle: u64,
+    pub(super) traffic: Traffic,
+    pub(super) logged: usize,
+}
+
+/// The status of a job.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Status {
+    pub(super) line: Line,
+    /// The cycle in which it arrived.
+    pub(super) cycle: u64,
+}
+
+/// The outcome of the job that began and ended so. Bytes count all that went over the link since the start word.
+pub(super) fn outcome<T: Transport>(session: &Session<T>, begin: &Begin, pairs: u32, end: &Status) -> Outcome {
+    let (transport, workspace) = (&session.transport, &session.workspace);
+    let (latencies, figures) = (session.dsm(map::LATENCY_LINE), session.dsm(map::PERFORMANCE_LINE));
+    let word = |field: map::Field, line: &Line| field.get(line) as u64;
+    let of_status = |field: map::Field| field.get(&end.line) as u32;
+    let traffic = transport.traffic();
+    let reads = traffic.read_responses - begin.traffic.read_responses;
+    let writes = traffic.writes - begin.traffic.writes;
+    let (first_read, first_write) = (word(latency::FIRST_READ, &latencies), word(latency::FIRST_WRITE, &latencies));
+    let results = workspace.limits(pairs.into()).results;
+    let stored = |line: u64| transport.memory().get(workspace.physical(line * LINE_BYTES)?).copied();
+    let sent = |line: u64| Some(transport.sent(line)?.saturating_sub(begin.cycle));
+    Outcome {
+        cycles: end.cycle.saturating_sub(begin.cycle),
+        error: of_status(status::ERROR) as u8,
+        contacts: of_status(status::CONTACTS),
+        invalid: of_status(status::INVALID),
+        first_invalid: Some(of_status(status::FIRST_INVALID)).filter(|&pair| pair != u32::MAX),
+        cycles_busy: word(performance::BUSY, &figures),
+        cycles_input: word(performance::INPUT, &figures),
+        cycles_output: word(performance::OUTPUT, &figures),
+        latency_cycles: (first_read > 0 && first_write > 0).then(|| first_write.saturating_sub(first_read)),
+        bytes_read: reads * LINE_BYTES,
+        bytes_written: writes * LINE_BYTES,
+        limit_cycles: transport.link().limit_cycles(reads, writes),
+        lines: results.clone().map(stored).collect(),
+        write_cycles: results.map(sent).collect(),
+    }
+}
+
+/// The records of a job: for each pair in turn, or only for those that touch.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Records {
+    /// For each record its pair's number.
+    pub(crate) numbers: Vec<u32>,
+    pub(crate) contacts: Vec<ContactRecord>,
+}
+
+impl Records {
+    /// The records of a job of `pairs` pairs that ended well.
+    pub(super) fn read(layout: &Layout, pairs: u32, outcome: &Outcome) -> Result<Self, HostError> {
+        let memory = Contacts::new(layout, &outcome.lines);
+        if layout.number_bits() > 0 {
+            let (records, error) = Self::hits(&memory, pairs as usize, outcome.contacts);
+            return error.map_or(Ok(records), |error| Err(error.into()));
+        }
+        let numbers: Vec<u32> = (0..pairs).collect();
+        let unwritten = |number: usize| HostError::Unwritten(memory.line(number) as u64);
+        let contact = |number: usize| memory.get(number).ok_or_else(|| unwritten(number));
+        Ok(Self { contacts: (0..pairs as usize).map(contact).collect::<Result<_, _>>()?, numbers })
+    }
+
+    /// The `count` records of pairs that touch, in the order of their numbers. If one is wrong, those before it.
+    pub(crate) fn hits(memory: &Contacts<'_>, pairs: usize, count: u32) -> (Self, Option<HitError>) {
+        let mut records = Self::default();
+        for index in 0..count as usize {
+            let Some((number, contact)) = memory.hit(index) else {
+                return (records, Some(HitError::Unwritten { index, count }));
+            };
+            let after = records.numbers.last().copied();
+            if after >= Some(number) || number as usize >= pairs {
+                return (records, Some(HitError::Number { index, number, after, pairs }));
+            }
+            records.numbers.push(number);
+            records.contacts.push(contact);
+        }
+        (records, None)
+    }
+}
+
+/// A contact for each of so many pairs, in their order; a pair without a record reads as one without contact.
+pub(crate) fn by_pair(pairs: usize, numbers: &[u32], contacts: &[ContactRecord]) -> Vec<ContactRecord> {
+    let apart = ContactRecord([0, 0, 0, 0, 0, 0, 0, Flow::Fake.flags()]);
+    let mut all = vec![apart; pairs];
+    for (&number, &contact) in numbers.iter().zip(contacts) {
+        if let Some(place) = all.get_mut(number as usize) {
+            *place = contact;
+        }
+    }
+    all
+}
