@@ -3,10 +3,11 @@
 use contact_afu::afu::shell::spl2::map;
 use contact_afu::afu::{Afu, Spec};
 use contact_afu::config::{Config, Shell};
-use contact_afu::cosim::spl2::{Machine, Place};
-use contact_afu::cosim::{File, Instance, Job, Model, Outcome, Source, Trace};
+use contact_afu::cosim::spl2::Machine;
+use contact_afu::cosim::{File, Instance, Model, Outcome, Source, Trace};
+use contact_afu::host::{Done, Expected, HostError, Loaded, Session, Transaction, Workspace};
 use contact_afu::kernel::{ContactRecord, Flow, PairRecord, Reference};
-use contact_afu::link::spl2::{Spl2, Spl2Model};
+use contact_afu::link::spl2::{PAGE_BYTES, Spl2, Spl2Model};
 use contact_afu::link::{Line, Link, Stalls};
 use contact_afu::pairs::Set;
 
@@ -41,6 +42,33 @@ pub fn build(files: Vec<File>, scpus: u32) -> Model {
 /// A machine whose link is like a preset.
 pub fn machine<'a>(afu: &'a Instance, spl: Spl2Model, link: &str, seed: u64) -> Machine<'a> {
     Machine::new(afu, Spl2::new(spl, Link::new(link.parse().unwrap(), seed).unwrap(), seed)).unwrap()
+}
+
+/// Lines of a page.
+pub const PAGE_LINES: u64 = PAGE_BYTES / 64;
+/// Where the pages of all workspaces are.
+const PAGES_SEED: u64 = 7;
+
+pub fn session(machine: Machine<'_>, scpus: u32, workspace: Workspace) -> Session<Machine<'_>> {
+    Session::new(machine, workspace, Expected::new(&config(scpus)).unwrap())
+}
+
+/// A workspace with its buffers at these lines.
+pub fn workspace(pages: u64, source: u64, destination: u64, lines: u32) -> Result<Workspace, HostError> {
+    let layout = Expected::edited(&config(1)).layout;
+    Workspace::new(layout, pages, PAGES_SEED)?.with_buffers(source, destination, lines)
+}
+
+/// Runs what is loaded to its end.
+pub fn end<'s, 'a>(
+    loaded: Transaction<'s, Machine<'a>, Loaded>,
+) -> Result<Transaction<'s, Machine<'a>, Done>, HostError> {
+    loaded.start()?.confirm()?.wait()
+}
+
+/// A whole transaction.
+pub fn run(session: &mut Session<Machine<'_>>, case: &Case) -> Result<Outcome, HostError> {
+    Ok(end(session.transaction().send(&case.pairs)?)?.outcome())
 }
 
 /// SPL2 at its worst: reads in any order, almost-full for no reason, acknowledgements in pairs, CSRs at once.
@@ -95,12 +123,19 @@ impl Case {
         Self::new(Set::Random(count).pairs(seed))
     }
 
-    pub fn job(&self) -> Job<'_> {
-        Job::new(&self.source, self.pairs.len() as u32, self.lines.len() as u64)
+    /// Lines that each buffer must have, and no more.
+    pub fn room(&self) -> u32 {
+        (1 + self.source.len()).max(self.lines.len()) as u32
     }
 
-    pub fn place(&self) -> Place {
-        Place::for_lines(self.source.len() as u64, self.lines.len() as u64)
+    /// Two halves behind the context, with exactly the room that the case needs.
+    pub fn workspace(&self, pages: u64) -> Workspace {
+        workspace(pages, 2, 2 + u64::from(self.room()), self.room()).unwrap()
+    }
+
+    /// The source lines.
+    pub fn source(&self) -> &[Line] {
+        &self.source
     }
 
     /// The destination lines.

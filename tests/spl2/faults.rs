@@ -1,11 +1,12 @@
 //! Faults planted in the shell's Verilog are found. One model has all of them: which one is at work, the uppermost bits
 //! of the job's watchdog say.
 
-use contact_afu::cosim::spl2::{MachineError, Place, Session};
-use contact_afu::cosim::{Job, Model};
+use contact_afu::cosim::Model;
+use contact_afu::cosim::spl2::Machine;
+use contact_afu::host::{HostError, Session, Transport, TransportError, Workspace};
 use contact_afu::link::spl2::{Spl2Error, Spl2Model};
 
-use crate::bench::{Case, build, files, machine, quick, rough};
+use crate::bench::{Case, build, end, files, machine, quick, rough, run, workspace};
 
 /// What is planted.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,32 +52,38 @@ fn model_of_faults() -> Model {
     build(files, 2)
 }
 
-fn job(case: &Case, planted: Planted) -> Job<'_> {
-    Job { watchdog: (planted as u32) << SELECTOR_BIT, max_cycles: Some(20_000), ..case.job() }
+/// A session whose jobs all have a fault.
+fn session(machine: Machine<'_>, workspace: Workspace, planted: Planted) -> Session<Machine<'_>> {
+    let mut session = crate::bench::session(machine, 2, workspace);
+    session.watchdog = (planted as u32) << SELECTOR_BIT;
+    session.max_cycles = Some(20_000);
+    session
 }
 
 #[test]
 fn faults_of_the_shell_are_found() {
     let case = Case::random(301, 3);
     let model = model_of_faults();
-    let run = |planted: Planted, spl: Spl2Model, link: &str| {
+    let with = |planted: Planted, spl: Spl2Model, link: &str| {
         let afu = model.instance(1).unwrap();
-        let mut machine = machine(&afu, spl, link, 1);
-        let mut session = Session::open(&mut machine, case.place(), Some(2)).unwrap();
-        session.run(&job(&case, planted)).map(|outcome| case.is_right(&outcome))
+        let mut session = session(machine(&afu, spl, link, 1), case.workspace(1), planted);
+        run(&mut session, &case).map(|outcome| case.is_right(&outcome))
     };
-    let protocol = |found: Result<bool, MachineError>, wanted: fn(&Spl2Error) -> bool| match found {
-        Err(MachineError::Protocol { what, .. }) => assert!(wanted(&what), "{what}"),
+    let protocol = |found: Result<bool, HostError>, wanted: fn(&TransportError) -> bool| match found {
+        Err(HostError::Transport(error)) => assert!(wanted(&error), "{error}"),
         other => panic!("{other:?}"),
     };
-    assert_eq!(run(Planted::Nothing, rough(), "shuffled"), Ok(true));
-    protocol(run(Planted::AlmostFullIgnored, rough(), "ideal"), |what| matches!(what, Spl2Error::Overshoot { .. }));
-    let lost = run(Planted::SecondChannelLost, rough(), "ideal");
-    assert!(matches!(lost, Err(MachineError::NoStatus { .. })), "{lost:?}");
-    protocol(run(Planted::VirtualDsm, quick(), "ideal"), |what| {
-        matches!(what, Spl2Error::Outside { what: "write", .. } | Spl2Error::PageFault { .. })
+    assert_eq!(with(Planted::Nothing, rough(), "shuffled"), Ok(true));
+    protocol(with(Planted::AlmostFullIgnored, rough(), "ideal"), |error| {
+        matches!(error, TransportError::Protocol { what: Spl2Error::Overshoot { .. }, .. })
     });
-    assert_eq!(run(Planted::SourceOff, quick(), "ideal"), Ok(false));
+    let lost = with(Planted::SecondChannelLost, rough(), "ideal");
+    assert!(matches!(lost, Err(HostError::NoStatus { .. })), "{lost:?}");
+    protocol(with(Planted::VirtualDsm, quick(), "ideal"), |error| {
+        let outside = matches!(error, TransportError::Protocol { what: Spl2Error::Outside { what: "write", .. }, .. });
+        outside || matches!(error, TransportError::PageFault { .. })
+    });
+    assert_eq!(with(Planted::SourceOff, quick(), "ideal"), Ok(false));
 }
 
 /// Without the fence the status overtakes a line of the DSM, sooner or later.
@@ -87,11 +94,10 @@ fn a_missing_fence_is_found() {
     let overtakes = |planted: Planted| {
         (1..30).any(|seed| {
             let afu = model.instance(seed).unwrap();
-            let mut machine = machine(&afu, quick(), "shuffled", seed);
-            let mut session = Session::open(&mut machine, case.place(), Some(2)).unwrap();
-            let before = session.machine().device_writes().len();
-            session.run(&job(&case, planted)).unwrap();
-            session.machine().device_writes().len() - before < 3
+            let mut session = session(machine(&afu, quick(), "shuffled", seed), case.workspace(1), planted);
+            let loaded = session.transaction().send(&case.pairs).unwrap();
+            let before = loaded.transport().device_writes().len();
+            end(loaded).unwrap().transport().device_writes().len() - before < 3
         })
     };
     assert!(!overtakes(Planted::Nothing));
@@ -105,14 +111,16 @@ fn an_epoch_that_stands_still_is_found() {
     let model = model_of_faults();
     let harm = |planted: Planted| {
         let afu = model.instance(1).unwrap();
-        let mut machine = machine(&afu, quick(), "hostile", 1);
+        let mut session = session(machine(&afu, quick(), "hostile", 1), spoilt.workspace(3), planted);
         (20..400).step_by(20).any(|moment| {
-            let mut session = Session::open(&mut machine, spoilt.place(), Some(2)).unwrap();
-            session.start(&job(&spoilt, planted));
-            session.machine().advance(moment).unwrap();
-            let place = Place { pages: 3, source: 40_000, destination: 50_000, ..next.place() };
-            let ended = Session::open(&mut machine, place, Some(2)).and_then(|mut s| s.run(&job(&next, planted)));
-            !ended.is_ok_and(|outcome| next.is_right(&outcome))
+            session.set_workspace(spoilt.workspace(3));
+            let running = session.transaction().send(&spoilt.pairs).unwrap().start().unwrap().confirm();
+            let mut running = running.unwrap();
+            running.idle(moment).unwrap();
+            // The host is gone without a word.
+            std::mem::forget(running);
+            session.set_workspace(workspace(3, 40_000, 50_000, next.room()).unwrap());
+            !run(&mut session, &next).is_ok_and(|outcome| next.is_right(&outcome))
         })
     };
     assert!(!harm(Planted::Nothing));

@@ -1,12 +1,11 @@
 //! Numbers of SCPUs, counts of pairs, links and kinds of SPL2, each with each; what the AFU writes, and in what order.
 
-use contact_afu::afu::shell::spl2::map::{self, identity, latency, performance, scratch, status};
-use contact_afu::cosim::Job;
-use contact_afu::cosim::spl2::{MachineError, Session};
+use contact_afu::afu::shell::spl2::map::{self, control, identity, latency, performance, scratch, status};
+use contact_afu::host::{HostError, Transport};
 use contact_afu::link::LinkModel;
 use contact_afu::link::spl2::Spl2Model;
 
-use crate::bench::{Case, machine, model, quick, rough};
+use crate::bench::{Case, end, machine, model, quick, rough, run, session};
 
 #[test]
 fn jobs_one_after_another_over_every_link() {
@@ -16,14 +15,16 @@ fn jobs_one_after_another_over_every_link() {
         for (link, seed) in LinkModel::PRESETS.into_iter().zip(1..) {
             for (name, spl) in [("as it is", Spl2Model::default()), ("rough", rough())] {
                 let afu = model.instance(seed).unwrap();
-                let mut machine = machine(&afu, spl, link, seed);
-                let mut session = Session::open(&mut machine, cases[5].place(), Some(scpus)).unwrap();
-                for case in &cases {
+                let mut session = session(machine(&afu, spl, link, seed), scpus, cases[5].workspace(1));
+                let mut loaded = session.transaction().send(&cases[0].pairs).unwrap();
+                for (number, case) in cases.iter().enumerate() {
                     let what = format!("{scpus} SCPUs, {link}, SPL2 {name}, {} pairs", case.pairs.len());
-                    let outcome = session.run(&case.job()).unwrap_or_else(|e| panic!("{what}: {e}"));
-                    case.check(&outcome, &what);
+                    let done = end(loaded).unwrap_or_else(|e| panic!("{what}: {e}"));
+                    case.check(&done.outcome(), &what);
+                    loaded = done.send_next(&cases[(number + 1) % cases.len()].pairs).unwrap();
                 }
-                let seen = machine.spl().seen();
+                drop(loaded);
+                let seen = session.transport().spl().seen();
                 assert!(seen.on_both > 0, "{link}, {name}: acknowledgements came on both channels at once");
                 if name == "rough" {
                     // SPL takes four.
@@ -41,13 +42,13 @@ fn lines_of_the_dsm_come_in_order_and_before_the_status() {
     let model = model(2);
     for seed in 1..20 {
         let afu = model.instance(seed).unwrap();
-        let mut machine = machine(&afu, quick(), "hostile", seed);
-        let mut session = Session::open(&mut machine, case.place(), Some(2)).unwrap();
+        let mut session = session(machine(&afu, quick(), "hostile", seed), 2, case.workspace(1));
+        let mut loaded = session.transaction().send(&case.pairs).unwrap();
         for job in 0..3 {
-            let before = session.machine().device_writes().len();
-            let outcome = session.run(&case.job()).unwrap();
-            case.check(&outcome, "hostile");
-            let writes = &session.machine().device_writes()[before..];
+            let before = loaded.transport().device_writes().len();
+            let done = end(loaded).unwrap();
+            case.check(&done.outcome(), "hostile");
+            let writes = &done.transport().device_writes()[before..];
             let (dsm, last) = writes.split_at(writes.len() - 1);
             let mut numbers: Vec<u64> = dsm.iter().map(|write| write.address % 64).collect();
             numbers.sort_unstable();
@@ -58,6 +59,7 @@ fn lines_of_the_dsm_come_in_order_and_before_the_status() {
             assert_eq!(performance::SEQUENCE.get(&line_of(map::PERFORMANCE_LINE)), sequence);
             assert_eq!(status::AFU_ID.get(&last[0].data), map::AFU_ID);
             assert_eq!(status::VERSION.get(&last[0].data), map::VERSION.into());
+            loaded = done.send_next(&case.pairs).unwrap();
         }
     }
 }
@@ -67,13 +69,14 @@ fn the_registers_are_answered_in_the_dsm() {
     let model = model(2);
     let afu = model.instance(4).unwrap();
     let mut machine = machine(&afu, Spl2Model::default(), "late", 4);
+    let dsm = (7 << 32 | 0x3000) / 64;
+    machine.spl_mut().watch(dsm..dsm + map::DSM_BYTES / 64);
     machine.write_csr(map::SCRATCH.offset, 0x1234_5678).unwrap();
     machine.advance(500).unwrap();
     assert!(machine.device_writes().is_empty(), "nobody said where");
     machine.write_csr(map::DSM_BASE_HIGH.offset, 7).unwrap();
     machine.write_csr(map::DSM_BASE_LOW.offset, 0x3000).unwrap();
     machine.advance(500).unwrap();
-    let dsm = (7 << 32 | 0x3000) / 64;
     let line = *machine.memory().get(dsm).unwrap();
     assert_eq!((identity::AFU_ID.get(&line), identity::VERSION.get(&line)), (map::AFU_ID, map::VERSION.into()));
     assert_eq!(identity::CAPABILITY.get(&line) & 0xff, 2);
@@ -89,24 +92,33 @@ fn the_registers_are_answered_in_the_dsm() {
 fn what_is_no_job_ends_with_an_error_and_the_next_is_right() {
     let case = Case::random(57, 3);
     let afu = model(2).instance(4).unwrap();
-    let mut machine = machine(&afu, quick(), "shuffled", 4);
-    let mut session = Session::open(&mut machine, case.place(), Some(2)).unwrap();
-    let beyond = 2 * case.place().lines - 1;
-    for (job, error) in [
-        (Job { mode: 1, ..case.job() }, 5),
-        (Job { pairs: beyond, ..case.job() }, 8),
-        (Job { pairs: u32::MAX, ..case.job() }, 8),
-    ] {
-        let outcome = session.run(&job).unwrap();
+    let workspace = case.workspace(1);
+    let control = workspace.physical(workspace.source()).unwrap();
+    let mut session = session(machine(&afu, quick(), "shuffled", 4), 2, workspace);
+    let beyond = 2 * case.room() - 1;
+    let mut loaded = session.transaction().send(&case.pairs).unwrap();
+    for (field, value, error) in [(control::MODE, 1, 5), (control::COUNT, beyond, 8), (control::COUNT, u32::MAX, 8)] {
+        let mut started = loaded.start().unwrap();
+        let memory = started.transport_mut().memory_mut();
+        let mut line = *memory.get(control).unwrap();
+        field.set(&mut line, value.into());
+        memory.set(control, &line);
+        let done = started.confirm().unwrap().wait().unwrap();
+        let outcome = done.outcome();
         assert_eq!((outcome.error, outcome.contacts, outcome.invalid, outcome.first_invalid), (error, 0, 0, None));
-        case.check(&session.run(&case.job()).unwrap(), "after an error");
+        let mut done = end(done.send_next(&case.pairs).unwrap()).unwrap();
+        case.check(&done.outcome(), "after an error");
+        // Neither the same number again nor a line without the start word is a job.
+        let before = done.transport().device_writes().len();
+        done.transport_mut().advance(2_000).unwrap();
+        loaded = done.send_next(&case.pairs).unwrap();
+        loaded.transport_mut().advance(2_000).unwrap();
+        assert_eq!(loaded.transport().device_writes().len(), before);
     }
-    // Neither the same number again nor a line without the start word is a job.
-    let before = session.machine().device_writes().len();
-    session.machine().advance(2_000).unwrap();
-    assert_eq!(session.machine().device_writes().len(), before);
-    let other = Session::open(&mut machine, case.place(), Some(3)).unwrap_err();
-    assert_eq!(other, MachineError::Scpus { expected: 3, found: 2 });
+    drop(loaded);
+    let mut other = crate::bench::session(machine(&afu, quick(), "shuffled", 4), 3, case.workspace(1));
+    let what = "a number of SCPUs of";
+    assert_eq!(run(&mut other, &case).unwrap_err(), HostError::Capability { what, expected: 3, found: 2 });
 }
 
 /// `docs/spl2.md` ends with the map as the hardware has it.

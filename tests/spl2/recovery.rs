@@ -1,12 +1,14 @@
 //! Resets of every kind, aborts and lost responses at any moment: nothing wrong is ever written, and the next
 //! transaction is right, also while SPL still answers what was asked before.
 
-use contact_afu::cosim::Job;
-use contact_afu::cosim::spl2::{Machine, MachineError, Place, Session};
-use contact_afu::link::spl2::{PAGE_BYTES, Spl2Model};
+use contact_afu::cosim::spl2::Machine;
+use contact_afu::host::{HostError, Running, Session, Transaction, Workspace};
+use contact_afu::link::spl2::Spl2Model;
 use contact_afu::link::{Fault, LinkModel};
 
-use crate::bench::{Case, cycles_to_the_last_write, machine, model, quick, rough};
+use crate::bench::{
+    Case, PAGE_LINES, cycles_to_the_last_write, end, machine, model, quick, rough, run, session, workspace,
+};
 
 const SCPUS: u32 = 3;
 
@@ -20,14 +22,27 @@ fn two_cases() -> (Case, Case) {
 }
 
 /// Where the next transaction is: late writes of the one before may come at any time.
-fn elsewhere(case: &Case) -> Place {
-    let place = case.place();
-    let page = PAGE_BYTES / 64;
-    Place { pages: 3, source: page + place.source, destination: 2 * page - 9, ..place }
+fn elsewhere(case: &Case) -> Workspace {
+    workspace(3, PAGE_LINES + 2, 2 * PAGE_LINES - 9, case.room()).unwrap()
 }
 
-fn spoilt_place(case: &Case) -> Place {
-    Place { pages: 3, ..case.place() }
+/// Starts a job that somebody will disturb, after so many cycles.
+fn disturbed<'s, 'a>(
+    session: &'s mut Session<Machine<'a>>,
+    case: &Case,
+    moment: u64,
+) -> Result<Transaction<'s, Machine<'a>, Running>, HostError> {
+    session.set_workspace(case.workspace(3));
+    let mut running = session.transaction().send(&case.pairs)?.start()?.confirm()?;
+    running.idle(moment)?;
+    Ok(running)
+}
+
+/// The next transaction after one whose host is gone without a word: it stopped nothing.
+#[track_caller]
+fn next_is_right(session: &mut Session<Machine<'_>>, next: &Case, what: &str) {
+    session.set_workspace(elsewhere(next));
+    next.check(&run(session, next).unwrap_or_else(|e| panic!("{what}: {e}")), what);
 }
 
 /// Runs a job for some cycles, does something to the machine, and runs the next transaction from the start.
@@ -36,25 +51,21 @@ fn interrupted(spl: Spl2Model, how: &str, interrupt: impl Fn(&mut Machine<'_>)) 
     let model = model(SCPUS);
     for (link, seed) in LinkModel::PRESETS.into_iter().zip(1..) {
         let afu = model.instance(seed).unwrap();
-        let mut machine = machine(&afu, spl, link, seed);
+        let mut session = session(machine(&afu, spl, link, seed), SCPUS, spoilt.workspace(3));
         let mut stale = 0;
         for moment in moments() {
             let what = format!("{link}, {how} after {moment} cycles");
-            let mut session = Session::open(&mut machine, spoilt_place(&spoilt), Some(SCPUS)).unwrap();
-            session.start(&spoilt.job());
-            session.machine().advance(moment).unwrap_or_else(|e| panic!("{what}: {e}"));
-            interrupt(&mut machine);
-            stale += machine.spl().stale().0 + machine.spl().stale().1;
-            let mut session =
-                Session::open(&mut machine, elsewhere(&next), Some(SCPUS)).unwrap_or_else(|e| panic!("{what}: {e}"));
-            let outcome = session.run(&next.job()).unwrap_or_else(|e| panic!("{what}: {e}"));
-            next.check(&outcome, &what);
+            let mut running = disturbed(&mut session, &spoilt, moment).unwrap_or_else(|e| panic!("{what}: {e}"));
+            interrupt(running.transport_mut());
+            stale += running.transport().spl().stale().0 + running.transport().spl().stale().1;
+            std::mem::forget(running);
+            next_is_right(&mut session, &next, &what);
         }
         assert!(stale > 0 || link == "ideal" || how == "the system's reset", "{link}: nothing old was on its way");
     }
 }
 
-/// Opening a session resets SPL: what is still on its way is answered in the middle of the next.
+/// A transaction begins with a reset of SPL: what is still on its way is answered in the middle of the next.
 #[test]
 fn a_reset_of_spl_at_any_time() {
     interrupted(quick(), "reset", |machine| machine.write_csr(0x1010, 1).unwrap());
@@ -79,16 +90,16 @@ fn abort_at_any_time_and_the_next_job_is_right() {
     let model = model(SCPUS);
     for (link, seed) in LinkModel::PRESETS.into_iter().zip(1..) {
         let afu = model.instance(seed).unwrap();
-        let mut machine = machine(&afu, rough(), link, seed);
-        let mut session = Session::open(&mut machine, spoilt.place(), Some(SCPUS)).unwrap();
+        let mut session = session(machine(&afu, rough(), link, seed), SCPUS, spoilt.workspace(1));
         let (mut aborted, mut complete) = (0, 0);
+        let mut loaded = session.transaction().send(&spoilt.pairs).unwrap();
         for moment in moments() {
             let what = format!("{link}, abort after {moment} cycles");
-            session.start(&spoilt.job());
-            session.machine().advance(moment).unwrap();
-            session.abort();
-            let status = session.wait(30_000).unwrap_or_else(|e| panic!("{what}: {e}"));
-            let outcome = session.outcome(&status);
+            let mut running = loaded.start().unwrap().confirm().unwrap();
+            running.idle(moment).unwrap();
+            running.abort().unwrap();
+            let done = running.wait().unwrap_or_else(|e| panic!("{what}: {e}"));
+            let outcome = done.outcome();
             match outcome.error {
                 1 => {
                     spoilt.check_written(&outcome, &what);
@@ -99,7 +110,9 @@ fn abort_at_any_time_and_the_next_job_is_right() {
                     complete += 1;
                 }
             }
-            next.check(&session.run(&next.job()).unwrap_or_else(|e| panic!("{what}: {e}")), &what);
+            let done = end(done.send_next(&next.pairs).unwrap()).unwrap_or_else(|e| panic!("{what}: {e}"));
+            next.check(&done.outcome(), &what);
+            loaded = done.send_next(&spoilt.pairs).unwrap();
         }
         assert!(aborted > 0 && complete > 0, "{link}: {aborted} aborted, {complete} done");
     }
@@ -113,18 +126,16 @@ fn reset_and_abort_at_every_cycle_of_a_short_job() {
     let core = u64::from(cycles_to_the_last_write(SCPUS, spoilt.pairs.len()));
     for (link, aborts) in [("late", false), ("late", true), ("hostile", false), ("hostile", true)] {
         let afu = model.instance(7).unwrap();
-        let mut machine = machine(&afu, quick(), link, 7);
+        let mut session = session(machine(&afu, quick(), link, 7), SCPUS, spoilt.workspace(3));
         let mut aborted = 0;
         for moment in 0.. {
             let what = format!("{link}, {} after {moment} cycles", if aborts { "abort" } else { "reset" });
-            let mut session = Session::open(&mut machine, spoilt_place(&spoilt), Some(SCPUS)).unwrap();
-            session.start(&spoilt.job());
-            session.machine().advance(moment).unwrap_or_else(|e| panic!("{what}: {e}"));
-            let done = session.status().is_some();
+            let mut running = disturbed(&mut session, &spoilt, moment).unwrap_or_else(|e| panic!("{what}: {e}"));
+            let done = running.is_done();
             if aborts && !done {
-                session.abort();
-                let status = session.wait(30_000).unwrap_or_else(|e| panic!("{what}: {e}"));
-                let outcome = session.outcome(&status);
+                running.abort().unwrap();
+                let ended = running.wait().unwrap_or_else(|e| panic!("{what}: {e}"));
+                let outcome = ended.outcome();
                 match outcome.error {
                     1 => {
                         spoilt.check_written(&outcome, &what);
@@ -133,12 +144,12 @@ fn reset_and_abort_at_every_cycle_of_a_short_job() {
                     // It was done before it saw the abort.
                     _ => spoilt.check(&outcome, &what),
                 }
+                std::mem::forget(ended);
             } else {
-                machine.write_csr(0x1010, 1).unwrap();
+                running.transport_mut().write_csr(0x1010, 1).unwrap();
+                std::mem::forget(running);
             }
-            let mut session =
-                Session::open(&mut machine, elsewhere(&next), Some(SCPUS)).unwrap_or_else(|e| panic!("{what}: {e}"));
-            next.check(&session.run(&next.job()).unwrap_or_else(|e| panic!("{what}: {e}")), &what);
+            next_is_right(&mut session, &next, &what);
             if done {
                 // Until its last line is asked to be written, a job can be stopped, and the link takes time on top.
                 assert!(moment > core, "{link}: a job of {moment} cycles");
@@ -158,7 +169,7 @@ fn a_lost_response_is_an_error_and_never_wrong_data() {
     let model = model(SCPUS);
     for (link, seed) in LinkModel::PRESETS.into_iter().zip(1..) {
         let afu = model.instance(seed).unwrap();
-        let mut machine = machine(&afu, quick(), link, seed);
+        let mut session = session(machine(&afu, quick(), link, seed), SCPUS, spoilt.workspace(3));
         for (fault, watchdog) in [
             (Fault::ReadLost(9), 3_000),
             (Fault::WriteLost(3), 3_000),
@@ -168,23 +179,24 @@ fn a_lost_response_is_an_error_and_never_wrong_data() {
             (Fault::WriteLost(40), 0),
         ] {
             let what = format!("{link}, {fault:?}, watchdog {watchdog}");
-            let mut session = Session::open(&mut machine, spoilt_place(&spoilt), Some(SCPUS)).unwrap();
-            session.machine().spl_mut().link_mut().plan(&[fault]);
-            let job = Job { watchdog, max_cycles: Some(12_000), ..spoilt.job() };
-            let ended = session.run(&job);
-            session.machine().spl_mut().link_mut().plan(&[]);
+            (session.watchdog, session.max_cycles) = (watchdog, Some(12_000));
+            session.set_workspace(spoilt.workspace(3));
+            let mut loaded = session.transaction().send(&spoilt.pairs).unwrap();
+            loaded.transport_mut().spl_mut().link_mut().plan(&[fault]);
+            let ended = end(loaded).map(|done| done.outcome());
+            session.transport_mut().spl_mut().link_mut().plan(&[]);
             match ended {
                 Ok(outcome) => {
                     assert_eq!((outcome.error, watchdog > 0), (4, true), "{what}");
                     assert!(spoilt.check_written(&outcome, &what) < outcome.lines.len(), "{what}");
                 }
-                Err(MachineError::NoStatus { in_flight, .. }) => {
-                    assert!(watchdog == 0 && in_flight != (0, 0), "{what}: {in_flight:?}");
+                Err(HostError::NoStatus { reads, writes, .. }) => {
+                    assert!(watchdog == 0 && (reads, writes) != (0, 0), "{what}: {reads} reads, {writes} writes");
                 }
                 Err(other) => panic!("{what}: {other}"),
             }
-            let mut session = Session::open(&mut machine, elsewhere(&next), Some(SCPUS)).unwrap();
-            next.check(&session.run(&next.job()).unwrap_or_else(|e| panic!("{what}: {e}")), &what);
+            (session.watchdog, session.max_cycles) = (0, None);
+            next_is_right(&mut session, &next, &what);
         }
     }
 }

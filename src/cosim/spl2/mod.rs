@@ -1,19 +1,15 @@
-//! The simulated HARP v1: a Verilated `afu_top` below SPL2 over a link to memory, with the host's side of both.
+//! The simulated HARP v1: a Verilated `afu_top` below SPL2 over a link to memory.
 //!
-//! [`Machine`] is what a host has: CSR writes, memory, time. [`Session`] is a small host of its own, enough to run
-//! jobs.
+//! [`Machine`] is what a host has of it: CSR writes, memory, time. To the host, in [`host`](crate::host), it is a
+//! [`Transport`](crate::host::Transport).
 
 mod error;
 mod ports;
-mod session;
 
 pub use error::MachineError;
-pub use session::{Place, Session, Status};
 
 use super::instance::{Clock, Instance};
-use crate::afu::shell::spl2::map;
-use crate::link::spl2::{DeviceWrite, Header, Spl2, Transmit};
-use crate::link::{LINE_BYTES, Memory};
+use crate::link::spl2::{Header, Spl2, Transmit};
 use ports::Ports;
 
 /// Cycles that the system's reset is held.
@@ -26,8 +22,6 @@ pub struct Machine<'a> {
     ports: Ports<'a>,
     spl: Spl2,
     cycle: u64,
-    /// The high half of a CSR that is yet to be committed.
-    high: u32,
     /// The line that the AFU asked for last.
     last_read: Option<u64>,
     /// The cycle of its last request that was no poll.
@@ -41,7 +35,7 @@ impl<'a> Machine<'a> {
     /// When a port is missing, or the module ends itself.
     pub fn new(afu: &'a Instance, spl: Spl2) -> Result<Self, MachineError> {
         let (clock, ports) = (afu.clock("clk")?, Ports::new(afu)?);
-        let mut machine = Self { clock, ports, spl, cycle: 0, high: 0, last_read: None, last_work: 0 };
+        let mut machine = Self { clock, ports, spl, cycle: 0, last_read: None, last_work: 0 };
         machine.system_reset()?;
         Ok(machine)
     }
@@ -66,13 +60,6 @@ impl<'a> Machine<'a> {
     /// # Errors
     /// As [`Machine::advance`].
     pub fn write_csr(&mut self, byte_offset: u32, value: u32) -> Result<(), MachineError> {
-        // The host's own view of where the AFU will write: those lines are logged.
-        if byte_offset == map::DSM_BASE_HIGH.offset {
-            self.high = value;
-        } else if byte_offset == map::DSM_BASE_LOW.offset {
-            let first = (u64::from(self.high) << 32 | u64::from(value)) / LINE_BYTES;
-            self.spl.watch(first..first + map::DSM_BYTES / LINE_BYTES);
-        }
         self.spl.write_csr(byte_offset, value);
         self.advance(u64::from(self.spl.model().csr_cycles).max(1))
     }
@@ -117,16 +104,6 @@ impl<'a> Machine<'a> {
         self.cycle
     }
 
-    /// Physical memory, in lines.
-    pub fn memory(&self) -> &Memory {
-        &self.spl.link().memory
-    }
-
-    /// Physical memory, for the host's hand.
-    pub fn memory_mut(&mut self) -> &mut Memory {
-        &mut self.spl.link_mut().memory
-    }
-
     /// SPL2 and the link below.
     pub fn spl(&self) -> &Spl2 {
         &self.spl
@@ -135,10 +112,5 @@ impl<'a> Machine<'a> {
     /// SPL2 and the link below, to plant faults, watch lines and set limits.
     pub fn spl_mut(&mut self) -> &mut Spl2 {
         &mut self.spl
-    }
-
-    /// What the AFU wrote to the DSM and to lines watched besides (a host watches its context), in order of arrival.
-    pub fn device_writes(&self) -> &[DeviceWrite] {
-        self.spl.log()
     }
 }
