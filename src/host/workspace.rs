@@ -12,10 +12,9 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use super::error::HostError;
 use crate::afu::Layout;
 use crate::afu::shell::spl2::map::{self, pointers};
-use crate::link::spl2::{Limits, MAX_PAGES, PAGE_BYTES};
-use crate::link::{LINE_BYTES, Line, Memory};
+use crate::link::spl2::{Limits, MAX_PAGES, PAGE_BYTES, PAGE_LINES, Pages};
+use crate::link::{LINE_BYTES, Memory};
 
-const PAGE_LINES: u64 = PAGE_BYTES / LINE_BYTES;
 /// The virtual byte address of a workspace.
 const BASE: u64 = 0x0000_7F12_3460_0000;
 /// Lines of the AFU's context.
@@ -32,8 +31,7 @@ const PAGE_TABLE: u64 = 0x4000;
 /// Memory that host and device share.
 #[derive(Clone, Debug)]
 pub struct Workspace {
-    /// Physical page numbers, in the order of virtual pages.
-    pages: Vec<u64>,
+    pages: Pages,
     layout: Layout,
     /// Lines from the beginning to the source, and to the destination.
     source: u64,
@@ -56,11 +54,12 @@ impl Workspace {
         while (scattered.len() as u64) < pages {
             let page = PHYSICAL.start + random.next_u64() % (PHYSICAL.end - PHYSICAL.start);
             if taken.insert(page) {
-                scattered.push(page);
+                scattered.push(page * PAGE_BYTES);
             }
         }
         let lines = half_lines(pages);
-        Ok(Self { pages: scattered, layout, source: CONTEXT_LINES, destination: CONTEXT_LINES + lines, lines })
+        let pages = Pages::new(BASE, scattered);
+        Ok(Self { pages, layout, source: CONTEXT_LINES, destination: CONTEXT_LINES + lines, lines })
     }
 
     /// The same pages with source and destination elsewhere: in lines from the beginning, each `lines` long.
@@ -89,7 +88,7 @@ impl Workspace {
 
     /// Its pages.
     pub fn pages(&self) -> u64 {
-        self.pages.len() as u64
+        self.pages.count()
     }
 
     /// Its bytes.
@@ -130,9 +129,7 @@ impl Workspace {
 
     /// The physical line of a virtual byte address; `None` outside of the workspace.
     pub fn physical(&self, address: u64) -> Option<u64> {
-        let line = address.checked_sub(BASE)? / LINE_BYTES;
-        let page = self.pages.get(usize::try_from(line / PAGE_LINES).ok()?)?;
-        Some(page * PAGE_LINES + line % PAGE_LINES)
+        self.pages.translate(address / LINE_BYTES)
     }
 
     /// The physical line of a line of the context, of the source, of the destination.
@@ -156,19 +153,7 @@ impl Workspace {
 
     /// Writes SPL's context, the page table, and the AFU's context.
     pub(super) fn describe(&self, memory: &mut Memory) -> Result<(), HostError> {
-        let halves = |value: u64| (value as u32, (value >> 32) as u32);
-        let mut spl = [0; 16];
-        (spl[0], spl[1]) = halves(PAGE_TABLE);
-        (spl[2], spl[3]) = halves(BASE);
-        (spl[4], spl[5]) = (1, self.pages.len() as u32);
-        memory.set(SPL_CONTEXT / LINE_BYTES, &spl);
-        for (number, pages) in (0..).zip(self.pages.chunks(8)) {
-            let mut entries: Line = [0; 16];
-            for (entry, page) in entries.chunks_mut(2).zip(pages) {
-                (entry[0], entry[1]) = halves(page * PAGE_BYTES);
-            }
-            memory.set(PAGE_TABLE / LINE_BYTES + number, &entries);
-        }
+        self.pages.write(memory, SPL_CONTEXT, PAGE_TABLE);
         let mut context = [0; 16];
         pointers::SOURCE.set(&mut context, self.source().into());
         pointers::DESTINATION.set(&mut context, self.destination().into());
@@ -226,12 +211,13 @@ mod tests {
     #[test]
     fn pages_are_scattered_and_apart() {
         let workspace = Workspace::new(layout(), 1024, 9).unwrap();
-        let distinct: BTreeSet<_> = workspace.pages.iter().collect();
-        assert_eq!(distinct.len(), 1024);
-        assert!(workspace.pages.windows(2).filter(|two| two[1] == two[0] + 1).count() < 5);
+        let page = |number: u64| workspace.physical(workspace.context() + number * PAGE_BYTES).unwrap() / PAGE_LINES;
+        let pages: Vec<_> = (0..1024).map(page).collect();
+        assert_eq!(pages.iter().collect::<BTreeSet<_>>().len(), 1024);
+        assert!(pages.windows(2).filter(|two| two[1] == two[0] + 1).count() < 5);
         let last = workspace.context() + 3 * PAGE_BYTES - 64;
-        assert_eq!(workspace.physical(last), Some(workspace.pages[2] * PAGE_LINES + PAGE_LINES - 1));
-        assert_eq!(workspace.physical(last + 64), Some(workspace.pages[3] * PAGE_LINES));
+        assert_eq!(workspace.physical(last), Some(pages[2] * PAGE_LINES + PAGE_LINES - 1));
+        assert_eq!(workspace.physical(last + 64), Some(pages[3] * PAGE_LINES));
     }
 
     #[test]

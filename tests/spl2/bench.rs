@@ -7,7 +7,7 @@ use contact_afu::cosim::spl2::Machine;
 use contact_afu::cosim::{File, Instance, Model, Outcome, Source, Trace};
 use contact_afu::host::{Done, Expected, HostError, Loaded, Session, Transaction, Workspace};
 use contact_afu::kernel::{ContactRecord, Flow, PairRecord, Reference};
-use contact_afu::link::spl2::{PAGE_BYTES, Spl2, Spl2Model};
+use contact_afu::link::spl2::{Spl2, Spl2Model};
 use contact_afu::link::{Line, Link, Stalls};
 use contact_afu::pairs::Set;
 
@@ -44,8 +44,6 @@ pub fn machine<'a>(afu: &'a Instance, spl: Spl2Model, link: &str, seed: u64) -> 
     Machine::new(afu, Spl2::new(spl, Link::new(link.parse().unwrap(), seed).unwrap(), seed)).unwrap()
 }
 
-/// Lines of a page.
-pub const PAGE_LINES: u64 = PAGE_BYTES / 64;
 /// Where the pages of all workspaces are.
 const PAGES_SEED: u64 = 7;
 

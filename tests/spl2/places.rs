@@ -2,9 +2,9 @@
 //! the very last line.
 
 use contact_afu::host::{HostError, Transport, TransportError};
-use contact_afu::link::spl2::MAX_PAGES;
+use contact_afu::link::spl2::{MAX_PAGES, PAGE_LINES};
 
-use crate::bench::{Case, PAGE_LINES, end, machine, model, quick, session, workspace};
+use crate::bench::{Case, end, machine, model, quick, session, workspace};
 
 #[test]
 fn over_the_borders_of_pages_and_in_the_last_line_of_2_gb() {

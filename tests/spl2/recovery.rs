@@ -3,12 +3,10 @@
 
 use contact_afu::cosim::spl2::Machine;
 use contact_afu::host::{HostError, Running, Session, Transaction, Workspace};
-use contact_afu::link::spl2::Spl2Model;
+use contact_afu::link::spl2::{PAGE_LINES, Spl2Model};
 use contact_afu::link::{Fault, LinkModel};
 
-use crate::bench::{
-    Case, PAGE_LINES, cycles_to_the_last_write, end, machine, model, quick, rough, run, session, workspace,
-};
+use crate::bench::{Case, cycles_to_the_last_write, end, machine, model, quick, rough, run, session, workspace};
 
 const SCPUS: u32 = 3;
 

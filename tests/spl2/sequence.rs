@@ -3,8 +3,9 @@
 use contact_afu::afu::shell::spl2::map::{self, control, pointers, status};
 use contact_afu::cosim::spl2::Machine;
 use contact_afu::host::{Transport, Workspace};
+use contact_afu::link::spl2::PAGE_LINES;
 
-use crate::bench::{Case, PAGE_LINES, end, machine, model, quick, session};
+use crate::bench::{Case, end, machine, model, quick, session};
 
 const SCPUS: u32 = 3;
 /// Cycles of CSR write, read and answer that a poll takes on top of its pause, over an ideal link.

@@ -58,7 +58,7 @@ impl<'a> Job<'a> {
     }
 
     /// What of it takes time.
-    pub fn work(&self) -> Work {
+    pub(super) fn work(&self) -> Work {
         let (pairs, reads) = (self.pairs.into(), self.source.len() as u64);
         Work { pairs, reads, writes: self.destination_lines, watchdog: self.watchdog }
     }

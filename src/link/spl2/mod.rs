@@ -17,4 +17,4 @@ pub use error::Spl2Error;
 pub use header::{Header, Receive, Receive0, Transmit};
 pub use model::{CsrOffset, DeviceWrite, SPL_ID, Seen, Spl2, Spl2Model};
 pub use monitor::Limits;
-pub use pages::{MAX_PAGES, PAGE_BYTES, Pages};
+pub use pages::{MAX_PAGES, PAGE_BYTES, PAGE_LINES, Pages};

@@ -159,11 +159,6 @@ impl Spl2 {
         &mut self.link
     }
 
-    /// Cycles so far.
-    pub fn cycle_number(&self) -> u64 {
-        self.cycle
-    }
-
     /// What happened so far.
     pub fn seen(&self) -> Seen {
         self.seen
@@ -191,19 +186,9 @@ impl Spl2 {
         self.guard.written(virtual_line)
     }
 
-    /// The physical line of a virtual one, while SPL is enabled.
-    pub fn translate(&self, line: u64) -> Option<u64> {
-        self.pages.as_ref()?.translate(line)
-    }
-
     /// Reads, and writes, on their way that were asked for before the last reset or disabling.
     pub fn stale(&self) -> (usize, usize) {
-        (self.reads.in_flight().1, self.writes.in_flight().1)
-    }
-
-    /// Reads, and writes, on their way.
-    pub fn in_flight(&self) -> (usize, usize) {
-        (self.reads.in_flight().0, self.writes.in_flight().0)
+        (self.reads.stale(), self.writes.stale())
     }
 
     /// The host writes a CSR; it arrives [`Spl2Model::csr_cycles`] later.
@@ -313,7 +298,8 @@ impl Spl2 {
         if !header.is_virtual {
             return Ok(header.line);
         }
-        self.translate(header.line).ok_or(Spl2Error::PageFault { what, line: header.line })
+        let physical = self.pages.as_ref().and_then(|pages| pages.translate(header.line));
+        physical.ok_or(Spl2Error::PageFault { what, line: header.line })
     }
 
     fn run_link(&mut self) -> Result<(), Spl2Error> {

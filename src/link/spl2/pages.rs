@@ -8,11 +8,11 @@ pub const PAGE_BYTES: u64 = 2 << 20;
 /// Pages of a table: 2 GB.
 pub const MAX_PAGES: u64 = 1024;
 /// Lines of a page.
-const PAGE_LINES: u64 = PAGE_BYTES / LINE_BYTES;
+pub const PAGE_LINES: u64 = PAGE_BYTES / LINE_BYTES;
 /// Entries of a line of the table: 64-bit physical byte addresses.
 const LINE_ENTRIES: u64 = 8;
 
-/// The table, as read from memory when SPL is enabled.
+/// The table, as SPL reads it from memory when it is enabled.
 #[derive(Clone, Debug)]
 pub struct Pages {
     /// The number of the first virtual page.
@@ -26,7 +26,38 @@ fn qword(line: &Line, index: usize) -> u64 {
     u64::from(line[2 * index + 1]) << 32 | u64::from(line[2 * index])
 }
 
+fn set_qword(line: &mut Line, index: usize, value: u64) {
+    (line[2 * index], line[2 * index + 1]) = (value as u32, (value >> 32) as u32);
+}
+
 impl Pages {
+    /// Pages at these physical byte addresses, one behind the other from a virtual one on.
+    pub fn new(first: u64, pages: impl IntoIterator<Item = u64>) -> Self {
+        let lines = pages.into_iter().map(|page| page / LINE_BYTES).collect();
+        Self { first: first / PAGE_BYTES, lines }
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> u64 {
+        self.lines.len() as u64
+    }
+
+    /// Writes what [`Pages::read`] finds: the context and the table, each at a physical byte address.
+    pub fn write(&self, memory: &mut Memory, context: u64, table: u64) {
+        let mut line = [0; 16];
+        set_qword(&mut line, 0, table);
+        set_qword(&mut line, 1, self.first * PAGE_BYTES);
+        (line[4], line[5]) = (1, self.lines.len() as u32);
+        memory.set(context / LINE_BYTES, &line);
+        for (number, pages) in (0..).zip(self.lines.chunks(LINE_ENTRIES as usize)) {
+            let mut entries = [0; 16];
+            for (index, page) in pages.iter().enumerate() {
+                set_qword(&mut entries, index, page * LINE_BYTES);
+            }
+            memory.set(table / LINE_BYTES + number, &entries);
+        }
+    }
+
     /// Reads SPL2's context at a physical byte address, and the table it names. Context: qword 0 the table's physical
     /// address, qword 1 the virtual address of the first page, dword 4 the page size (1: 2 MB), dword 5 the entries.
     ///
@@ -92,5 +123,17 @@ mod tests {
         memory.set(1, &context);
         assert!(Pages::read(&memory, 64).unwrap_err().to_string().contains("page size"));
         assert!(Pages::read(&memory, 0).is_err());
+    }
+
+    #[test]
+    fn a_table_reads_as_it_was_written() {
+        let physical = [9, 4, 300, 7, 8, 5, 6, 1, 77].map(|page| page * PAGE_BYTES);
+        let mut memory = Memory::new();
+        Pages::new(5 * PAGE_BYTES, physical).write(&mut memory, 0x3000, 0x4000);
+        let pages = Pages::read(&memory, 0x3000).unwrap();
+        assert_eq!(pages.count(), 9);
+        for (number, page) in (5..).zip(physical) {
+            assert_eq!(pages.translate(number * PAGE_LINES + 3), Some(page / LINE_BYTES + 3));
+        }
     }
 }

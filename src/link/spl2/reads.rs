@@ -94,8 +94,8 @@ impl Reads {
         self.stale.clear();
     }
 
-    /// Reads that are still to come back: of now, and of before the last reset.
-    pub(super) fn in_flight(&self) -> (usize, usize) {
-        (self.queue.len() + self.window.len(), self.stale.len())
+    /// Reads of before the last reset that are still to come back.
+    pub(super) fn stale(&self) -> usize {
+        self.stale.len()
     }
 }

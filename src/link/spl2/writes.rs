@@ -118,9 +118,8 @@ impl Writes {
         self.acknowledged.clear();
     }
 
-    /// Writes that are still to be acknowledged: of now, and of before the last reset.
-    pub(super) fn in_flight(&self) -> (usize, usize) {
-        let current = self.current();
-        (self.queue.len() + current, self.sent.len() - current)
+    /// Writes of before the last reset that are still to be acknowledged.
+    pub(super) fn stale(&self) -> usize {
+        self.sent.len() - self.current()
     }
 }
