@@ -1,6 +1,7 @@
 //! What destination memory holds after a job, by its hash, for forty AFUs: every part of a record's layout. Hardware
-//! and host read one layout and could be wrong together; these hashes were taken before they did.  Below no shell the
-//! hardware is run by the crate's own evaluator, which needs no model; below SPL2 it is Verilated.
+//! and host read one layout and could be wrong together; these hashes were taken before they did.
+//!
+//! Below no shell the hardware is run by the crate's own evaluator, which needs no model; below SPL2 it is Verilated.
 
 use contact_afu::afu::{Afu, Spec};
 use contact_afu::config::{Config, Shell};
