@@ -13,6 +13,7 @@ use super::awaited::{Port, awaited};
 use super::counter::{Countdown, all_used, up_down};
 use super::in_order::{self, Arrival, goes_in_order};
 use super::lines::{Access, line_memory};
+use super::port::{ReadInputs, ReadOutputs, outputs};
 use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, Spec};
 
 /// From the first cycle in which it runs to its first request.
@@ -33,11 +34,7 @@ pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let lines = graph.input("lines", COUNT_BITS);
     let epoch = graph.input("epoch", EPOCH_BITS);
     let take = graph.input("take", 1);
-    let request_ready = graph.input("rd_req_ready", 1);
-    let response_valid = graph.input("rd_rsp_valid", 1);
-    let response_tag = graph.input("rd_rsp_tag", EPOCH_BITS + slot_bits);
-    let response_data = graph.input("rd_rsp_data", spec.line_bits);
-    let response_error = graph.input("rd_rsp_error", 1);
+    let link = ReadInputs::of(spec).map(|port| port.input(&graph));
 
     // Requests: one for each free slot, in order of lines.
     let remaining = Countdown::new(&graph, "lines_to_request", COUNT_BITS);
@@ -46,13 +43,13 @@ pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let reserved = graph.register("reserved", slot_bits + 1, 0);
     let request_valid = graph.register("rd_req_valid", 1, 0);
     let request_address = graph.data_register("rd_req_address", ADDRESS_BITS);
-    let request_tag = graph.data_register("rd_req_tag", EPOCH_BITS + slot_bits);
+    let request_tag = graph.data_register("rd_req_tag", spec.tag_bits());
 
-    let port_free = (!*request_valid | request_ready).named("port_free");
+    let port_free = (!*request_valid | link.rd_req_ready).named("port_free");
     // Whether one may go is known a cycle before.
     let may_ask = graph.register("may_ask", 1, 0);
     let issue = (*may_ask & port_free).named("issue");
-    request_valid.next(issue | (*request_valid & !request_ready));
+    request_valid.next(issue | (*request_valid & !link.rd_req_ready));
     request_address.next_if(issue, next_address.value());
     request_tag.next_if(issue, epoch.concat(next_slot.value()));
     let some_left = remaining.connect(start, lines, issue);
@@ -64,12 +61,12 @@ pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     may_ask.next(run & some_left & !all_used(reserved, issue, taken));
 
     // Responses: into the slot the tag names. One that no request waits for overwrites a line there and ends the job.
-    let response_epoch = response_tag.high(EPOCH_BITS).named("response_epoch");
-    let response = (response_valid & response_epoch.equals(epoch)).named("is_current");
-    let response_slot = response_tag.low(slot_bits).named("response_slot");
+    let response_epoch = link.rd_rsp_tag.high(EPOCH_BITS).named("response_epoch");
+    let response = (link.rd_rsp_valid & response_epoch.equals(epoch)).named("is_current");
+    let response_slot = link.rd_rsp_tag.low(slot_bits).named("response_slot");
     let arrival = Arrival { valid: response, slot: response_slot };
-    let port = Port { valid: request_valid.value(), ready: request_ready, slot: request_tag.low(slot_bits) };
-    let answers = awaited(&graph, slots, [start, run], &port, &arrival, response_error);
+    let port = Port { valid: request_valid.value(), ready: link.rd_req_ready, slot: request_tag.low(slot_bits) };
+    let answers = awaited(&graph, slots, [start, run], &port, &arrival, link.rd_rsp_error);
     let outstanding = graph.register("outstanding", slot_bits + 1, 0);
     up_down(outstanding, start, issue, answers.answered);
 
@@ -86,16 +83,19 @@ pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let access = Access {
         write: response,
         write_index: response_slot,
-        line: response_data,
+        line: link.rd_rsp_data,
         read: always,
         read_index: head.value(),
         advance: always,
     };
     let line = line_memory(&graph, spec, "reorder", slots, &access)?;
 
-    graph.output("rd_req_valid", request_valid.value());
-    graph.output("rd_req_address", request_address.value());
-    graph.output("rd_req_tag", request_tag.value());
+    let requests = ReadOutputs {
+        rd_req_valid: request_valid.value(),
+        rd_req_address: request_address.value(),
+        rd_req_tag: request_tag.value(),
+    };
+    outputs(&graph, requests.named());
     graph.output("line_valid", line_valid.value());
     graph.output("line", line);
     graph.output("answered", answers.answered);

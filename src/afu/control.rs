@@ -8,37 +8,11 @@ use std::sync::Arc;
 use crate::config::Results;
 use crate::hdl::{BuildErrors, Graph, Module};
 
-use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, Spec, feeder};
+use super::port::{JobInputs, JobOutputs};
+use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, JobError, Spec, feeder};
 
-/// How a job ended, as the port `error` tells it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum JobError {
-    /// Stopped by `abort`.
-    Aborted = 1,
-    /// A read was answered with an error.
-    Read = 2,
-    /// A write was answered with an error.
-    Write = 3,
-    /// No response for as many cycles as `watchdog` says, with some outstanding.
-    Watchdog = 4,
-    /// A `mode` this AFU does not have.
-    Mode = 5,
-    /// More lines of contacts than the destination has room for: those beyond were not written, but all were counted.
-    Overflow = 6,
-    /// A response that no request of this job waits for.
-    Response = 7,
-    /// More pairs than the host's buffers have lines for: told by a shell that knows their length.
-    Room = 8,
-}
-
-/// Bits of the port `error`.
-pub(super) const ERROR_BITS: u32 = 4;
-/// Bits of the port `mode`.
-pub(super) const MODE_BITS: u32 = 4;
 /// Cycles without a response after which a job that is to end ends, if it has no watchdog.
 pub const DRAIN_CYCLES: u32 = 1 << 16;
-/// Bits of a cycle counter.
-const CYCLE_BITS: u32 = 64;
 
 /// From the cycle in which `start` is high to the first in which the parts run.
 pub(super) const CYCLES_TO_RUN: u32 = 2;
@@ -52,14 +26,11 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, BuildEr
     let room_bits = room_bits(capacity);
     let layout = spec.layout();
 
-    let start = graph.input("start", 1);
-    let source = graph.input("source", ADDRESS_BITS);
-    let destination = graph.input("destination", ADDRESS_BITS);
-    let count = graph.input("count", COUNT_BITS);
-    let mode = graph.input("mode", MODE_BITS);
-    let epoch = graph.input("epoch", EPOCH_BITS);
-    let watchdog = graph.input("watchdog", COUNT_BITS);
-    let abort = graph.input("abort_job", 1);
+    let job = JobInputs::of(spec);
+    let [start, source, destination, count, mode, epoch, watchdog, abort] =
+        [&job.start, &job.source, &job.destination, &job.count, &job.mode, &job.epoch, &job.watchdog, &job.abort_job]
+            .map(|port| port.input(&graph));
+    let told = JobOutputs::of(spec);
     // What comes from afar is heard a cycle later.
     let heard = |name: &str| graph.input(name, 1).registered(&format!("{name}_heard"));
     let [read_failed, write_failed, unexpected] = ["read_failed", "write_failed", "unexpected"].map(heard);
@@ -79,7 +50,7 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, BuildEr
     let running = graph.register("running", 1, 0);
     let draining = graph.register("draining", 1, 0);
     let done = graph.register("done", 1, 0);
-    let error = graph.register("error", ERROR_BITS, 0);
+    let error = graph.register("error", JobError::BITS, 0);
     let begin = graph.register("begin_job", 1, 0);
     let run = (*running & !*begin).named("run");
     let busy = (*running | *draining).named("busy");
@@ -147,9 +118,9 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, BuildEr
         (unexpected & !*begin, JobError::Response),
         (*expired, JobError::Watchdog),
     ];
-    let mut cause = graph.constant(ERROR_BITS, 0);
+    let mut cause = graph.constant(JobError::BITS, 0);
     for (condition, code) in causes.into_iter().rev() {
-        cause = condition.select(graph.constant(ERROR_BITS, code as u128), cause);
+        cause = condition.select(graph.constant(JobError::BITS, code.code().into()), cause);
     }
     let cause = cause.named("cause");
     failing.drive(*running & cause.any() & !complete);
@@ -166,29 +137,29 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, BuildEr
     done.next(!accept & (*done | complete | drained));
     let failed = failing.select(cause, *error).named("failed");
     let mut ended = failed;
-    if spec.config.results == Results::Hits {
+    if let Some(port) = &job.destination_lines {
         let overflowed = graph.input("overflowed", 1);
-        ended = (complete & overflowed).select(error.same(JobError::Overflow as u128), failed);
+        ended = (complete & overflowed).select(error.same(JobError::Overflow.code().into()), failed);
         // The room for results in memory, for the dispatcher.
-        let lines = graph.input("destination_lines", COUNT_BITS);
+        let lines = port.input(&graph);
         let job_lines = graph.register("job_destination_lines", COUNT_BITS, 0);
         job_lines.next_if(accept, lines);
         graph.output("job_destination_lines", job_lines.value());
     }
-    let ended = gives_up.select(error.same(JobError::Watchdog as u128), ended).named("ended");
+    let ended = gives_up.select(error.same(JobError::Watchdog.code().into()), ended).named("ended");
     // A job is accepted while none is there that could end: that comes last here, since it is known last.
-    let begun = mode.any().select(error.same(JobError::Mode as u128), error.same(0));
+    let begun = mode.any().select(error.same(JobError::Mode.code().into()), error.same(0));
     error.next(accept.select(begun, ended));
 
     // They begin a cycle after the job does, of which that cycle is one; nothing waits in it yet.
-    for (name, counts, first) in [
-        ("cycles_busy", busy, 1),
-        ("cycles_input", waits_for_input & *running, 0),
-        ("cycles_output", waits_for_output & *running, 0),
+    for (port, counts, first) in [
+        (told.cycles_busy, busy, 1),
+        (told.cycles_input, waits_for_input & *running, 0),
+        (told.cycles_output, waits_for_output & *running, 0),
     ] {
-        let counter = graph.register(name, CYCLE_BITS, 0);
+        let counter = graph.register(port.name, port.bits, 0);
         counter.next_if(*begin | counts, begin.select(counter.same(first), counter.plus(1)));
-        graph.output(name, counter.value());
+        graph.output(port.name, counter.value());
     }
     graph.output("busy", busy);
     graph.output("done", done.value());

@@ -14,6 +14,7 @@ use super::awaited::{self, Port, awaited};
 use super::counter::{Countdown, all_used, up_down};
 use super::in_order::{Arrival, goes_in_order};
 use super::lines::{Access, line_memory};
+use super::port::{WriteInputs, WriteOutputs, outputs};
 use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, Spec};
 
 /// From a line to its write request: stored, at the head, registered.
@@ -35,10 +36,7 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
     let epoch = graph.input("epoch", EPOCH_BITS);
     let line_valid = graph.input("line_valid", 1);
     let line = graph.input("line", spec.line_bits);
-    let request_ready = graph.input("wr_req_ready", 1);
-    let response_valid = graph.input("wr_rsp_valid", 1);
-    let response_tag = graph.input("wr_rsp_tag", EPOCH_BITS + slot_bits);
-    let response_error = graph.input("wr_rsp_error", 1);
+    let link = WriteInputs::of(spec).map(|port| port.input(&graph));
     let bounded = spec.config.results == Results::Hits;
 
     // Finished lines wait in a memory, the oldest of them read already. It cannot overflow: a pair enters an SCPU only
@@ -65,8 +63,8 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
     let may_send = graph.register("may_send", 1, 0);
     let request_valid = graph.register("wr_req_valid", 1, 0);
     let request_address = graph.data_register("wr_req_address", ADDRESS_BITS);
-    let request_tag = graph.data_register("wr_req_tag", EPOCH_BITS + slot_bits);
-    let port_free = (!*request_valid | request_ready).named("port_free");
+    let request_tag = graph.data_register("wr_req_tag", spec.tag_bits());
+    let port_free = (!*request_valid | link.wr_req_ready).named("port_free");
     let has_line = (*may_send & *read_valid).named("has_line");
     goes.drive(has_line & port_free);
     let send = if bounded {
@@ -84,7 +82,7 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
     } else {
         goes
     };
-    request_valid.next(send | (*request_valid & !request_ready));
+    request_valid.next(send | (*request_valid & !link.wr_req_ready));
     request_address.next_if(send, next_address.value());
     request_tag.next_if(send, epoch.concat(next_slot.value()));
     // The memory's own register is the port's.
@@ -95,21 +93,24 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
     next_slot.next_if(start | send, start.select(next_slot.same(0), next_slot.plus(1)));
 
     // Acknowledgements, in any order.
-    let response_epoch = response_tag.high(EPOCH_BITS).named("response_epoch");
-    let response = (response_valid & response_epoch.equals(epoch)).named("is_current");
-    let arrival = Arrival { valid: response, slot: response_tag.low(slot_bits) };
-    let port = Port { valid: request_valid.value(), ready: request_ready, slot: request_tag.low(slot_bits) };
-    let answers = awaited(&graph, slots, [start, run], &port, &arrival, response_error);
+    let response_epoch = link.wr_rsp_tag.high(EPOCH_BITS).named("response_epoch");
+    let response = (link.wr_rsp_valid & response_epoch.equals(epoch)).named("is_current");
+    let arrival = Arrival { valid: response, slot: link.wr_rsp_tag.low(slot_bits) };
+    let port = Port { valid: request_valid.value(), ready: link.wr_req_ready, slot: request_tag.low(slot_bits) };
+    let answers = awaited(&graph, slots, [start, run], &port, &arrival, link.wr_rsp_error);
     let freed = goes_in_order(&graph, slots, start, arrival.slot, answers.answered, graph.constant(1, 1));
     up_down(reserved, start, send, freed);
     may_send.next(run & !all_used(reserved, send, freed));
     let outstanding = graph.register("outstanding", slot_bits + 1, 0);
     up_down(outstanding, start, send, answers.answered);
 
-    graph.output("wr_req_valid", request_valid.value());
-    graph.output("wr_req_address", request_address.value());
-    graph.output("wr_req_tag", request_tag.value());
-    graph.output("wr_req_data", request_data);
+    let requests = WriteOutputs {
+        wr_req_valid: request_valid.value(),
+        wr_req_address: request_address.value(),
+        wr_req_tag: request_tag.value(),
+        wr_req_data: request_data,
+    };
+    outputs(&graph, requests.named());
     if !bounded {
         graph.output("line_left", (take & !start).registered("line_left"));
     }

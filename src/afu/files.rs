@@ -6,12 +6,12 @@ use std::fmt::Write as _;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
-use crate::config::{Config, MANIFEST_SCHEMA, Shell};
+use crate::config::{Config, MANIFEST_SCHEMA};
 use crate::hdl::Primitive;
 use crate::pipeline::KernelReport;
 
 use super::Afu;
-use super::shell::spl2;
+use super::port::connections;
 
 /// The folder of the test bench, apart from what is synthesised.
 pub(super) const BENCH_FOLDER: &str = "sim";
@@ -36,13 +36,9 @@ impl Afu {
             named("contact_afu.sdc", self.sdc()),
             named("contact_afu.xdc", self.xdc()),
             named("contact_afu_instance.vh", self.template()),
-            ("PORTS.md".to_owned(), self.ports()),
+            ("PORTS.md".to_owned(), self.ports_page()),
         ]);
-        if config.shell == Shell::Spl2 {
-            let title = format!("# Registers and lines of `{}`", self.top_name());
-            let text = format!("{title}\n\n{}\n{}", spl2::map::markdown(), spl2::map::job());
-            files.push(("REGISTERS.md".to_owned(), text));
-        }
+        files.extend(self.shell().files(self));
         let manifest = self.manifest(&files);
         files.push(("manifest.json".to_owned(), manifest));
         files
@@ -87,13 +83,12 @@ impl Afu {
     }
 
     fn template(&self) -> String {
-        let ports = self.all_ports();
-        let widest = ports.iter().map(|(_, _, name)| name.len()).max().unwrap_or(0);
-        let lines: Vec<_> = ports.iter().map(|(_, _, name)| format!("  .{name:<widest$} ({name})")).collect();
+        let ports = self.ports();
+        let ports: Vec<_> = ports.inputs.iter().chain(&ports.outputs).map(|port| (port.name, port.name)).collect();
         let scpus = self.spec().config.scpus;
         format!(
             "// Instantiation template.\n{top} #(\n  .SCPUS(32'd{scpus})\n) u_{top} (\n{}\n);\n",
-            lines.join(",\n"),
+            connections("  ", &ports),
             top = self.top_name()
         )
     }

@@ -7,23 +7,21 @@ use crate::hdl::{BuildErrors, Module};
 use crate::pipeline::{Settings, sphere_kernel};
 
 use super::scpu::scpu;
-use super::shell::spl2;
+use super::shell::{self, ShellDesign};
 use super::top::line_top;
 use super::{Layout, Spec, SpecError};
-use crate::config::{Config, Shell};
+use crate::config::Config;
 
 /// The name of the top module of a configuration's accelerator.
 pub fn top_name(config: &Config) -> String {
-    config.prefixed(match config.shell {
-        Shell::Spl2 => "afu_top",
-        _ => "contact_afu",
-    })
+    config.prefixed(shell::of(config.shell).top_name())
 }
 
 /// A generated accelerator.
 #[derive(Clone, Debug)]
 pub struct Afu {
     spec: Spec,
+    shell: &'static dyn ShellDesign,
     top: Arc<Module>,
     core: Arc<Module>,
     kernel: Arc<Module>,
@@ -43,7 +41,7 @@ pub enum BuildError {
 impl Afu {
     /// Generates the accelerator of a specification.
     ///
-    /// # Errors
+    /// # BuildErrors
     /// What is out of range in `spec`; a fault of the generator itself.
     pub fn generate(spec: Spec) -> Result<Self, BuildError> {
         spec.check()?;
@@ -64,7 +62,7 @@ impl Afu {
     /// [`crate::pipeline::sphere_kernel`] at the specification's interval, whose outputs follow its inputs by its
     /// `latency`, which is at least 1.
     ///
-    /// # Errors
+    /// # BuildErrors
     /// What is out of range in `spec`; ports that do not fit.
     pub fn around(spec: Spec, kernel: Arc<Module>) -> Result<Self, BuildError> {
         spec.check()?;
@@ -73,11 +71,9 @@ impl Afu {
             return Err(SpecError::Word(spec.word_bits, record_bits).into());
         }
         let core = line_top(&spec, &scpu(&spec, &kernel)?)?;
-        let top = match spec.config.shell {
-            Shell::Spl2 => spl2::afu_top(&spec, &core)?,
-            _ => core.clone(),
-        };
-        Ok(Self { spec, top, core, kernel })
+        let shell = shell::of(spec.config.shell);
+        let top = shell.top(&spec, &core)?;
+        Ok(Self { spec, shell, top, core, kernel })
     }
 
     /// The accelerator of a specification around an SCPU of the caller's, which is its own kernel then: a module with
@@ -85,17 +81,22 @@ impl Afu {
     /// least 1; and at an interval above 1 the input `take`, set in the cycle before a pair comes to stay for the
     /// interval. This is what the controller is proven with; there is no shell around it.
     ///
-    /// # Errors
+    /// # BuildErrors
     /// What is out of range in `spec`; ports that do not fit.
     pub fn around_scpu(spec: Spec, scpu: Arc<Module>) -> Result<Self, BuildError> {
         spec.check()?;
         let core = line_top(&spec, &scpu)?;
-        Ok(Self { spec, top: core.clone(), core, kernel: scpu })
+        Ok(Self { spec, shell: shell::none(), top: core.clone(), core, kernel: scpu })
     }
 
     /// What it was generated from.
     pub fn spec(&self) -> &Spec {
         &self.spec
+    }
+
+    /// What is around the core.
+    pub(super) fn shell(&self) -> &'static dyn ShellDesign {
+        self.shell
     }
 
     /// Where records lie in lines.

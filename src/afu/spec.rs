@@ -4,7 +4,7 @@ use crate::config::{Config, INTERVALS, Multipliers};
 use crate::hdl::verilog::Memories;
 use crate::hdl::{DelayModel, Reset};
 
-use super::{COUNT_BITS, Layout};
+use super::{COUNT_BITS, EPOCH_BITS, Layout};
 
 /// Everything that decides the generated Verilog.
 #[derive(Clone, Debug, PartialEq)]
@@ -76,6 +76,11 @@ impl Spec {
     /// The record layout.
     pub fn layout(&self) -> Layout {
         Layout::of(self.line_bits, &self.config).with_words_of(self.word_bits)
+    }
+
+    /// Bits of a tag: the job's epoch, and a slot.
+    pub(crate) fn tag_bits(&self) -> u32 {
+        EPOCH_BITS + self.max_outstanding.ilog2()
     }
 
     /// Pairs that can be handed to SCPUs in one cycle: those of one line.

@@ -5,9 +5,10 @@ use std::sync::Arc;
 use crate::config::Results;
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
-use super::control::{MODE_BITS, control};
+use super::control::control;
+use super::port::{JobInputs, JobOutputs, ReadInputs, ReadOutputs, WriteInputs, WriteOutputs, outputs};
 use super::results::{Parts, Room};
-use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, MAX_SCPUS, SCPU_BITS, Spec};
+use super::{MAX_SCPUS, SCPU_BITS, Spec};
 use super::{collector, dispatcher, feeder, slot, timing};
 
 /// Register ranks round the slots: results are registered after they were or-ed together.
@@ -37,25 +38,9 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, B
         Some(multiple) if multiple < MAX_SCPUS => graph.rounded_down("SCPUS_IN_TURN", scpus, multiple),
         _ => scpus,
     };
-    let tag_bits = EPOCH_BITS + spec.max_outstanding.ilog2();
-    let start = graph.input("start", 1);
-    let source = graph.input("source", ADDRESS_BITS);
-    let destination = graph.input("destination", ADDRESS_BITS);
-    let destination_lines = only_hits.then(|| graph.input("destination_lines", COUNT_BITS));
-    let count = graph.input("count", COUNT_BITS);
-    let mode = graph.input("mode", MODE_BITS);
-    let epoch = graph.input("epoch", EPOCH_BITS);
-    let watchdog = graph.input("watchdog", COUNT_BITS);
-    let abort = graph.input("abort_job", 1);
-    let rd_req_ready = graph.input("rd_req_ready", 1);
-    let rd_rsp_valid = graph.input("rd_rsp_valid", 1);
-    let rd_rsp_tag = graph.input("rd_rsp_tag", tag_bits);
-    let rd_rsp_data = graph.input("rd_rsp_data", spec.line_bits);
-    let rd_rsp_error = graph.input("rd_rsp_error", 1);
-    let wr_req_ready = graph.input("wr_req_ready", 1);
-    let wr_rsp_valid = graph.input("wr_rsp_valid", 1);
-    let wr_rsp_tag = graph.input("wr_rsp_tag", tag_bits);
-    let wr_rsp_error = graph.input("wr_rsp_error", 1);
+    let job = JobInputs::of(spec).map(|port| port.input(&graph));
+    let reads = ReadInputs::of(spec).map(|port| port.input(&graph));
+    let writes = WriteInputs::of(spec).map(|port| port.input(&graph));
 
     // What flows back: control hears of all the others.
     let wire = |name: &str, width: u32| graph.wire(name, width);
@@ -71,15 +56,8 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, B
     let accepts = only_hits.then(|| wire("dispatcher_accepts", 1));
     let overflowed = only_hits.then(|| wire("overflowed", 1));
     let (waits_for_input, waits_for_output) = (wire("waits_for_input", 1), wire("waits_for_output", 1));
-    let mut control_inputs = vec![
-        ("start", start),
-        ("source", source),
-        ("destination", destination),
-        ("count", count),
-        ("mode", mode),
-        ("epoch", epoch),
-        ("watchdog", watchdog),
-        ("abort_job", abort),
+    let mut control_inputs = job.named();
+    control_inputs.extend([
         ("read_failed", read_failed),
         ("write_failed", write_failed),
         ("unexpected", unexpected),
@@ -92,8 +70,7 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, B
         (if only_hits { "places_freed" } else { "line_left" }, line_left),
         ("waits_for_input", waits_for_input),
         ("waits_for_output", waits_for_output),
-    ];
-    control_inputs.extend(destination_lines.map(|lines| ("destination_lines", lines)));
+    ]);
     control_inputs.extend(overflowed.map(|overflowed| ("overflowed", overflowed)));
     let control = graph.instance("control", &control, &control_inputs);
     let begin = control.output("begin_job");
@@ -101,23 +78,16 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, B
     let job_epoch = control.output("job_epoch");
     let job_count = control.output("job_count");
 
-    let collector = graph.instance(
-        "collector",
-        &collector,
-        &[
-            ("start", begin),
-            ("run", run),
-            ("source", control.output("job_source")),
-            ("lines", control.output("lines")),
-            ("epoch", job_epoch),
-            ("take", take),
-            ("rd_req_ready", rd_req_ready),
-            ("rd_rsp_valid", rd_rsp_valid),
-            ("rd_rsp_tag", rd_rsp_tag),
-            ("rd_rsp_data", rd_rsp_data),
-            ("rd_rsp_error", rd_rsp_error),
-        ],
-    );
+    let mut collector_inputs = reads.named();
+    collector_inputs.extend([
+        ("start", begin),
+        ("run", run),
+        ("source", control.output("job_source")),
+        ("lines", control.output("lines")),
+        ("epoch", job_epoch),
+        ("take", take),
+    ]);
+    let collector = graph.instance("collector", &collector, &collector_inputs);
     let feeder = graph.instance(
         "feeder",
         &feeder,
@@ -163,18 +133,15 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, B
         .collect();
     let packed_results = results.instances(&graph, [begin, job_count, group_done], &lane_outputs, accepts);
     let packer = packed_results.packer;
-    let mut dispatcher_inputs = vec![
+    let mut dispatcher_inputs = writes.named();
+    dispatcher_inputs.extend([
         ("start", begin),
         ("run", run),
         ("destination", control.output("job_destination")),
         ("epoch", job_epoch),
         ("line_valid", packer.output("line_valid")),
         ("line", packer.output("line")),
-        ("wr_req_ready", wr_req_ready),
-        ("wr_rsp_valid", wr_rsp_valid),
-        ("wr_rsp_tag", wr_rsp_tag),
-        ("wr_rsp_error", wr_rsp_error),
-    ];
+    ]);
     if only_hits {
         dispatcher_inputs.push(("lines", control.output("job_destination_lines")));
     }
@@ -191,22 +158,21 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, B
     emerged.drive(group_done);
     line_left.drive(packed_results.places_freed.unwrap_or_else(|| dispatcher.output("line_left")));
 
-    for name in ["busy", "done", "error"] {
-        graph.output(name, control.output(name));
-    }
-    for name in ["contacts", "invalid", "first_invalid"] {
-        graph.output(name, packed_results.status.output(name));
-    }
-    for name in ["cycles_busy", "cycles_input", "cycles_output"] {
-        graph.output(name, control.output(name));
-    }
-    graph.output("capability", capability(&graph, spec, scpus, unit.latency));
-    for name in ["rd_req_valid", "rd_req_address", "rd_req_tag"] {
-        graph.output(name, collector.output(name));
-    }
-    for name in ["wr_req_valid", "wr_req_address", "wr_req_tag", "wr_req_data"] {
-        graph.output(name, dispatcher.output(name));
-    }
+    let told = JobOutputs {
+        busy: control.output("busy"),
+        done: control.output("done"),
+        error: control.output("error"),
+        contacts: packed_results.status.output("contacts"),
+        invalid: packed_results.status.output("invalid"),
+        first_invalid: packed_results.status.output("first_invalid"),
+        cycles_busy: control.output("cycles_busy"),
+        cycles_input: control.output("cycles_input"),
+        cycles_output: control.output("cycles_output"),
+        capability: capability(&graph, spec, scpus, unit.latency),
+    };
+    outputs(&graph, told.named());
+    outputs(&graph, ReadOutputs::of(spec).map(|port| collector.output(port.name)).named());
+    outputs(&graph, WriteOutputs::of(spec).map(|port| dispatcher.output(port.name)).named());
     graph.finish()
 }
 

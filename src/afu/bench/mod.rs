@@ -1,11 +1,10 @@
 //! The test bench beside the Verilog: a job with its pairs and the lines that the reference kernel gives for them, for
-//! simulators that know nothing of this crate.
+//! simulators that know nothing of this crate. A shell has its bench, whose parts that all share are in `shared.v`.
 
-use crate::config::{Results, Shell};
 use crate::kernel::{Flow, PairRecord};
 
 use super::pack::{Line, pack, pack_contacts, unpack_pairs};
-use super::shell::spl2::map;
+use super::shell::BenchText;
 use super::{Afu, COUNT_BITS};
 
 /// Spheres one in the other, beside each other, touching, far apart, equal; and what is no pair of spheres.
@@ -43,15 +42,7 @@ impl Afu {
         let first_invalid = invalid.first().map_or(u32::MAX >> (u32::BITS - COUNT_BITS), |&number| number as u32);
         let contacts = records.iter().filter(|record| record.is_contact()).count();
 
-        let (template, first) = match config.shell {
-            Shell::Spl2 => (include_str!("spl2.v"), map::DATA_LINE as usize),
-            _ => (include_str!("line.v"), 0),
-        };
-        let reset = if self.spec().reset.active_low { ".rst_n          (~rst)" } else { ".rst            (rst)" };
-        let room = match config.results {
-            Results::All => "",
-            Results::Hits => "    .destination_lines (32'd4096),\n",
-        };
+        let BenchText { text, first_line } = self.shell().bench(self);
         let lines = |lines: &[Line], text: &dyn Fn(usize, &str) -> String| {
             let lines = lines.iter().enumerate().map(|(number, line)| text(number, &hex(line)));
             lines.collect::<Vec<_>>().join("\n")
@@ -68,16 +59,20 @@ impl Afu {
             ("@CONTACTS@", contacts.to_string()),
             ("@INVALID@", invalid.len().to_string()),
             ("@FIRST_INVALID@", first_invalid.to_string()),
-            ("@RESET@", reset.to_owned()),
-            ("@DESTINATION_LINES@", room.to_owned()),
             (
                 "@SOURCE@",
-                lines(&source, &|number, hex| format!("      source_lines[{}] = 512'h{hex};", number + first)),
+                lines(&source, &|number, hex| format!("      source_lines[{}] = 512'h{hex};", number + first_line)),
             ),
             ("@EXPECTED@", lines(&expected, &|number, hex| format!("      expect_line({number}, 512'h{hex});"))),
         ];
-        values.into_iter().fold(template.to_owned(), |text, (name, value)| text.replace(name, &value))
+        values.into_iter().fold(with_shared(text), |text, (name, value)| text.replace(name, &value))
     }
+}
+
+/// The text with what the benches of all shells have in common in the place of its parts' names.
+fn with_shared(text: String) -> String {
+    let parts = include_str!("shared.v").split("@@ ").filter_map(|part| part.split_once('\n'));
+    parts.fold(text, |text, (name, part)| text.replace(&format!("@{name}@\n"), part))
 }
 
 fn hex(line: &Line) -> String {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::hdl::{BuildErrors, Graph, Module};
 
-use super::port::{MDATA_BITS, SHELL_EPOCH_BITS, is_core_s};
+use super::words::{MDATA_BITS, SHELL_EPOCH_BITS, is_core_s};
 use crate::afu::counter::up_down;
 use crate::afu::{EPOCH_BITS, Spec};
 

@@ -1,69 +1,42 @@
-//! The words of the HARP v1 port: headers, types, and what a request's `mdata` says.
+//! SPL2's ports, of Intel HARP v1.
 
-use crate::hdl::{Graph, Signal};
+use super::words::{RX_HEADER_BITS, TX_HEADER_BITS};
+use crate::afu::port::interface;
 
-/// Bits of a transmit header.
-pub(super) const TX_HEADER_BITS: u32 = 99;
-/// Bits of a receive header.
-pub(super) const RX_HEADER_BITS: u32 = 18;
-/// Bits of `mdata`; SPL keeps the uppermost for itself.
-pub(super) const MDATA_BITS: u32 = 14;
-/// Bits of `mdata` below the one that tells the shell's own requests from the core's.
-pub(super) const NUMBER_BITS: u32 = 12;
-/// Bits of the shell's epoch, whose low part is the core's.
-pub(super) const SHELL_EPOCH_BITS: u32 = 6;
-
-/// Types of requests.
-#[derive(Clone, Copy)]
-pub(super) enum Request {
-    WriteLine = 2,
-    Read = 4,
-    WriteFence = 5,
+interface! {
+    /// What SPL says.
+    SplInputs(spec) {
+        reset_n: T => 1, "the system's reset, active low; at least one cycle";
+        spl_enable: T => 1, "low: everything but the registers rests, as in reset";
+        spl_reset: T => 1, "reset, active high: a job that runs is forgotten";
+        spl_tx_rd_almostfull: T => 1, "SPL's queue of reads is almost full: at most two reads follow";
+        spl_tx_wr_almostfull: T => 1, "SPL's queue of writes is almost full: at most two writes follow";
+        spl_rx_rd_valid: T => 1, "a read response, in any order; never refused";
+        spl_rx_wr_valid0: T => 1, WRITE_RESPONSE;
+        spl_rx_cfg_valid: T => 1, "a CSR write: header 13:0 its byte offset / 4, data 31:0 its value";
+        spl_rx_intr_valid0: T => 1, NOT_USED;
+        spl_rx_umsg_valid: T => 1, NOT_USED;
+        spl_rx_hdr0: T => RX_HEADER_BITS, RX_HEADER;
+        spl_rx_data: T => spec.line_bits, "the line, or the register's value";
+        spl_rx_wr_valid1: T => 1, WRITE_RESPONSE;
+        spl_rx_intr_valid1: T => 1, NOT_USED;
+        spl_rx_hdr1: T => RX_HEADER_BITS, RX_HEADER;
+    }
 }
 
-/// A transmit header for one line: lines 98:93, address 92:67 and 45:14, virtual 66, type 55:52, mdata 13:0.
-pub(super) fn header<'g>(
-    graph: &'g Graph,
-    request: Signal<'g>,
-    is_virtual: Signal<'g>,
-    address: Signal<'g>,
-    mdata: Signal<'g>,
-) -> Signal<'g> {
-    let constant = |width, value| graph.constant(width, value);
-    Signal::join(&[
-        constant(6, 1),
-        address.drop_low(32),
-        is_virtual,
-        constant(10, 0),
-        request,
-        constant(6, 0),
-        address.low(32),
-        mdata,
-    ])
+interface! {
+    /// What the AFU asks of SPL.
+    SplOutputs(spec) {
+        afu_tx_rd_valid: T => 1, "a read request, taken in this cycle";
+        afu_tx_rd_hdr: T => TX_HEADER_BITS,
+            "98:93 lines (1), 92:67 and 45:14 line address, 66 virtual, 55:52 type (4), 13:0 mdata";
+        afu_tx_wr_valid: T => 1, "a write request or a fence, taken in this cycle";
+        afu_tx_intr_valid: T => 1, "an interrupt: never";
+        afu_tx_wr_hdr: T => TX_HEADER_BITS, "as `afu_tx_rd_hdr`; type 2 a line, 5 a fence";
+        afu_tx_data: T => spec.line_bits, "the line";
+    }
 }
 
-/// A type as its four bits.
-pub(super) fn kind(graph: &Graph, request: Request) -> Signal<'_> {
-    graph.constant(4, request as u128)
-}
-
-/// `mdata` of one of the shell's own requests.
-pub(super) fn own_mdata<'g>(graph: &'g Graph, number: Signal<'g>) -> Signal<'g> {
-    graph.constant(2, 0b01).concat(number)
-}
-
-/// `mdata` of one of the core's requests: the shell's epoch, and the slot that is the low part of the core's tag.
-pub(super) fn core_mdata<'g>(epoch: Signal<'g>, slot: Signal<'g>) -> Signal<'g> {
-    epoch.concat(slot).extend(MDATA_BITS)
-}
-
-/// Whether a response's `mdata` is that of a request of the core's in this epoch.
-pub(super) fn is_core_s<'g>(mdata: Signal<'g>, epoch: Signal<'g>, slot_bits: u32) -> Signal<'g> {
-    let above = slot_bits + SHELL_EPOCH_BITS;
-    mdata.slice(above, MDATA_BITS - above).is_zero() & mdata.slice(slot_bits, SHELL_EPOCH_BITS).equals(epoch)
-}
-
-/// Whether a response's `mdata` is that of the shell's own request of this number.
-pub(super) fn is_own<'g>(mdata: Signal<'g>, number: Signal<'g>) -> Signal<'g> {
-    mdata.drop_low(NUMBER_BITS).is(0b01) & mdata.low(NUMBER_BITS).equals(number)
-}
+const WRITE_RESPONSE: &str = "a write response, in any order, on both channels if need be";
+const RX_HEADER: &str = "17:14 type, 13:0 mdata of the request";
+const NOT_USED: &str = "not used";

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
 use super::map::{self, Csr, identity, scratch};
-use super::port::MDATA_BITS;
+use super::words::MDATA_BITS;
 use crate::afu::{ADDRESS_BITS, Spec};
 
 /// Bits of a byte address within a line.

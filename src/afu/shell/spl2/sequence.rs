@@ -7,10 +7,10 @@ use crate::config::Results;
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
 use super::map::{self, control, latency, performance, pointers, status};
-use super::port::{MDATA_BITS, NUMBER_BITS, is_own};
 use super::registers::dsm_page_line;
-use crate::afu::control::{ERROR_BITS, JobError, MODE_BITS};
-use crate::afu::{ADDRESS_BITS, COUNT_BITS, Spec};
+use super::words::{MDATA_BITS, NUMBER_BITS, is_own};
+use crate::afu::port::{JobInputs, JobOutputs};
+use crate::afu::{ADDRESS_BITS, COUNT_BITS, JobError, Spec};
 
 /// Bits of a byte address within a line.
 const BYTE_BITS: u32 = 6;
@@ -35,13 +35,14 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     // A cycle after the other two.
     let received = graph.input("rsp_data", spec.line_bits);
     let write_granted = graph.input("wr_granted", 1);
+    let told = JobOutputs::of(spec);
     let core_done = graph.input("core_done", 1);
-    let core_error = graph.input("core_error", ERROR_BITS);
+    let core_error = graph.input("core_error", told.error.bits);
     let core_read = graph.input("core_read_answered", 1);
     let core_write = graph.input("core_write_asked", 1);
-    let core_words = ["contacts", "invalid", "first_invalid"].map(|name| graph.input(name, COUNT_BITS));
-    let core_cycles = ["cycles_busy", "cycles_input", "cycles_output"].map(|name| graph.input(name, 64));
-    let capability = graph.input("capability", 64);
+    let core_words = [told.contacts, told.invalid, told.first_invalid].map(|port| port.input(&graph));
+    let core_cycles = [told.cycles_busy, told.cycles_input, told.cycles_output].map(|port| port.input(&graph));
+    let capability = told.capability.input(&graph);
 
     // What the sequence is at, one of these: no context is known; reads the context; polls the control memory for a
     // job; counts the job's lines; compares them with the buffers'; starts the job, if there are lines enough; the core
@@ -103,8 +104,9 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let job_count = graph.data_register("job_count", COUNT_BITS);
     job_count.next_if(got_job, control::COUNT.of(response));
     let mode = control::MODE.of(response);
-    let job_mode = graph.data_register("job_mode", MODE_BITS);
-    let folded = mode.low(MODE_BITS) | mode.drop_low(MODE_BITS).any().extend(MODE_BITS);
+    let mode_bits = JobInputs::of(spec).mode.bits;
+    let job_mode = graph.data_register("job_mode", mode_bits);
+    let folded = mode.low(mode_bits) | mode.drop_low(mode_bits).any().extend(mode_bits);
     job_mode.next_if(got_job, folded);
     let job_watchdog = graph.data_register("job_watchdog", COUNT_BITS);
     job_watchdog.next_if(got_job, control::WATCHDOG.of(response));
@@ -172,7 +174,7 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
         ],
     )
     .named("performance_line");
-    let no_room = constant(ERROR_BITS, JobError::Room as u128);
+    let no_room = constant(JobError::BITS, JobError::Room.code().into());
     let status_line = map::line(
         &graph,
         spec.line_bits,
@@ -195,7 +197,7 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let dsm_address = at_latency.select(dsm(map::LATENCY_LINE), dsm(map::PERFORMANCE_LINE));
     let dsm_data = at_latency.select(latency_line, performance_line);
     // Without a DSM there are no counters; and a fence might never pass the write whose response the core gave up on.
-    let gave_up = core_error.is(JobError::Watchdog as u128).named("gave_up");
+    let gave_up = core_error.is(JobError::Watchdog.code().into()).named("gave_up");
     let fences = (at_fence & !(gave_up & ran)).named("fences");
     let written = (write_granted | (to_dsm & !dsm_valid) | (at_fence & !fences)).named("written");
 

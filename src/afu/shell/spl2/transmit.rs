@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use crate::hdl::{BuildErrors, Graph, Module, Register, Signal};
 
-use super::port::{self, NUMBER_BITS, Request, SHELL_EPOCH_BITS, TX_HEADER_BITS};
+use super::words::{self, NUMBER_BITS, Request, SHELL_EPOCH_BITS, TX_HEADER_BITS};
 use crate::afu::{ADDRESS_BITS, EPOCH_BITS, Spec};
 
 /// Builds the module `spl2_transmit`.
@@ -40,14 +40,14 @@ pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let core_read_ready = reads.core;
     let read_number = number(&graph, "read_number", own_read_granted, power_on);
     let constant = |width: u32, value: u128| graph.constant(width, value);
-    let read_header = port::header(
+    let read_header = words::header(
         &graph,
-        port::kind(&graph, Request::Read),
+        words::kind(&graph, Request::Read),
         constant(1, 1),
         own_read_granted.select(own_read_address, core_read_address),
         own_read_granted.select(
-            port::own_mdata(&graph, read_number),
-            port::core_mdata(epoch.value(), core_read_tag.low(slot_bits)),
+            words::own_mdata(&graph, read_number),
+            words::core_mdata(epoch.value(), core_read_tag.low(slot_bits)),
         ),
     );
     let read_valid = graph.data_register("tx_rd_valid", 1);
@@ -78,20 +78,20 @@ pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     writes.connect((register_write | end_write).named("own_wr_waits"), discard, power_on);
     let write_number = number(&graph, "write_number", own_granted, power_on);
     let is_fence = (end_write_fence & !register_write).named("is_fence");
-    let write_line = port::kind(&graph, Request::WriteLine);
-    let own_header = port::header(
+    let write_line = words::kind(&graph, Request::WriteLine);
+    let own_header = words::header(
         &graph,
-        is_fence.select(port::kind(&graph, Request::WriteFence), write_line),
+        is_fence.select(words::kind(&graph, Request::WriteFence), write_line),
         register_write.select(constant(1, 0), end_write_virtual),
         register_write.select(register_write_address, end_write_address),
-        port::own_mdata(&graph, write_number),
+        words::own_mdata(&graph, write_number),
     );
     let own_header = own_header.delay(1).named("own_header");
     let own_data = register_write.select(register_write_data, end_write_data).delay(1).named("own_data");
 
     let core_write_ready = writes.core;
-    let core_mdata = port::core_mdata(epoch.value(), core_write_tag.low(slot_bits));
-    let core_header = port::header(&graph, write_line, constant(1, 1), core_write_address, core_mdata);
+    let core_mdata = words::core_mdata(epoch.value(), core_write_tag.low(slot_bits));
+    let core_header = words::header(&graph, write_line, constant(1, 1), core_write_address, core_mdata);
     let write_valid = graph.data_register("tx_wr_valid", 1);
     let writing = (own_granted | (core_write_ready & core_write & !discard)).named("writing");
     write_valid.next(writing & !power_on);

@@ -1,0 +1,97 @@
+//! How a job failed: the codes, by which hardware, hosts and documentation know each other.
+
+/// How a job ended, as the port `error` and the status tell it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JobError {
+    /// Stopped by `abort`.
+    Aborted = 1,
+    /// A read was answered with an error.
+    Read = 2,
+    /// A write was answered with an error.
+    Write = 3,
+    /// No response for as many cycles as `watchdog` says, with some outstanding.
+    Watchdog = 4,
+    /// A `mode` this AFU does not have.
+    Mode = 5,
+    /// More lines of contacts than the destination has room for: those beyond were not written, but all were counted.
+    Overflow = 6,
+    /// A response that no request of this job waits for.
+    Response = 7,
+    /// More pairs than the host's buffers have lines for: told by a shell that knows their length.
+    Room = 8,
+}
+
+impl JobError {
+    /// All of them, by code.
+    pub const ALL: [Self; 8] = [
+        Self::Aborted,
+        Self::Read,
+        Self::Write,
+        Self::Watchdog,
+        Self::Mode,
+        Self::Overflow,
+        Self::Response,
+        Self::Room,
+    ];
+    /// Bits of a code. Code 0 is no error.
+    pub const BITS: u32 = 4;
+
+    /// Its code.
+    pub const fn code(self) -> u8 {
+        self as u8
+    }
+
+    /// The error of a code; `None` if it is 0 or unknown.
+    pub fn of_code(code: u8) -> Option<Self> {
+        Self::ALL.into_iter().find(|error| error.code() == code)
+    }
+
+    /// What it is.
+    pub const fn what(self) -> &'static str {
+        self.texts().0
+    }
+
+    /// What a user can do about it.
+    pub const fn advice(self) -> &'static str {
+        self.texts().1
+    }
+
+    const fn texts(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Aborted => ("aborted", "send the transaction again if it was not you who aborted it"),
+            Self::Read => {
+                ("read error", "see that source and page table are where the context says, then send it again")
+            }
+            Self::Write => ("write error", "see that the destination may be written, then send it again"),
+            Self::Watchdog => {
+                ("watchdog", "a response did not come in time; send it again, with a longer watchdog on a slow link")
+            }
+            Self::Mode => ("unknown mode", "this AFU has mode 0 alone"),
+            Self::Overflow => (
+                "more contacts than the destination has lines for",
+                "send it again with more lines: all contacts were counted, those beyond the last line were not written",
+            ),
+            Self::Response => (
+                "a response that no request waits for",
+                "reset the AFU, then send it again; the link has answered a request twice, or late",
+            ),
+            Self::Room => {
+                ("more pairs than the buffers have lines for", "use a workspace of the AFU's own record layout")
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_code_is_its_error_s() {
+        for code in 0..=u8::MAX {
+            let error = JobError::of_code(code);
+            assert_eq!(error.map(JobError::code), (1..=JobError::ALL.len() as u8).contains(&code).then_some(code));
+        }
+        assert!(JobError::ALL.iter().all(|error| u32::from(error.code()) < 1 << JobError::BITS));
+    }
+}

@@ -1,0 +1,78 @@
+//! The core's ports for its host: what a job is started with, and what comes of it.
+
+use super::interface;
+use crate::afu::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, JobError, Spec, timing};
+use crate::config::Results;
+
+/// Bits of `mode`.
+const MODE_BITS: u32 = 4;
+/// Bits of a cycle counter.
+const CYCLE_BITS: u32 = 64;
+
+interface! {
+    /// What starts and stops a job.
+    JobInputs(spec) {
+        start: T => 1, "one cycle high starts a job; ignored while busy";
+        source: T => ADDRESS_BITS, "line address of the first source line";
+        destination: T => ADDRESS_BITS, "line address of the first destination line";
+        destination_lines: Option<T> => COUNT_BITS,
+            "lines there is room for at the destination; those beyond are not written",
+            if spec.config.results == Results::Hits;
+        count: T => COUNT_BITS, "pairs of the job; 0 is a job";
+        mode: T => MODE_BITS, format!("0; anything else ends the job with error {}", JobError::Mode.code());
+        epoch: T => EPOCH_BITS,
+            "upper part of the job's tags: change it from job to job, so that late responses are known";
+        watchdog: T => COUNT_BITS, format!(
+            "cycles without a response, while a request stands on the port or waits for its response, that end the job \
+             with error {}; 0: never, but for an aborted or failed job, which ends after 65 536 such cycles",
+            JobError::Watchdog.code()
+        );
+        abort_job: T => 1, format!(
+            "high ends the job with error {}, when every outstanding request has its response; `watchdog` says what ends \
+             it if one never comes",
+            JobError::Aborted.code()
+        );
+    }
+}
+
+interface! {
+    /// What the AFU says of a job and of itself.
+    JobOutputs(spec) {
+        busy: T => 1, "a job is running or ending";
+        done: T => 1, "the last job has ended; low from the next start on";
+        error: T => JobError::BITS, errors(spec);
+        contacts: T => COUNT_BITS, match spec.config.results {
+            Results::All => "contacts of the job so far",
+            Results::Hits => "contacts of the job so far: as many records, each beginning with its pair's number",
+        };
+        invalid: T => COUNT_BITS, "invalid pairs of the job so far";
+        first_invalid: T => COUNT_BITS, "number of the first invalid pair, all ones if there is none";
+        cycles_busy: T => CYCLE_BITS, "cycles of the job so far";
+        cycles_input: T => CYCLE_BITS, "of these, cycles in which the SCPUs waited for pairs";
+        cycles_output: T => CYCLE_BITS, "of these, cycles in which pairs waited for room for their results";
+        capability: T => 64, capability(spec);
+    }
+}
+
+/// The errors that this core can tell.
+fn errors(spec: &Spec) -> String {
+    let is_told = |error: &JobError| match error {
+        JobError::Room => false,
+        JobError::Overflow => spec.config.results == Results::Hits,
+        _ => true,
+    };
+    let errors = JobError::ALL.into_iter().filter(is_told);
+    let list: String = errors.map(|error| format!(", {} {}", error.code(), error.what())).collect();
+    format!("how: 0 well{list}")
+}
+
+fn capability(spec: &Spec) -> String {
+    let config = &spec.config;
+    let hits = (config.results == Results::Hits).then(|| ", 24 set: only contacts come back".to_owned());
+    let radius = config.radius.map(|radius| format!(", 25 set: every sphere's radius is {radius}"));
+    let code = timing::record_code(config.record);
+    let record = (code > 0).then(|| format!(", 27:26 are {code}: words of records are {}", config.record));
+    let always =
+        "7:0 SCPUS, 15:8 interval, 19:16 fields (hit, depth, normal, position from bit 16 up), 43:32 SCPU latency";
+    [Some(always.to_owned()), hits, radius, record].into_iter().flatten().collect()
+}
