@@ -58,26 +58,29 @@ impl JobError {
 
     const fn texts(self) -> (&'static str, &'static str) {
         match self {
-            Self::Aborted => ("aborted", "send the transaction again if it was not you who aborted it"),
-            Self::Read => {
-                ("read error", "see that source and page table are where the context says, then send it again")
-            }
-            Self::Write => ("write error", "see that the destination may be written, then send it again"),
-            Self::Watchdog => {
-                ("watchdog", "a response did not come in time; send it again, with a longer watchdog on a slow link")
-            }
-            Self::Mode => ("unknown mode", "this AFU has mode 0 alone"),
+            Self::Aborted => ("aborted", "send the transaction again, unless you aborted it yourself"),
+            Self::Read => (
+                "read error",
+                "check that source and page table are where the context says, then send the transaction again",
+            ),
+            Self::Write => ("write error", "check that the destination is writable, then send the transaction again"),
+            Self::Watchdog => (
+                "watchdog",
+                "a response did not come in time: send the transaction again, on a slow link with a longer watchdog",
+            ),
+            Self::Mode => ("unknown mode", "use mode 0, the only mode of this AFU"),
             Self::Overflow => (
                 "more contacts than the destination has lines for",
-                "send it again with more lines: all contacts were counted, those beyond the last line were not written",
+                "give the destination more lines: all contacts were counted, but only those that fit were written",
             ),
             Self::Response => (
                 "a response that no request waits for",
-                "reset the AFU, then send it again; the link has answered a request twice, or late",
+                "reset the AFU, then send the transaction again: the link answered a request twice or too late",
             ),
-            Self::Room => {
-                ("more pairs than the buffers have lines for", "use a workspace of the AFU's own record layout")
-            }
+            Self::Room => (
+                "more pairs than the buffers have lines for",
+                "send fewer pairs, or set up the buffers for the AFU's own record layout",
+            ),
         }
     }
 }

@@ -9,10 +9,10 @@ use std::slice;
 
 use super::abi::{Api, raw};
 use super::error::SimulationError;
-use super::port::{Port, Wide};
+use super::port::Port;
 use crate::files::Aside;
 
-/// A simulated module: its ports are memory ([`Port`], [`Wide`]), its clock is [`Clock::tick`].
+/// A simulated module: its ports are memory ([`Port`]), its clock is [`Clock::tick`].
 ///
 /// It may move between threads but is used by one at a time.
 #[derive(Debug)]
@@ -84,74 +84,27 @@ impl Instance {
         Ok((index, port))
     }
 
-    fn scalar(&self, name: &str, bits: u32, direction: u32) -> Result<Port<'_>, SimulationError> {
+    fn port(&self, name: &str, bits: u32, direction: u32) -> Result<Port<'_>, SimulationError> {
         let (_, port) = self.find(name, bits, direction)?;
-        if !(1..=64).contains(&bits) {
-            let (expected, found) = ("1 to 64 bits".to_owned(), format!("{bits} bits"));
-            return Err(SimulationError::Port { name: name.to_owned(), expected, found });
-        }
         // SAFETY: address and width come from the harness; the memory lives as long as the instance, which the port
         // borrows, and which is not Sync.
         Ok(unsafe { Port::new(port.address, bits) })
     }
 
-    fn vector<const WORDS: usize>(
-        &self,
-        name: &str,
-        bits: u32,
-        direction: u32,
-    ) -> Result<Wide<'_, WORDS>, SimulationError> {
-        let (_, port) = self.find(name, bits, direction)?;
-        if WORDS < 3 || bits.div_ceil(32) as usize != WORDS {
-            let (expected, found) = ("more than 64 bits".to_owned(), format!("{} bits", port.bits));
-            return Err(SimulationError::Port { name: name.to_owned(), expected, found });
-        }
-        // SAFETY: as in `scalar`.
-        Ok(unsafe { Wide::new(port.address) })
-    }
-
-    /// The input `name` of `bits` (up to 64) bits.
+    /// The input `name` of `bits` bits.
     ///
     /// # Errors
     /// When there is no such input.
     pub fn input(&self, name: &str, bits: u32) -> Result<Port<'_>, SimulationError> {
-        self.scalar(name, bits, raw::AFU_INPUT)
+        self.port(name, bits, raw::AFU_INPUT)
     }
 
-    /// The output `name` of `bits` (up to 64) bits.
+    /// The output `name` of `bits` bits.
     ///
     /// # Errors
     /// When there is no such output.
     pub fn output(&self, name: &str, bits: u32) -> Result<Port<'_>, SimulationError> {
-        self.scalar(name, bits, raw::AFU_OUTPUT)
-    }
-
-    /// The input `name` of 32 × `WORDS` bits (more than 64).
-    ///
-    /// # Errors
-    /// When there is no such input.
-    pub fn wide_input<const WORDS: usize>(&self, name: &str) -> Result<Wide<'_, WORDS>, SimulationError> {
-        self.vector(name, 32 * WORDS as u32, raw::AFU_INPUT)
-    }
-
-    /// The output `name` of 32 × `WORDS` bits (more than 64).
-    ///
-    /// # Errors
-    /// When there is no such output.
-    pub fn wide_output<const WORDS: usize>(&self, name: &str) -> Result<Wide<'_, WORDS>, SimulationError> {
-        self.vector(name, 32 * WORDS as u32, raw::AFU_OUTPUT)
-    }
-
-    /// The output `name` of `bits` (more than 64) bits, which take `WORDS` words.
-    ///
-    /// # Errors
-    /// When there is no such output.
-    pub fn wide_output_of<const WORDS: usize>(
-        &self,
-        name: &str,
-        bits: u32,
-    ) -> Result<Wide<'_, WORDS>, SimulationError> {
-        self.vector(name, bits, raw::AFU_OUTPUT)
+        self.port(name, bits, raw::AFU_OUTPUT)
     }
 
     /// The clock input `name`.

@@ -19,6 +19,6 @@ pub use drive::{Driver, Job};
 pub use error::{CosimError, SimulationError};
 pub use instance::{Clock, Instance};
 pub use model::Model;
-pub use port::{Port, Wide};
+pub use port::Port;
 pub use source::Source;
 pub use verilate::{File, Trace};

@@ -1,40 +1,48 @@
 //! Ports as memory: an address fetched once, then plain reads and writes.
 
 use std::cell::Cell;
+use std::slice;
 
-/// A port of up to 64 bits. It borrows its [`Instance`](super::Instance).
+/// A port. It borrows its [`Instance`](super::Instance).
 #[derive(Clone, Copy, Debug)]
 pub struct Port<'a> {
     memory: Memory<'a>,
     mask: u64,
 }
 
-/// Verilator keeps a scalar in the smallest unsigned integer that holds it.
+/// Verilator keeps a port in the smallest unsigned integer that holds it; one of more than 64 bits in words of 32, the
+/// least significant first.
 #[derive(Clone, Copy, Debug)]
 enum Memory<'a> {
     U8(&'a Cell<u8>),
     U16(&'a Cell<u16>),
     U32(&'a Cell<u32>),
     U64(&'a Cell<u64>),
+    /// And the bits of the last word.
+    Words(&'a [Cell<u32>], u32),
 }
 
 impl<'a> Port<'a> {
     /// # Safety
-    /// `address` is that of a Verilated scalar of `bits` (1 to 64) bits, valid for 'a and used by one thread.
+    /// `address` is that of a Verilated port of `bits` bits, valid for 'a and used by one thread.
     pub(super) unsafe fn new(address: *mut std::ffi::c_void, bits: u32) -> Self {
-        // SAFETY: the caller's promise, and Verilator's sizes of scalars (CData, SData, IData, QData).
+        // SAFETY: the caller's promise, and Verilator's types of ports (CData, SData, IData, QData, VlWide).
         let memory = unsafe {
             match bits {
                 0..=8 => Memory::U8(&*address.cast()),
                 9..=16 => Memory::U16(&*address.cast()),
                 17..=32 => Memory::U32(&*address.cast()),
-                _ => Memory::U64(&*address.cast()),
+                33..=64 => Memory::U64(&*address.cast()),
+                _ => {
+                    let cells = slice::from_raw_parts(address.cast(), bits.div_ceil(32) as usize);
+                    Memory::Words(cells, u32::MAX >> (31 - (bits - 1) % 32))
+                }
             }
         };
         Self { memory, mask: u64::MAX >> (64 - bits.clamp(1, 64)) }
     }
 
-    /// The port's value.
+    /// The port's value, of more than 64 bits the low ones.
     #[inline]
     pub fn get(self) -> u64 {
         match self.memory {
@@ -42,6 +50,10 @@ impl<'a> Port<'a> {
             Memory::U16(cell) => cell.get().into(),
             Memory::U32(cell) => cell.get().into(),
             Memory::U64(cell) => cell.get(),
+            Memory::Words(..) => {
+                let [low, high] = self.words();
+                u64::from(high) << 32 | u64::from(low)
+            }
         }
     }
 
@@ -54,39 +66,40 @@ impl<'a> Port<'a> {
     /// Sets the port, for the next evaluation, to the low bits of `value`.
     #[inline]
     pub fn set(self, value: u64) {
-        let value = value & self.mask;
+        let masked = value & self.mask;
         match self.memory {
-            Memory::U8(cell) => cell.set(value as u8),
-            Memory::U16(cell) => cell.set(value as u16),
-            Memory::U32(cell) => cell.set(value as u32),
-            Memory::U64(cell) => cell.set(value),
+            Memory::U8(cell) => cell.set(masked as u8),
+            Memory::U16(cell) => cell.set(masked as u16),
+            Memory::U32(cell) => cell.set(masked as u32),
+            Memory::U64(cell) => cell.set(masked),
+            Memory::Words(..) => self.set_words(&[value as u32, (value >> 32) as u32]),
         }
     }
-}
 
-/// A port of `WORDS` times 32 bits, the least significant word first. It borrows its [`Instance`](super::Instance).
-#[derive(Clone, Copy, Debug)]
-pub struct Wide<'a, const WORDS: usize> {
-    words: &'a Cell<[u32; WORDS]>,
-}
-
-impl<const WORDS: usize> Wide<'_, WORDS> {
-    /// # Safety
-    /// `address` is that of a Verilated vector of `WORDS` words, valid for its lifetime and used by one thread.
-    pub(super) unsafe fn new(address: *mut std::ffi::c_void) -> Self {
-        // SAFETY: the caller's promise; VlWide is an array of 32-bit words.
-        Self { words: unsafe { &*address.cast() } }
+    /// The port's value in words of 32 bits, the least significant first; zero beyond the port.
+    #[inline]
+    pub fn words<const WORDS: usize>(self) -> [u32; WORDS] {
+        let mut words = [0; WORDS];
+        match self.memory {
+            Memory::Words(cells, _) => words.iter_mut().zip(cells).for_each(|(word, cell)| *word = cell.get()),
+            _ => {
+                let value = self.get();
+                words.iter_mut().zip([value as u32, (value >> 32) as u32]).for_each(|(word, part)| *word = part);
+            }
+        }
+        words
     }
 
-    /// The port's value.
+    /// Sets the port, for the next evaluation, to words of 32 bits, the least significant first. The others are zero.
     #[inline]
-    pub fn get(self) -> [u32; WORDS] {
-        self.words.get()
-    }
-
-    /// Sets the port for the next evaluation.
-    #[inline]
-    pub fn set(self, words: &[u32; WORDS]) {
-        self.words.set(*words);
+    pub fn set_words(self, words: &[u32]) {
+        let word = |index: usize| words.get(index).copied().unwrap_or(0);
+        match self.memory {
+            Memory::Words(cells, last) => {
+                cells.iter().enumerate().for_each(|(index, cell)| cell.set(word(index)));
+                cells.last().inspect(|cell| cell.set(cell.get() & last));
+            }
+            _ => self.set(u64::from(word(1)) << 32 | u64::from(word(0))),
+        }
     }
 }

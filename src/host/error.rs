@@ -1,8 +1,8 @@
 //! What can go wrong in a session, and what to do about it.
 
 use super::transport::TransportError;
-use crate::afu::OtherRadius;
 use crate::afu::shell::spl2::map;
+use crate::afu::{JobError, OtherRadius};
 use crate::config::RecordFormat;
 
 /// Why a transaction has no results.
@@ -147,16 +147,11 @@ pub enum HitError {
 impl HostError {
     /// The error of a status's code, if it is one.
     pub(super) fn of_status(code: u8) -> Option<Self> {
-        let (what, advice) = match code {
-            0 => return None,
-            1 => ("aborted", "send the transaction again if it was not you who aborted it"),
-            2 => ("read error", "see that source and page table are where the context says, then send it again"),
-            3 => ("write error", "see that the destination may be written, then send it again"),
-            4 => ("watchdog", "a response did not come in time; send it again, with a longer watchdog on a slow link"),
-            5 => ("unknown mode", "this AFU has mode 0 alone"),
-            8 => ("more pairs than the buffers have lines for", "use a workspace of the AFU's own record layout"),
-            _ => ("unknown code", "load an AFU of this program's version"),
-        };
+        if code == 0 {
+            return None;
+        }
+        let unknown = ("unknown code", "load an AFU of this program's version");
+        let (what, advice) = JobError::of_code(code).map_or(unknown, |error| (error.what(), error.advice()));
         Some(Self::Job { code, what, advice })
     }
 }

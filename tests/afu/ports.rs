@@ -26,14 +26,14 @@ fn responses_that_are_not_valid_and_starts_while_busy_are_not_looked_at() {
         let job_widths = [("start", 1), ("source", 58), ("destination", 58), ("count", 32), ("mode", 4), ("epoch", 4)];
         let ports = widths.map(|(name, bits)| (afu.input(name, bits).unwrap(), bits));
         let job_ports = job_widths.map(|(name, bits)| (afu.input(name, bits).unwrap(), bits));
-        let data = afu.wide_input::<16>("rd_rsp_data").unwrap();
+        let data = afu.input("rd_rsp_data", 512).unwrap();
         let busy = afu.output("busy", 1).unwrap();
         let mut state = 0x9E37_79B9_7F4A_7C15 + seed;
         for _ in 0..3 {
             driver.start(&case.job()).unwrap();
             let outcome = loop {
                 // Of a valid response the driver sets all of this before the clock's edge.
-                data.set(&std::array::from_fn(|_| junk(&mut state) as u32));
+                data.set_words(&[(); 16].map(|()| junk(&mut state) as u32));
                 for (port, bits) in ports {
                     port.set(junk(&mut state) >> (64 - bits));
                 }

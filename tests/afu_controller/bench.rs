@@ -5,8 +5,8 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use contact_afu::afu::{Afu, Spec};
-use contact_afu::config::{Config, Results, Shell};
-use contact_afu::hdl::{Evaluator, Graph, Module, Pin};
+use contact_afu::config::{Config, Shell};
+use contact_afu::hdl::{Evaluator, Graph, Module, Pin, Port};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -29,47 +29,14 @@ fn kernel() -> Arc<Module> {
 }
 
 struct Ports {
-    pins: Vec<(&'static str, Pin)>,
+    pins: Vec<(String, Pin)>,
 }
 
 impl Ports {
     fn pin(&self, name: &str) -> Pin {
-        self.pins.iter().find(|(known, _)| *known == name).unwrap().1
+        self.pins.iter().find(|(known, _)| known == name).unwrap().1
     }
 }
-
-const NAMES: [&str; 30] = [
-    "start",
-    "source",
-    "destination",
-    "count",
-    "mode",
-    "epoch",
-    "watchdog",
-    "abort_job",
-    "rd_req_ready",
-    "rd_rsp_valid",
-    "rd_rsp_tag",
-    "rd_rsp_data",
-    "rd_rsp_error",
-    "wr_req_ready",
-    "wr_rsp_valid",
-    "wr_rsp_tag",
-    "wr_rsp_error",
-    "busy",
-    "done",
-    "error",
-    "contacts",
-    "invalid",
-    "first_invalid",
-    "rd_req_valid",
-    "rd_req_address",
-    "rd_req_tag",
-    "wr_req_valid",
-    "wr_req_address",
-    "wr_req_tag",
-    "wr_req_data",
-];
 
 pub struct Bench {
     spec: Spec,
@@ -104,8 +71,8 @@ impl Bench {
         let afu = Afu::around(spec.clone(), kernel()).unwrap();
         let mut run = Evaluator::new(afu.top(), &[("SCPUS", scpus)]).unwrap();
         run.reset();
-        let more = (spec.config.results == Results::Hits).then_some("destination_lines");
-        let pins = NAMES.into_iter().chain(more).map(|name| (name, run.pin(name).unwrap())).collect();
+        let pin = |port: &Port| (port.name.clone(), run.pin(&port.name).unwrap());
+        let pins = afu.top().ports.iter().map(pin).collect();
         Self {
             spec,
             hits: |pair| mixed(pair) & 1 == 1,

@@ -57,16 +57,16 @@ pub fn scpu(name: &str, verilog: &Files, latency: u32, pairs: &[PairRecord]) -> 
         clock.tick(4).expect("it runs");
         reset.set(0);
     }
-    let pair = instance.wide_input::<8>("pair").expect("a pair");
-    let record = instance.wide_output::<8>("record").expect("a record");
+    let pair = instance.input("pair", 256).expect("a pair");
+    let record = instance.output("record", 256).expect("a record");
     let [contact, invalid] = ["contact", "invalid_pair"].map(|name| instance.output(name, 1).expect("a flag"));
     let mut found = Vec::with_capacity(pairs.len());
     for cycle in 1..pairs.len() + latency as usize {
         // Behind the last pair comes what nobody looks at.
-        pair.set(&pairs.get(cycle - 1).map_or([u32::MAX; 8], |pair| pair.0));
+        pair.set_words(&pairs.get(cycle - 1).map_or([u32::MAX; 8], |pair| pair.0));
         clock.tick(1).expect("it runs");
         if cycle >= latency as usize {
-            found.push((record.get(), (contact.is_high(), invalid.is_high())));
+            found.push((record.words(), (contact.is_high(), invalid.is_high())));
         }
     }
     found

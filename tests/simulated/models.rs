@@ -70,10 +70,10 @@ fn every_width_goes_in_and_out_and_no_further() {
             assert_eq!((input.get(), output.get()), (value & mask, !value & mask), "{bits} bits");
         }
     }
-    let (input, output) = (top.wide_input::<4>("e").unwrap(), top.wide_output::<4>("ne").unwrap());
-    input.set(&[1, 2, 3, u32::MAX]);
+    let (input, output) = (top.input("e", 128).unwrap(), top.output("ne", 128).unwrap());
+    input.set_words(&[1, 2, 3, u32::MAX]);
     top.evaluate().unwrap();
-    assert_eq!(output.get(), [!1, !2, !3, 0]);
+    assert_eq!((output.words(), output.get()), ([!1, !2, !3, 0], !0x0000_0002_0000_0001));
 }
 
 #[test]
@@ -93,8 +93,7 @@ fn a_port_that_does_not_fit_is_named() {
         text(afu.input("nothing", 1).unwrap_err()),
         "port `nothing`: expected an input of 1 bits, the model has no such port"
     );
-    assert!(afu.wide_output::<8>("wr_req_data").is_err() && afu.clock("count").is_err());
-    assert!(afu.input("wr_req_data", 512).is_err(), "a wide port is no scalar");
+    assert!(afu.output("wr_req_data", 256).is_err() && afu.clock("count").is_err());
 }
 
 #[test]

@@ -8,7 +8,7 @@ mod line;
 
 use std::borrow::Cow;
 
-use crate::hdl::{Graph, Reset, Signal};
+use crate::hdl::{Graph, Signal};
 
 use super::Spec;
 pub(crate) use job::{JobInputs, JobOutputs};
@@ -62,8 +62,8 @@ pub(super) fn clock() -> Declaration {
 }
 
 /// The reset of a module that does not reset itself.
-pub(crate) fn reset(style: Reset) -> Declaration {
-    let (name, meaning) = match style.active_low {
+pub(crate) fn reset(active_low: bool) -> Declaration {
+    let (name, meaning) = match active_low {
         false => ("rst", "reset, active high; at least one cycle"),
         true => ("rst_n", "reset, active low; at least one cycle"),
     };
@@ -79,7 +79,10 @@ pub(super) fn core(spec: &Spec) -> Ports {
         .into_iter()
         .chain(ReadOutputs::of(spec).list())
         .chain(WriteOutputs::of(spec).list());
-    Ports { inputs: [clock(), reset(spec.reset)].into_iter().chain(inputs).collect(), outputs: outputs.collect() }
+    Ports {
+        inputs: [clock(), reset(spec.reset.active_low)].into_iter().chain(inputs).collect(),
+        outputs: outputs.collect(),
+    }
 }
 
 /// Declares a module's outputs.

@@ -6,6 +6,7 @@
 
 use std::fmt::Write as _;
 
+use crate::afu::JobError;
 use crate::hdl::{Graph, Signal};
 
 /// Says which accelerator this is: DSM line 0, and again in the status. It never changes.
@@ -225,19 +226,13 @@ pub mod control {
 
 /// Context line 1.
 pub mod status {
-    use super::{Field, field};
+    use super::{Field, JobError, field};
 
     /// The job has ended.
     pub const DONE: Field = field(0, 1, "done", "the job has ended");
     /// How.
-    pub const ERROR: Field = Field {
-        low: 8,
-        bits: 4,
-        name: "error",
-        meaning: "how: 0 well, 1 aborted, 2 read error, 3 write error, 4 watchdog, 5 unknown mode, 6 more contacts \
-                  than the destination has lines for (where only contacts come back), 7 a response that no \
-                  request waits for, 8 more pairs than the buffers have lines for",
-    };
+    pub const ERROR: Field =
+        Field { low: 8, bits: JobError::BITS, name: "error", meaning: "how: 0 well, else one of the errors below" };
     /// The job.
     pub const SEQUENCE: Field = field(1, 32, "sequence", "of the job that has ended");
     /// Contacts.
@@ -290,7 +285,7 @@ of contacts.
     )
 }
 
-/// The map as Markdown: a table of the registers and one of the lines' fields.
+/// The map as Markdown: tables of the registers, of the lines' fields, and of the errors.
 pub fn markdown() -> String {
     let mut out = format!("AFU_ID `{AFU_ID:032x}`, version {VERSION} of this map.\n\n");
     out += "| CSR | name | meaning |\n|---|---|---|\n";
@@ -304,6 +299,10 @@ pub fn markdown() -> String {
             let last = first + bits - 1;
             let _ = writeln!(out, "| {name} | {writer} | {dword} | {last}:{first} | `{field}` | {meaning} |");
         }
+    }
+    out += "\n| error | what it is | what to do |\n|---|---|---|\n";
+    for error in JobError::ALL {
+        let _ = writeln!(out, "| {} | {} | {} |", error.code(), error.what(), error.advice());
     }
     out
 }
