@@ -39,17 +39,7 @@ pub struct Outcome {
 impl Outcome {
     /// How the job failed, if it did; a code that no AFU should give is a failed mode.
     pub fn job_error(&self) -> Option<JobError> {
-        match self.error {
-            0 => None,
-            1 => Some(JobError::Aborted),
-            2 => Some(JobError::Read),
-            3 => Some(JobError::Write),
-            4 => Some(JobError::Watchdog),
-            6 => Some(JobError::Overflow),
-            7 => Some(JobError::Response),
-            8 => Some(JobError::Room),
-            _ => Some(JobError::Mode),
-        }
+        (self.error != 0).then(|| JobError::of_code(self.error).unwrap_or(JobError::Mode))
     }
 
     /// The share of the link's speed that was reached.

@@ -39,7 +39,7 @@ def answer(pair):
     if d > r1 + r2:
         return none, "no contact"
     if d == 0:
-        normal, position, way = (1, 0, 0), p1, "contact, the centres are equal"
+        normal, position, way = (1, 0, 0), p1, "contact, coincident centres"
     else:
         normal, way = [(a - b) / d for a, b in zip(p1, p2)], "contact"
         position = [a + n * ((r2 - r1) - d) / 2 for a, n in zip(p1, normal)]

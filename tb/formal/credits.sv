@@ -12,32 +12,8 @@
 `default_nettype none
 
 module credits (
-  input wire        clk,
-  input wire        rst,
-  input wire        start,
-  input wire [57:0] source,
-  input wire [57:0] destination,
-`ifdef PER_LINE
-  input wire [31:0] destination_lines,
-`endif
-  input wire [31:0] count,
-  input wire [3:0]  mode,
-  input wire [3:0]  epoch,
-  input wire [31:0] watchdog,
-  input wire        abort_job,
-  input wire        rd_req_ready,
-  input wire        rd_rsp_valid,
-  input wire [5:0]  rd_rsp_tag,
-`ifdef PER_LINE
-  input wire [63:0] rd_rsp_data,
-`else
-  input wire [31:0] rd_rsp_data,
-`endif
-  input wire        rd_rsp_error,
-  input wire        wr_req_ready,
-  input wire        wr_rsp_valid,
-  input wire [5:0]  wr_rsp_tag,
-  input wire        wr_rsp_error
+  // Free in every cycle.
+  `include "inputs.svh"
 );
 `ifdef PER_LINE
   localparam CAPACITY = `LATENCY <= 2 ? 16 : 32;
@@ -47,25 +23,7 @@ module credits (
   localparam ROOM_BITS = $clog2(CAPACITY) + 1;
   localparam RANKS = `LATENCY + 3;
 
-  wire busy;
-  wire [3:0] error;
-  wire rd_req_valid;
-  wire wr_req_valid;
-  contact_afu #(.SCPUS(`SCPUS)) dut (
-    .clk(clk), .rst(rst),
-    .start(start), .source(source), .destination(destination), .count(count), .mode(mode), .epoch(epoch),
-    .watchdog(watchdog), .abort_job(abort_job),
-`ifdef PER_LINE
-    .destination_lines(destination_lines),
-`endif
-    .rd_req_ready(rd_req_ready), .rd_rsp_valid(rd_rsp_valid), .rd_rsp_tag(rd_rsp_tag), .rd_rsp_data(rd_rsp_data),
-    .rd_rsp_error(rd_rsp_error),
-    .wr_req_ready(wr_req_ready), .wr_rsp_valid(wr_rsp_valid), .wr_rsp_tag(wr_rsp_tag), .wr_rsp_error(wr_rsp_error),
-    .busy(busy), .done(), .error(error), .contacts(), .invalid(), .first_invalid(),
-    .cycles_busy(), .cycles_input(), .cycles_output(), .capability(),
-    .rd_req_valid(rd_req_valid), .rd_req_address(), .rd_req_tag(),
-    .wr_req_valid(wr_req_valid), .wr_req_address(), .wr_req_tag(), .wr_req_data()
-  );
+  `include "dut.svh"
   (* hierconn *) wire                       \dut.control.begin_job ;
   (* hierconn *) wire                       \dut.control.running ;
   (* hierconn *) wire                       \dut.control.draining ;

@@ -32,30 +32,17 @@ module hits_job (
   always @(posedge clk) age <= age + {7'd0, age != 8'hff};
   wire rst = age == 8'd0;
 
-  // ---- the accelerator ----
-  wire        done;
-  wire [3:0]  error;
-  wire [31:0] contacts;
-  wire [31:0] invalid;
-  wire [31:0] first_invalid;
-  wire        rd_req_valid;
-  wire [5:0]  rd_req_tag;
-  wire        wr_req_valid;
-  wire [57:0] wr_req_address;
-  wire [5:0]  wr_req_tag;
-  wire [63:0] wr_req_data;
-  contact_afu #(.SCPUS(`SCPUS)) dut (
-    .clk(clk), .rst(rst), .start(age == 8'd1),
-    .source(58'd0), .destination(58'd0), .destination_lines({29'd0, room}), .count({29'd0, count}), .mode(4'd0),
-    .epoch(epoch), .watchdog(32'd0), .abort_job(1'b0),
-    .rd_req_ready(rd_req_ready), .rd_rsp_valid(rd_rsp_valid), .rd_rsp_tag(rd_rsp_tag), .rd_rsp_data(rd_rsp_data),
-    .rd_rsp_error(1'b0),
-    .wr_req_ready(wr_req_ready), .wr_rsp_valid(wr_rsp_valid), .wr_rsp_tag(wr_rsp_tag), .wr_rsp_error(1'b0),
-    .busy(), .done(done), .error(error), .contacts(contacts), .invalid(invalid), .first_invalid(first_invalid),
-    .cycles_busy(), .cycles_input(), .cycles_output(), .capability(),
-    .rd_req_valid(rd_req_valid), .rd_req_address(), .rd_req_tag(rd_req_tag),
-    .wr_req_valid(wr_req_valid), .wr_req_address(wr_req_address), .wr_req_tag(wr_req_tag), .wr_req_data(wr_req_data)
-  );
+  // What the host gives and the link says, apart from these.
+  wire       start = age == 8'd1;
+  wire [2:0] destination_lines = room;
+  wire       source = 1'b0;
+  wire       destination = 1'b0;
+  wire       mode = 1'b0;
+  wire       watchdog = 1'b0;
+  wire       abort_job = 1'b0;
+  wire       rd_rsp_error = 1'b0;
+  wire       wr_rsp_error = 1'b0;
+  `include "dut.svh"
 
   // ---- the link: line n is asked for with tag n, and answered later, once ----
   reg  [3:0] rd_waiting;

@@ -39,33 +39,7 @@ module line_port (
   (* anyconst *) wire [15:0] words;
   wire [3:0]  followed_line = {1'b0, followed[3:1]};
 
-  // ---- the accelerator ----
-  wire        busy;
-  wire        done;
-  wire [3:0]  error;
-  wire [31:0] contacts;
-  wire [31:0] invalid;
-  wire [31:0] first_invalid;
-  wire        rd_req_valid;
-  wire [57:0] rd_req_address;
-  wire [5:0]  rd_req_tag;
-  wire        wr_req_valid;
-  wire [57:0] wr_req_address;
-  wire [5:0]  wr_req_tag;
-  wire [31:0] wr_req_data;
-
-  contact_afu #(.SCPUS(`SCPUS)) dut (
-    .clk(clk), .rst(rst),
-    .start(start), .source({53'd0, source}), .destination({53'd0, destination}), .count({28'd0, count}), .mode({3'd0, mode}), .epoch(epoch),
-    .watchdog({27'd0, watchdog}), .abort_job(abort_job),
-    .rd_req_ready(rd_req_ready), .rd_rsp_valid(rd_rsp_valid), .rd_rsp_tag(rd_rsp_tag), .rd_rsp_data(rd_rsp_data),
-    .rd_rsp_error(rd_rsp_error),
-    .wr_req_ready(wr_req_ready), .wr_rsp_valid(wr_rsp_valid), .wr_rsp_tag(wr_rsp_tag), .wr_rsp_error(wr_rsp_error),
-    .busy(busy), .done(done), .error(error), .contacts(contacts), .invalid(invalid), .first_invalid(first_invalid),
-    .cycles_busy(), .cycles_input(), .cycles_output(), .capability(),
-    .rd_req_valid(rd_req_valid), .rd_req_address(rd_req_address), .rd_req_tag(rd_req_tag),
-    .wr_req_valid(wr_req_valid), .wr_req_address(wr_req_address), .wr_req_tag(wr_req_tag), .wr_req_data(wr_req_data)
-  );
+  `include "dut.svh"
   (* hierconn *) wire \dut.control.run ;
 
   // ---- what is known of the job ----

@@ -85,12 +85,32 @@ impl Design {
         Spec { line_bits: 16 * word_bits, word_bits, max_outstanding: TAGS, dispatch_cycles: 1, ..Spec::from(config) }
     }
 
-    /// Verilog files, name and text, of the accelerator around SCPUs of that delay.
+    /// Verilog files, name and text, of the accelerator around SCPUs of that delay; and what harnesses include.
     pub fn files(self, latency: u32) -> Vec<(String, String)> {
         let spec = self.spec();
         let scpu = scpu(&spec, latency, self.record_bits());
-        Afu::around_scpu(spec, scpu).expect("a sound accelerator").verilog()
+        let afu = Afu::around_scpu(spec, scpu).expect("a sound accelerator");
+        let includes = [("inputs.svh".to_owned(), inputs(&afu)), ("dut.svh".to_owned(), instance(&afu))];
+        afu.verilog().into_iter().chain(includes).collect()
     }
+}
+
+/// The accelerator's inputs as those of a harness.
+fn inputs(afu: &Afu) -> String {
+    let inputs = afu.top().ports.iter().filter(|port| !port.output);
+    let inputs: String = inputs.map(|port| format!(",\n  input wire [{}:0] {}", port.width - 1, port.name)).collect();
+    format!("  input wire clk,\n  input wire rst{inputs}\n")
+}
+
+/// The accelerator `dut` and wires for its outputs. Its inputs are the harness's signals of these names, which may be
+/// narrower: the bits above are zero.
+fn instance(afu: &Afu) -> String {
+    let ports = &afu.top().ports;
+    let outputs = ports.iter().filter(|port| port.output);
+    let wires: String = outputs.map(|port| format!("  wire [{}:0] {};\n", port.width - 1, port.name)).collect();
+    let names = ["clk", "rst"].into_iter().chain(ports.iter().map(|port| port.name.as_str()));
+    let connections: Vec<String> = names.map(|name| format!("    .{name}({name})")).collect();
+    format!("{wires}  {} #(.SCPUS(`SCPUS)) dut (\n{}\n  );\n", afu.top_name(), connections.join(",\n"))
 }
 
 /// An SCPU that gives its pair back, as far as a record holds it: a contact if bit 0 is set, invalid if bit 1 is set

@@ -49,7 +49,8 @@ pub fn check(proof: &Proof, only: Option<&str>, files: &[(String, String)]) -> V
         fs::write(folder.path().join(name), text).expect("written");
     }
     let defines: Vec<String> = proof.defines().iter().map(|define| format!("-D{define}")).collect();
-    let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
+    let names = files.iter().map(|(name, _)| name.as_str()).filter(|name| name.ends_with(".v"));
+    let names: Vec<&str> = names.collect();
     let script = format!(
         "read_verilog -formal -sv {} {harness} {}; hierarchy -check -top {}; proc; flatten; check -assert; memory_map; \
          opt -full; async2sync; dffunmap; opt_clean; write_smt2 -wires proof.smt2",

@@ -1,7 +1,7 @@
 //! Ports, each declared once: its name, its width and what it means. Hardware declares and connects its ports by these
 //! interfaces, PORTS.md and test benches are written from them, and simulations bind to models by them.
 //!
-//! An interface is generic in what stands at each port: a [`Declaration`], a signal of hardware, or the port of a model.
+//! An interface is generic in what stands at each port: a [`Declaration`], a signal of hardware, or a model's port.
 
 mod job;
 mod line;
