@@ -139,11 +139,11 @@ impl Software {
         let fits = self.layout.source_lines(count) + u64::from(map::DATA_LINE) <= room
             && self.layout.destination_lines(count) <= room;
         let (error, counts) = if !fits {
-            (JobError::Room as u128, [0, 0, NONE])
+            (JobError::Room.code().into(), [0, 0, NONE])
         } else if control::MODE.get(&control) != 0 {
-            (JobError::Mode as u128, [0, 0, NONE])
+            (JobError::Mode.code().into(), [0, 0, NONE])
         } else if control::ABORT.get(&control) != 0 {
-            (JobError::Aborted as u128, [0, 0, NONE])
+            (JobError::Aborted.code().into(), [0, 0, NONE])
         } else {
             (0, self.compute(source + u64::from(map::DATA_LINE), destination, count)?)
         };
