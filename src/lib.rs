@@ -57,6 +57,8 @@ pub mod paper;
 pub mod patience;
 pub mod pipeline;
 pub mod plot;
+pub mod query;
+pub mod record;
 pub mod report;
 pub mod scene;
 #[cfg(feature = "cosim")]

@@ -26,10 +26,10 @@
 //! pauses in twice the time that the job takes without them. If each takes longer, the job has fewer lines than that.
 //! The shell's writes are counters, fence and status. Almost-full and acknowledgements that are held back are refusals.
 
-use crate::afu::Capability;
 use crate::afu::shell::spl2::map;
 use crate::link::spl2::Spl2Model;
 use crate::link::{Direction, LinkModel, Stalls};
+use crate::record::Capability;
 
 /// Requests of one direction that an AFU keeps in flight, whatever its shell: the line port has 64, SPL2's almost-full
 /// stops it at 54 and more.
@@ -89,7 +89,7 @@ pub fn spl2(afu: &Capability, link: &LinkModel, spl2: &Spl2Model, work: &Work) -
 /// may compute without a sign.
 fn both(afu: &Capability, work: &Work, cycles: impl Fn(&Work) -> f64) -> Patience {
     let held = Work {
-        pairs: work.pairs.min(HELD_LINES * u64::from(afu.pairs_per_line)),
+        pairs: work.pairs.min(HELD_LINES * u64::from(afu.pairs_per_line())),
         reads: work.reads.min(HELD_LINES),
         writes: work.writes.min(HELD_LINES),
         ..*work
@@ -131,10 +131,10 @@ fn refused(stalls: &Stalls, open: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::Results;
+    use crate::config::Config;
 
     fn afu(scpus: u32, interval: u32) -> Capability {
-        Capability { scpus, interval, results: Results::All, pairs_per_line: 2, scpu_cycles: 60 }
+        Capability::new(&Config { scpus, interval, ..Config::default() }, 60)
     }
 
     fn work(pairs: u64) -> Work {

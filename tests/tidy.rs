@@ -11,41 +11,61 @@ const HOUSE: &[(&str, &[&str])] = &[
     ("files", &[]),
     ("hdl", &[]),
     ("plot", &[]),
-    ("kernel", &["number"]),
-    ("config", &["number", "kernel"]),
-    ("pairs", &["number", "kernel", "files"]),
-    ("ode", &["pairs", "kernel"]),
+    ("query", &["number"]),
+    ("kernel", &["query", "number"]),
+    ("config", &["number", "query", "kernel"]),
+    ("record", &["number", "query", "kernel", "config"]),
+    ("pairs", &["number", "query", "kernel", "files"]),
+    ("ode", &["pairs", "query", "kernel"]),
     ("operator", &["hdl", "number"]),
-    ("pipeline", &["operator", "kernel", "hdl", "number"]),
-    ("afu", &["config", "pipeline", "operator", "kernel", "hdl", "number"]),
+    ("pipeline", &["operator", "query", "kernel", "hdl", "number"]),
+    ("afu", &["record", "config", "pipeline", "operator", "query", "kernel", "hdl", "number"]),
     ("link", &["number"]),
-    ("patience", &["link", "afu", "config"]),
+    ("patience", &["link", "afu", "record", "config"]),
     ("outcome", &["link", "afu"]),
-    ("cosim", &["outcome", "config", "patience", "afu", "link", "pairs", "kernel", "number", "files"]),
-    ("host", &["outcome", "cosim", "patience", "link", "afu", "config", "kernel", "number"]),
-    ("verify", &["host", "cosim", "link", "pairs", "afu", "config", "kernel", "number"]),
+    (
+        "cosim",
+        &["outcome", "query", "record", "config", "patience", "afu", "link", "pairs", "kernel", "number", "files"],
+    ),
+    ("host", &["outcome", "query", "record", "cosim", "patience", "link", "afu", "config", "kernel", "number"]),
+    ("verify", &["query", "record", "host", "cosim", "link", "pairs", "afu", "config", "kernel", "number"]),
     ("tools", &["cosim"]),
-    ("synth", &["tools", "config", "afu", "pipeline", "operator", "kernel", "hdl", "number", "files"]),
+    (
+        "synth",
+        &["query", "record", "tools", "config", "afu", "pipeline", "operator", "kernel", "hdl", "number", "files"],
+    ),
     (
         "report",
         &[
-            "plot", "synth", "verify", "host", "tools", "cosim", "config", "afu", "link", "pairs", "kernel", "number",
-            "files",
+            "query", "record", "plot", "synth", "verify", "host", "tools", "cosim", "config", "afu", "link", "pairs",
+            "kernel", "number", "files",
         ],
     ),
     (
         "accuracy",
         &[
-            "report", "plot", "synth", "verify", "host", "cosim", "config", "ode", "afu", "link", "pairs", "kernel",
-            "number",
+            "query", "record", "report", "plot", "synth", "verify", "host", "cosim", "config", "ode", "afu", "link",
+            "pairs", "kernel", "number",
         ],
     ),
     (
         "paper",
         &["report", "plot", "verify", "host", "cosim", "config", "ode", "afu", "link", "pairs", "kernel", "number"],
     ),
-    ("scene", &["report", "plot", "synth", "ode", "config", "afu", "pipeline", "kernel", "pairs", "number"]),
-    ("sweep", &["report", "synth", "verify", "host", "cosim", "config", "afu", "link", "pairs", "kernel", "number"]),
+    (
+        "scene",
+        &[
+            "query", "record", "report", "plot", "synth", "ode", "config", "afu", "pipeline", "kernel", "pairs",
+            "number",
+        ],
+    ),
+    (
+        "sweep",
+        &[
+            "query", "record", "report", "synth", "verify", "host", "cosim", "config", "afu", "link", "pairs",
+            "kernel", "number",
+        ],
+    ),
 ];
 
 /// Longer than this, a file is two things.

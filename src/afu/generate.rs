@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use crate::hdl::verilog::{self, Style};
 use crate::hdl::{BuildErrors, Module};
-use crate::pipeline::{Settings, sphere_kernel};
+use crate::pipeline::{Settings, contact_kernel};
+use crate::record::Layout;
 
 use super::scpu::scpu;
 use super::shell::{self, ShellDesign};
 use super::top::line_top;
-use super::{Layout, Spec, SpecError};
+use super::{Spec, SpecError};
 use crate::config::Config;
 
 /// The name of the top module of a configuration's accelerator.
@@ -41,11 +42,12 @@ pub enum BuildError {
 impl Afu {
     /// Generates the accelerator of a specification.
     ///
-    /// # BuildErrors
+    /// # Errors
     /// What is out of range in `spec`; a fault of the generator itself.
     pub fn generate(spec: Spec) -> Result<Self, BuildError> {
         spec.check()?;
-        let kernel = sphere_kernel(&Settings {
+        let kernel = contact_kernel(&Settings {
+            query: spec.config.query,
             arithmetic: spec.config.profile.arithmetic(),
             record: spec.config.profile.arithmetic().record(spec.config.record.format()),
             fields: spec.config.contact,
@@ -59,10 +61,10 @@ impl Afu {
     }
 
     /// The accelerator of a specification around a kernel of the caller's: a module of the ports of
-    /// [`crate::pipeline::sphere_kernel`] at the specification's interval, whose outputs follow its inputs by its
+    /// [`crate::pipeline::contact_kernel`] at the specification's interval, whose outputs follow its inputs by its
     /// `latency`, which is at least 1.
     ///
-    /// # BuildErrors
+    /// # Errors
     /// What is out of range in `spec`; ports that do not fit.
     pub fn around(spec: Spec, kernel: Arc<Module>) -> Result<Self, BuildError> {
         spec.check()?;
@@ -81,7 +83,7 @@ impl Afu {
     /// least 1; and at an interval above 1 the input `take`, set in the cycle before a pair comes to stay for the
     /// interval. This is what the controller is proven with; there is no shell around it.
     ///
-    /// # BuildErrors
+    /// # Errors
     /// What is out of range in `spec`; ports that do not fit.
     pub fn around_scpu(spec: Spec, scpu: Arc<Module>) -> Result<Self, BuildError> {
         spec.check()?;

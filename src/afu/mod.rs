@@ -6,7 +6,6 @@
 mod awaited;
 mod backlog;
 mod bench;
-mod capability;
 mod collector;
 mod control;
 mod counter;
@@ -16,10 +15,7 @@ mod files;
 mod fusesoc;
 mod generate;
 mod in_order;
-mod job_error;
-mod layout;
 mod lines;
-pub(crate) mod pack;
 mod packer;
 pub(crate) mod port;
 mod ports;
@@ -35,12 +31,10 @@ mod status;
 mod timing;
 mod top;
 
-pub use capability::Capability;
+pub use crate::record::{COUNT_BITS, JobError};
 pub use control::DRAIN_CYCLES;
 pub use files::file_list;
 pub use generate::{Afu, BuildError, top_name};
-pub use job_error::JobError;
-pub use layout::{Layout, OtherRadius};
 pub use spec::{Spec, SpecError};
 pub use timing::Timing;
 
@@ -48,8 +42,6 @@ pub use timing::Timing;
 pub const ADDRESS_BITS: u32 = 58;
 /// Bits of a job's epoch, the upper part of a tag.
 pub const EPOCH_BITS: u32 = 4;
-/// Bits of a pair count or number.
-pub const COUNT_BITS: u32 = 32;
 /// Bits that hold a number of SCPUs.
 pub const SCPU_BITS: u32 = 7;
 /// Largest number of SCPUs.

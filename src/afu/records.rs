@@ -3,21 +3,9 @@
 use std::fmt::Write as _;
 
 use crate::config::{RecordFormat, Results};
-use crate::kernel::{ContactRecord, Flow, PAIR_FIELDS};
+use crate::query::{ContactRecord, Flow, GROUPS, Rule};
 
 use super::Afu;
-
-/// The words of a full contact, in record order.
-const CONTACT: [(&str, &str); 8] = [
-    ("pos_x", "contact position"),
-    ("pos_y", "contact position"),
-    ("pos_z", "contact position"),
-    ("normal_x", "contact normal"),
-    ("normal_y", "contact normal"),
-    ("normal_z", "contact normal"),
-    ("depth", "penetration depth"),
-    ("flags", "see below"),
-];
 
 impl Afu {
     /// The section `Records` of PORTS.md.
@@ -39,14 +27,11 @@ impl Afu {
              lines. What the last line holds after the last pair is ignored.\n\n| bits of a pair | word | meaning \
              |\n|---|---|---|\n"
         );
-        let words = layout.pair_words();
-        for (place, field) in words.iter().map(|word| PAIR_FIELDS[*word]).enumerate() {
-            let sphere = if field.ends_with('1') { "first" } else { "second" };
-            let what = if field.starts_with('r') { "radius" } else { "centre" };
-            let _ =
-                writeln!(out, "| {} | `{field}` | {what} of the {sphere} sphere |", bits_of(place as u32 * word, word));
+        let shape = config.query.shape();
+        for (place, (_, input)) in (0..).zip(layout.inputs()) {
+            let _ = writeln!(out, "| {} | `{}` | {} |", bits_of(place * word, word), input.name, input.meaning);
         }
-        rest(&mut out, words.len() as u32 * word, bits, "ignored");
+        rest(&mut out, layout.inputs().count() as u32 * word, bits, "ignored");
         if let Some(radius) = config.radius {
             let _ = writeln!(out, "\nEvery sphere's radius is {radius}; it is part of the hardware.");
         }
@@ -71,19 +56,24 @@ impl Afu {
         if words.is_empty() && number == 0 {
             out += "| 0 | `hit` | 1: contact |\n";
         }
-        for (place, (name, meaning)) in words.iter().map(|word| CONTACT[*word]).enumerate() {
-            let _ = writeln!(out, "| {} | `{name}` | {meaning} |", bits_of(number + place as u32 * word, word));
+        let meanings: Vec<&str> =
+            GROUPS.iter().flat_map(|group| group.words.iter().map(|_| group.meaning)).chain(["see below"]).collect();
+        for (place, &index) in (0..).zip(&words) {
+            let (name, meaning) = (ContactRecord::NAMES[index], meanings[index]);
+            let _ = writeln!(out, "| {} | `{name}` | {meaning} |", bits_of(number + place * word, word));
         }
         rest(&mut out, layout.used_bits(), bits, "zero");
         if !words.is_empty() {
             out += &self.flags();
         }
+        let has_lengths = shape.inputs.iter().any(|input| input.rule == Rule::NotNegative);
         let _ = write!(
             out,
-            "\n**What is computed.** With d the distance of the centres p1 and p2: contact if d ≤ r1 + r2; then normal n = \
-             (p1 − p2) / d, position p1 + n · ((r2 − r1) − d) / 2, depth (r1 + r2) − d. If d = 0: position p1, normal (1, \
-             0, 0), depth r1 + r2. Without contact every word but the flags is zero. A pair with a NaN, an infinity or a \
-             negative radius is invalid (−0 is a valid radius): it is counted, and is no contact. A line is {line} bits.\n"
+            "\n**What is computed.** {} Without contact every word but the flags is zero. A pair with a NaN, an infinity{} is \
+             invalid{}: it is counted, and is no contact. A line is {line} bits.\n",
+            shape.computes,
+            if has_lengths { " or a negative radius" } else { "" },
+            if has_lengths { " (−0 is a valid radius)" } else { "" },
         );
         out
     }
@@ -95,17 +85,9 @@ impl Afu {
                        of:\n\n| `flags` | meaning |\n|---|---|\n"
             .to_owned();
         let hits = self.spec().config.results == Results::Hits;
-        let flows = [
-            (Flow::Real, "contact"),
-            (Flow::Coincident, "contact, coincident centres"),
-            (Flow::Fake, "no contact"),
-            (Flow::Invalid, "invalid pair"),
-        ];
-        let mut values: Vec<(u32, &str)> = flows
-            .into_iter()
-            .filter(|(flow, _)| !hits || matches!(flow, Flow::Real | Flow::Coincident))
-            .map(|(flow, meaning)| (flow.flags(), meaning))
-            .collect();
+        let flows = self.spec().config.query.shape().flows.iter().rev().copied().chain([Flow::Invalid]);
+        let mut values: Vec<(u32, &str)> =
+            flows.filter(|flow| !hits || flow.is_contact()).map(|flow| (flow.flags(), flow.meaning())).collect();
         if self.spec().config.profile.is_exact() {
             values.push((ContactRecord::UNSETTLED.flags(), "not decided: the host must compute this pair"));
         }

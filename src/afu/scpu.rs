@@ -3,12 +3,9 @@
 use std::sync::Arc;
 
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
-use crate::kernel::{Fields, PAIR_FIELDS};
+use crate::query::{ContactRecord, FLAGS, Fields, Flow, Rule};
 
 use super::Spec;
-
-/// The words of a full contact before its flags, in record order.
-const CONTACT: [&str; 7] = ["pos_x", "pos_y", "pos_z", "normal_x", "normal_y", "normal_z", "depth"];
 
 /// Builds the module `scpu` around a kernel: detection of invalid pairs on the raw words, flags, record packing.
 /// Its latency is the kernel's.
@@ -27,25 +24,26 @@ pub(super) fn scpu(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>, Bui
     // Announces a pair that then stays for the interval.
     let take = (spec.config.interval > 1).then(|| graph.input("take", 1));
     let pair = graph.input("pair", layout.pair_bits());
-    let names: Vec<&str> = layout.pair_words().into_iter().map(|word| PAIR_FIELDS[word]).collect();
+    let inputs = || layout.inputs().map(|(_, input)| input);
     let words: Vec<Signal<'_>> =
-        names.iter().zip(0..).map(|(name, index)| pair.slice(bits * index, bits).named(name)).collect();
+        inputs().zip(0..).map(|(input, index)| pair.slice(bits * index, bits).named(input.name)).collect();
 
     // A NaN, an infinity or a negative radius (a negative zero is a radius) makes a pair invalid. A register between
     // what is seen in a word and what follows for the pair: the kernel asks for that a cycle later.
     let is_late = take.is_none();
     let mut invalid = graph.constant(1, 0);
-    for (word, name) in words.iter().zip(&names) {
+    for (word, input) in words.iter().zip(inputs()) {
+        let name = input.name;
         let not_finite = word.slice(record.fraction_bits(), record.exponent_bits()).all();
         let mut seen = vec![not_finite.named(&format!("{name}_not_finite"))];
-        if name.starts_with('r') {
+        if input.rule == Rule::NotNegative {
             seen.push((word.msb() & word.low(bits - 1).any()).named(&format!("{name}_negative")));
         }
         invalid = seen.into_iter().fold(invalid, |invalid, seen| invalid | seen.delay(u32::from(is_late)));
     }
     let invalid = invalid.named("invalid");
 
-    let mut inputs: Vec<(&str, Signal<'_>)> = names.into_iter().zip(words).collect();
+    let mut inputs: Vec<(&str, Signal<'_>)> = inputs().map(|input| input.name).zip(words).collect();
     inputs.push(("valid", !invalid));
     inputs.extend(take.map(|take| ("take", take)));
     let kernel = graph.instance("kernel", kernel, &inputs);
@@ -58,20 +56,23 @@ pub(super) fn scpu(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>, Bui
     let record = if spec.config.contact == Fields::HIT {
         Some(hit).filter(|_| layout.result_bits() > 0)
     } else {
-        let coincident = kernel.output("grazing").named("grazing");
+        let coincides = spec.config.query.shape().flows.contains(&Flow::Coincident);
+        let coincident = coincides.then(|| kernel.output("grazing").named("grazing"));
         let exact = spec.config.profile.is_exact();
         let unsettled = exact.then(|| kernel.output("unsettled").named("unsettled"));
         let no_flow = unsettled.map_or(invalid, |unsettled| invalid | unsettled);
-        let flow = no_flow.select(
-            graph.constant(2, 0),
-            hit.select(coincident.select(graph.constant(2, 2), graph.constant(2, 3)), graph.constant(2, 1)),
-        );
+        let code = |flow: Flow| graph.constant(2, flow as u128);
+        let touching = || match coincident {
+            Some(coincident) => coincident.select(code(Flow::Coincident), code(Flow::Real)),
+            None => code(Flow::Real),
+        };
+        let flow = no_flow.select(code(Flow::Invalid), hit.select(touching(), code(Flow::Fake)));
         let flags: Vec<_> = unsettled.into_iter().chain([invalid, flow.named("flow"), hit]).collect();
         let flags = Signal::join(&flags).extend(bits).named("flags");
         let mut words: Vec<Signal<'_>> = layout
             .contact_words()
             .into_iter()
-            .map(|word| CONTACT.get(word).map_or(flags, |name| kernel.output(name)))
+            .map(|word| if word == FLAGS { flags } else { kernel.output(ContactRecord::NAMES[word]) })
             .collect();
         words.reverse();
         Some(Signal::join(&words).extend(layout.result_bits()))

@@ -4,7 +4,8 @@ use crate::config::{Config, INTERVALS, Multipliers};
 use crate::hdl::verilog::Memories;
 use crate::hdl::{DelayModel, Reset};
 
-use super::{COUNT_BITS, EPOCH_BITS, Layout};
+use super::EPOCH_BITS;
+use crate::record::{COUNT_BITS, LINE_BITS, Layout};
 
 /// Everything that decides the generated Verilog.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,7 +57,7 @@ impl From<Config> for Spec {
         Self {
             config,
             reset: Reset::default(),
-            line_bits: 512,
+            line_bits: LINE_BITS,
             word_bits,
             max_outstanding: 64,
             dispatch_cycles: 16,

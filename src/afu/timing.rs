@@ -1,6 +1,6 @@
 //! How many cycles each part of an AFU takes, from the numbers its hardware is generated with.
 
-use crate::config::{RecordFormat, Results};
+use crate::record::Capability;
 
 use super::{Afu, collector, control, dispatcher, feeder, packer, slot, top};
 
@@ -33,34 +33,10 @@ pub struct Timing {
     pub done: u32,
 }
 
-/// What the capability word calls the numbers of records.
-pub(super) fn record_code(record: RecordFormat) -> u64 {
-    match record {
-        RecordFormat::F32 => 0,
-        RecordFormat::F16 => 1,
-        RecordFormat::Bf16 => 2,
-    }
-}
-
 impl Afu {
-    /// What the AFU says of itself in its capability word: bits 7:0 SCPUs, 15:8 interval, 19:16 contact fields (hit,
-    /// depth, normal, position from bit 16 up), 24 whether contacts alone come back, 25 whether all
-    /// spheres have one radius, 27:26 the numbers of records (0 f32, 1 f16, 2 bf16), 43:32 latency of an SCPU in
-    /// cycles.
+    /// What the AFU says of itself: its capability word, taken apart by [`Capability`].
     pub fn capability(&self) -> u64 {
-        let config = &self.spec().config;
-        let fields = [config.contact.position, config.contact.normal, config.contact.depth, true];
-        let mask = fields.into_iter().fold(0, |mask, bit| mask << 1 | u64::from(bit));
-        let only_hits = u64::from(config.results == Results::Hits);
-        let one_radius = u64::from(config.radius.is_some());
-        let latency = u64::from(self.kernel().latency.min(0xfff));
-        latency << 32
-            | record_code(config.record) << 26
-            | one_radius << 25
-            | only_hits << 24
-            | mask << 16
-            | u64::from(config.interval.min(0xff)) << 8
-            | u64::from(config.scpus)
+        Capability::new(&self.spec().config, self.kernel().latency).bits()
     }
 
     /// What each part takes.
@@ -78,6 +54,29 @@ impl Afu {
             dispatch: dispatcher::CYCLES_TO_REQUEST,
             acknowledge: dispatcher::CYCLES_TO_IDLE,
             done: control::CYCLES_TO_DONE,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Spec;
+    use super::*;
+    use crate::config::Config;
+    use crate::record::AROUND_CYCLES;
+
+    #[test]
+    fn the_word_says_what_a_host_plans_with() {
+        for record in ["f32", "f16"] {
+            let (profile, record) = ("e8f3z".parse().expect("a profile"), record.parse().expect("a format"));
+            let afu = Afu::generate(Spec::from(Config { scpus: 7, interval: 3, record, profile, ..Config::default() }));
+            let afu = afu.expect("an AFU");
+            let said = Capability::from_bits(afu.capability());
+            assert_eq!((said.scpus, said.scpu_cycles), (7, afu.kernel().latency));
+            let t = afu.timing();
+            let around = t.start + t.request + t.collect + t.feed + t.gather + t.pack + t.flush + t.dispatch + t.done;
+            let around = around + t.acknowledge + t.scpu - said.scpu_cycles;
+            assert!(2 * u64::from(around) < AROUND_CYCLES, "{around}: hits pass a sieve and a backlog besides");
         }
     }
 }

@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use crate::config::Results;
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
+use crate::record::Capability;
 
 use super::control::control;
 use super::port::{JobInputs, JobOutputs, ReadInputs, ReadOutputs, WriteInputs, WriteOutputs, outputs};
 use super::results::{Parts, Room};
 use super::{MAX_SCPUS, SCPU_BITS, Spec};
-use super::{collector, dispatcher, feeder, slot, timing};
+use super::{collector, dispatcher, feeder, slot};
 
 /// Register ranks round the slots: results are registered after they were or-ed together.
 pub(super) const RANKS_AFTER: u32 = 1;
@@ -188,22 +189,9 @@ fn alongside<'g>(graph: &'g Graph, group: Signal<'g>, turn: Signal<'g>, cycles: 
     (group_out, travelled.low(turn.width()).named("turn_out"))
 }
 
-/// What the host may rely on: bits 7:0 the parameter SCPUS, 15:8 interval, 19:16 contact fields (hit, depth, normal,
-/// position from bit 16 up), 24 set where only contacts come back, 25 where every sphere has the one radius that is
-/// part of the hardware, 27:26 the numbers of records (0 f32, 1 f16, 2 bf16), 43:32 latency of an SCPU in cycles; the
-/// others are zero.
+/// What the host may rely on: see [`Capability`]. The number of SCPUs is the parameter's.
 fn capability<'g>(graph: &'g Graph, spec: &Spec, scpus: Signal<'g>, latency: u32) -> Signal<'g> {
-    let fields = spec.config.contact;
-    let asked = [fields.position, fields.normal, fields.depth, true];
-    let mask = asked.into_iter().fold(0, |mask, bit| mask << 1 | u128::from(bit));
-    let only_hits = u128::from(spec.config.results == Results::Hits);
-    let one_radius = u128::from(spec.config.radius.is_some());
-    let record = u128::from(timing::record_code(spec.config.record));
-    let constant = |width, value| graph.constant(width, value);
-    Signal::join(&[
-        constant(32, u128::from(latency.min(0xfff))),
-        constant(16, record << 10 | one_radius << 9 | only_hits << 8 | mask),
-        constant(8, u128::from(spec.config.interval.min(0xff))),
-        scpus.extend(8),
-    ])
+    let word = u128::from(Capability::new(&spec.config, latency).bits());
+    let constant = |low: u32, width: u32| graph.constant(width, word >> low & ((1 << width) - 1));
+    Signal::join(&[constant(32, 32), constant(16, 16), constant(8, 8), scpus.extend(8)])
 }

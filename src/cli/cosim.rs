@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::Args;
-use contact_afu::config::{Config, Results};
+use contact_afu::config::{self, Config, Results};
 use contact_afu::cosim::Trace;
-use contact_afu::kernel::PairRecord;
 use contact_afu::link::LinkModel;
+use contact_afu::query::{PairRecord, Query};
 use contact_afu::report::cosim::{Job, Run};
 use contact_afu::report::junit;
 use contact_afu::report::tally::Tally;
@@ -29,8 +29,9 @@ const CORPUS: &str = "afu-corpus.csv";
 /// the link, and what it wrote into destination memory against the reference kernel. One table of all jobs ends it.
 #[derive(Args, Debug)]
 pub struct Cosim {
-    /// Pairs: diamond:H, random:N, dense:N, hard:N, or a .csv or .npy file; given several times, several jobs
-    #[arg(long, value_name = "SET|FILE", default_value = "diamond:10")]
+    /// Pairs: diamond:H, random:N, dense:N, hard:N, or a .csv or .npy file; given several times, several jobs [default:
+    /// diamond:10; of other queries than sphere-sphere random:10000]
+    #[arg(long, value_name = "SET|FILE")]
     pairs: Vec<String>,
     /// Write the contacts of the only job, as they lie in destination memory: .csv or .npy; with --results hits, only
     /// those of pairs that touch, each with its pair's number
@@ -67,7 +68,8 @@ pub struct Cosim {
 pub fn run(options: &Cosim) -> Result<(), Failure> {
     let link = link::describe(&options.link)?;
     let trace = options.trace()?;
-    let jobs = options.jobs()?;
+    let query = options.query()?;
+    let jobs = options.jobs(query)?;
     let bench = options.bench(trace)?;
     warn_of_unused_scpus(bench.config());
     let link = link.at(bench.config().clock_mhz).ends(Kind::Usage)?;
@@ -114,7 +116,7 @@ pub fn run(options: &Cosim) -> Result<(), Failure> {
 
 impl Cosim {
     /// The jobs by name, with their pairs: all read before anything is built, so that a bad file costs no time.
-    fn jobs(&self) -> Result<Vec<(String, Vec<PairRecord>)>, Failure> {
+    fn jobs(&self, query: Query) -> Result<Vec<(String, Vec<PairRecord>)>, Failure> {
         let only_one = [("--contacts", &self.contacts), ("--trace", &self.trace)];
         let jobs = self.pairs.len() + usize::from(self.replay.is_some());
         if let Some((option, _)) = only_one.iter().find(|(_, given)| given.is_some() && jobs > 1) {
@@ -132,15 +134,30 @@ impl Cosim {
         let mut jobs = Vec::new();
         if let Some(path) = &self.replay {
             let name = path.display().to_string();
-            let corpus = super::pairs::noted(&name, corpus::read(path)?);
+            let corpus = super::pairs::noted(&name, corpus::read(query, path)?);
             if !corpus.is_empty() {
                 jobs.push((name, corpus));
             }
         }
-        for source in &self.pairs {
-            jobs.push((source.clone(), super::pairs::load(source, self.seed)?));
+        for source in self.sources(query) {
+            let pairs = super::pairs::load(query, &source, self.seed)?;
+            jobs.push((source, pairs));
         }
         Ok(jobs)
+    }
+
+    /// What a pair is: of the AFU that is given, or asked for.
+    fn query(&self) -> Result<Query, Failure> {
+        match &self.rtl {
+            Some(folder) => Ok(config::read(folder).ends(Kind::Usage)?.query),
+            None => Ok(self.one.machine.config()?.query),
+        }
+    }
+
+    /// The sets and files of pairs.
+    fn sources(&self, query: Query) -> Vec<String> {
+        let default = if query == Query::SphereSphere { "diamond:10" } else { "random:10000" };
+        if self.pairs.is_empty() { vec![default.to_owned()] } else { self.pairs.clone() }
     }
 
     fn trace(&self) -> Result<Trace, Failure> {
@@ -202,8 +219,8 @@ impl Cosim {
             None => Command::new("cosim").config(config),
             Some(folder) => Command::new("cosim").folder(folder, config.scpus),
         };
-        for source in &self.pairs {
-            command = command.option("--pairs", source);
+        for source in self.sources(config.query) {
+            command = command.option("--pairs", &source);
         }
         command.option("--link", &self.link).option("--seed", &self.seed.to_string()).line()
     }
@@ -216,7 +233,7 @@ impl Cosim {
         eprintln!("replay: {}", run.replay);
         if !failed.is_empty() {
             let path = self.replay.as_deref().unwrap_or(Path::new(CORPUS));
-            let added = corpus::join(path, failed)?;
+            let added = corpus::join(run.config.query, path, failed)?;
             eprintln!("corpus: {} ({added} new pairs); to run it first: --replay {}", path.display(), path.display());
         }
         let bad = run.jobs.iter().filter(|job| !job.passed()).count();

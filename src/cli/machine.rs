@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 use contact_afu::afu::Spec;
 use contact_afu::config::{self, Config, Input, Multipliers, Profile, RecordFormat, Results, Shell};
-use contact_afu::kernel::Fields;
 use contact_afu::number::{FormatError, Roots, Rounding, Subnormals};
+use contact_afu::query::{Fields, Query};
 use contact_afu::synth::Target;
 
 use super::failure::{Classify, Failure, Kind};
@@ -16,6 +16,10 @@ use super::link;
 #[derive(Args, Debug)]
 #[command(next_help_heading = "The AFU")]
 pub struct Machine {
+    /// What a pair is: sphere-sphere, or sphere-plane (a sphere, and a plane by its normal of length 1 and its distance
+    /// from the origin) [default: sphere-sphere]
+    #[arg(long, value_name = "QUERY")]
+    pub query: Option<Query>,
     /// Arithmetic: paper (IEEE binary32), wide, exact, half, bfloat or eXfY (exponent and fraction bits) [default:
     /// wide]
     #[arg(long, value_name = "NAME|eXfY")]
@@ -32,7 +36,7 @@ pub struct Machine {
     /// What comes back for a pair: a list of hit, depth, normal, position [default: all four]
     #[arg(long, value_name = "FIELDS")]
     pub contact: Option<Fields>,
-    /// How pairs are given: direct (both spheres whole) [default: direct]
+    /// How pairs are given: direct (both bodies whole) [default: direct]
     #[arg(long, value_name = "KIND")]
     pub input: Option<Input>,
     /// Which pairs come back: all, or hits (those that touch, each with its number) [default: all]
@@ -104,6 +108,7 @@ impl Machine {
             Some(file) => config::read(file).ends(Kind::Usage)?,
             None => Config::default(),
         };
+        set(&mut config.query, &self.query);
         set(&mut config.profile, &self.profile);
         config.profile = self.with_options(config.profile).ends(Kind::Usage)?;
         set(&mut config.contact, &self.contact);

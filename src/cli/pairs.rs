@@ -4,10 +4,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 #[cfg(feature = "cosim")]
-use contact_afu::kernel::PairRecord;
-#[cfg(feature = "cosim")]
 use contact_afu::pairs::Loaded;
 use contact_afu::pairs::{self, FileError, LoadError, Set, SetError};
+#[cfg(feature = "cosim")]
+use contact_afu::query::PairRecord;
+use contact_afu::query::Query;
 use contact_afu::report::table::grouped;
 
 use super::failure::{Failure, Kind};
@@ -19,19 +20,22 @@ pub struct Pairs {
     /// dense:N (N candidate pairs of crowded scenes) or hard:N (N seeded pairs where floating-point engines fail)
     #[arg(value_name = "SET")]
     set: Set,
+    /// What a pair is: sphere-sphere or sphere-plane; of spheres and planes there are random:N and hard:N
+    #[arg(long, value_name = "QUERY", default_value_t)]
+    query: Query,
     /// Seed of all but the diamond
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = usage::seed)]
     seed: u64,
-    /// File to write: .csv (x1,y1,z1,r1,x2,y2,z2,r2 in decimals that read back the same) or .npy (<f4, n x 8); - is
-    /// standard output, as CSV
+    /// File to write: .csv (the words of a pair, such as x1,y1,z1,r1,x2,y2,z2,r2, in decimals that read back the same)
+    /// or .npy (<f4, n x 8); - is standard output, as CSV
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
 }
 
 /// The pairs of a set or a file.
 #[cfg(feature = "cosim")]
-pub fn load(source: &str, seed: u64) -> Result<Vec<PairRecord>, Failure> {
-    Ok(noted(source, pairs::load_with_notes(source, seed)?))
+pub fn load(query: Query, source: &str, seed: u64) -> Result<Vec<PairRecord>, Failure> {
+    Ok(noted(source, pairs::load_with_notes(query, source, seed)?))
 }
 
 /// The pairs of a file. Numbers that had to be rounded are told of on standard error.
@@ -44,11 +48,11 @@ pub fn noted(source: &str, Loaded { pairs, rounded }: Loaded) -> Vec<PairRecord>
 }
 
 pub fn run(options: &Pairs) -> Result<(), Failure> {
-    let made = options.set.pairs(options.seed);
+    let made = options.set.pairs_of(options.query, options.seed)?;
     if output::is_stdout(&options.out) {
-        return output::stdout(|out| pairs::write_pairs_csv(out, &made));
+        return output::stdout(|out| pairs::write_pairs_csv(out, options.query, &made));
     }
-    pairs::write_pairs(&options.out, &made)?;
+    pairs::write_pairs(options.query, &options.out, &made)?;
     let seed = match options.set {
         Set::Random(_) | Set::Dense(_) | Set::Hard(_) => format!(", seed {}", options.seed),
         Set::Diamond(_) => String::new(),

@@ -55,7 +55,7 @@ pub fn run(options: &Sweep) -> Result<(), Failure> {
     configs.iter().for_each(warn_of_unused_scpus);
     let base = options.machine.config()?;
     let link = link::read(&options.link, base.clock_mhz)?;
-    let pairs = super::pairs::load(&options.pairs, options.seed)?;
+    let pairs = super::pairs::load(base.query, &options.pairs, options.seed)?;
     let task = Task { pairs: &pairs, link: &link, seed: options.seed, counts: options.synth };
     let swept = Swept { scpus: options.scpus.0.clone(), interval: options.interval.0.clone() };
     let mut record = Record::new(&options.pairs, &options.link, &task, &base, swept);

@@ -153,8 +153,9 @@ fn units(options: &Synth, config: &Config, target: Target) -> Result<Vec<Unit>, 
         names => names.iter().map(String::as_str).collect(),
     };
     let model = target.delays().with_spared_multipliers(config.multipliers == Multipliers::Spare);
-    let is_normal =
-        is_normal(config.profile.arithmetic(), Fields::ALL).map_err(BuildError::from).map_err(SynthError::from)?;
+    let is_normal = is_normal(config.query, config.profile.arithmetic(), Fields::ALL)
+        .map_err(BuildError::from)
+        .map_err(SynthError::from)?;
     let models = if options.compare { vec![model.clone(), model.with_spared_multipliers(true)] } else { vec![model] };
     let unit = |name: &str, model: &DelayModel| {
         let (operator, profile) = operator(name, config)?;

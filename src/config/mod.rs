@@ -10,7 +10,8 @@ pub use profile::Profile;
 
 use serde::{Deserialize, Serialize};
 
-use crate::kernel::{Fields, Reference};
+use crate::kernel::Reference;
+use crate::query::{Fields, Query};
 
 /// The numbers of SCPUs an AFU can have.
 pub const SCPUS: std::ops::RangeInclusive<u32> = 1..=64;
@@ -33,6 +34,9 @@ pub struct Config {
     /// SCPUs beyond a full line of pairs per cycle (at two pairs per line, beyond the largest multiple of twice the
     /// interval) are not built.
     pub interval: u32,
+    /// What is asked of a pair.
+    #[serde(skip_serializing_if = "Query::is_default")]
+    pub query: Query,
     /// The arithmetic.
     pub profile: Profile,
     /// Which results come back.
@@ -69,6 +73,7 @@ impl Default for Config {
         Self {
             scpus: 10,
             interval: 1,
+            query: Query::default(),
             profile: Profile::WIDE,
             contact: Fields::ALL,
             input: Input::Direct,
@@ -109,6 +114,9 @@ pub enum Error {
         "profile exact with results hits: pairs that only the host can settle would not come back; ask for all results"
     )]
     ExactHits,
+    /// What is for spheres alone.
+    #[error("query {0} with {1}: {1} is for sphere-sphere alone; leave it out")]
+    SpheresAlone(Query, &'static str),
     /// A radius that no sphere has.
     #[error("radius {0}: give a finite length, not below 0")]
     Radius(f32),
@@ -160,6 +168,12 @@ impl Config {
         if self.profile.is_exact() && self.record != RecordFormat::F32 {
             return Err(Error::ExactRecord(self.record));
         }
+        if self.query != Query::SphereSphere {
+            let alone = [(self.profile.is_exact(), "profile exact"), (self.radius.is_some(), "radius")];
+            if let Some((_, what)) = alone.into_iter().find(|(is_asked, _)| *is_asked) {
+                return Err(Error::SpheresAlone(self.query, what));
+            }
+        }
         if let Some(radius) = self.radius
             && !(0.0..=f32::MAX).contains(&radius)
         {
@@ -184,7 +198,7 @@ impl Config {
 
     /// The reference kernel: what every other implementation of this configuration is compared with.
     pub fn reference(&self) -> Reference {
-        self.profile.reference(self.contact).with_record(self.record.format())
+        self.profile.reference(self.contact).of_query(self.query).with_record(self.record.format())
     }
 
     /// The clock that stages are cut for, in MHz.
@@ -218,6 +232,7 @@ impl Config {
         let pairs = [
             ("--scpus", self.scpus.to_string(), default.scpus.to_string()),
             ("--interval", self.interval.to_string(), String::new()),
+            ("--query", self.query.to_string(), default.query.to_string()),
             ("--profile", self.profile.to_string(), default.profile.to_string()),
             ("--contact", self.contact.to_string(), default.contact.to_string()),
             ("--input", self.input.to_string(), default.input.to_string()),
@@ -307,6 +322,14 @@ mod tests {
             (
                 Config { radius: Some(1e6), record: RecordFormat::F16, ..Config::default() },
                 "radius 1000000: is infinite in records of f16",
+            ),
+            (
+                Config { query: Query::SpherePlane, profile: Profile::EXACT, ..Config::default() },
+                "query sphere-plane with profile exact",
+            ),
+            (
+                Config { query: Query::SpherePlane, radius: Some(0.5), ..Config::default() },
+                "query sphere-plane with radius",
             ),
             (Config { prefix: Some("2x".into()), ..Config::default() }, "prefix `2x`"),
             (Config { prefix: Some("a-b".into()), ..Config::default() }, "prefix `a-b`"),

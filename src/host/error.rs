@@ -2,8 +2,8 @@
 
 use super::transport::TransportError;
 use crate::afu::shell::spl2::map;
-use crate::afu::{JobError, OtherRadius};
 use crate::config::RecordFormat;
+use crate::record::{JobError, OtherRadius};
 
 /// Why a transaction has no results.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -54,7 +54,7 @@ pub enum HostError {
     },
     /// The device is another AFU of ours.
     #[error(
-        "the FPGA's AFU has {what} {found}, this session expects {expected}: load the AFU that was asked for, or make the \
+        "the FPGA's AFU says {found} of its {what}, this session expects {expected}: load the AFU that was asked for, or make the \
          session for the configuration that is there"
     )]
     Capability {

@@ -7,7 +7,6 @@
 
 mod engine;
 mod error;
-pub(crate) mod lines;
 mod open;
 pub(crate) mod received;
 mod report;

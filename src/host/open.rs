@@ -88,7 +88,7 @@ impl<'s, T: Transport> Open<'s, T> {
             invalid: outcome.invalid,
             first_invalid: outcome.first_invalid,
             unsettled,
-            record: layout.record(),
+            layout: *layout,
             report: *report,
         })
     }

@@ -1,14 +1,13 @@
 //! What memory holds once a job's status is there: the outcome of the job, and its records.
 
 use super::error::{HitError, HostError};
-use super::lines::Contacts;
 use super::session::Session;
 use super::transport::Transport;
-use crate::afu::Layout;
 use crate::afu::shell::spl2::map::{self, latency, performance, status};
-use crate::kernel::{ContactRecord, Flow};
 use crate::link::{LINE_BYTES, Line, Traffic};
 use crate::outcome::Outcome;
+use crate::query::{ContactRecord, Flow};
+use crate::record::{Contacts, Layout};
 
 /// The beginning of a job: the cycle of its start word, the link's traffic and the device's writes before it.
 #[derive(Clone, Copy, Debug)]
@@ -99,7 +98,7 @@ impl Records {
 
 /// A contact for each of so many pairs, in their order; a pair without a record reads as one without contact.
 pub(crate) fn by_pair(pairs: usize, numbers: &[u32], contacts: &[ContactRecord]) -> Vec<ContactRecord> {
-    let apart = ContactRecord([0, 0, 0, 0, 0, 0, 0, Flow::Fake.flags()]);
+    let apart = ContactRecord::of_flags(Flow::Fake.flags());
     let mut all = vec![apart; pairs];
     for (&number, &contact) in numbers.iter().zip(contacts) {
         if let Some(place) = all.get_mut(number as usize) {

@@ -3,8 +3,8 @@
 use super::error::HostError;
 use super::received::by_pair;
 use super::report::Report;
-use crate::config::RecordFormat;
-use crate::kernel::{ContactRecord, PAIR_FIELDS, PairRecord};
+use crate::query::{ContactRecord, PairRecord};
+use crate::record::Layout;
 
 /// The contacts of a transaction, with what the AFU said at its end.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,8 +22,8 @@ pub struct JobResults {
     pub first_invalid: Option<u32>,
     /// Pairs that the AFU left to the host (profile exact), which settled them: their contacts are the host's.
     pub unsettled: u64,
-    /// The numbers of the AFU's records: what is invalid is so in these.
-    pub record: RecordFormat,
+    /// The AFU's records: what is invalid is so in their numbers.
+    pub layout: Layout,
     /// What it took.
     pub report: Report,
 }
@@ -40,8 +40,9 @@ impl JobResults {
     /// [`HostError::InvalidPairs`], naming the first of `pairs` that is none, and its field.
     pub fn strict(&self, pairs: &[PairRecord]) -> Result<(), HostError> {
         let Some(first) = self.first_invalid else { return Ok(()) };
-        let pair = pairs.get(first as usize).map(|pair| pair.rounded(self.record.format()));
-        let field = pair.and_then(PairRecord::invalid_field).map_or("word", |word| PAIR_FIELDS[word]);
-        Err(HostError::InvalidPairs { count: self.invalid, first, field, record: self.record })
+        let record = self.layout.record();
+        let pair = pairs.get(first as usize).map(|pair| pair.rounded(record.format()));
+        let field = pair.and_then(|pair| pair.broken(self.layout.query())).map_or("word", |input| input.name);
+        Err(HostError::InvalidPairs { count: self.invalid, first, field, record })
     }
 }

@@ -1,26 +1,22 @@
 //! A device with its workspace, and what transactions do with both.
 
 use super::error::HostError;
-use super::lines::pack;
 use super::received::{Begin, Status};
 use super::report::Report;
 use super::transaction::{Pointed, Transaction};
 use super::transport::{Transport, TransportError};
 use super::workspace::{AFU_DSM, SPL_CONTEXT, SPL_DSM, Workspace};
 use crate::afu::shell::spl2::map::{self, Csr, control, identity, status};
-use crate::afu::{Afu, BuildError, Capability, Layout, Spec};
+use crate::afu::{Afu, BuildError, Spec};
 use crate::config::Config;
 use crate::kernel::PairRecord;
 use crate::link::spl2::CsrOffset;
 use crate::link::{LINE_BYTES, Line, Traffic};
 use crate::patience::{self, Patience, Work};
+use crate::record::{Capability, LINE_BITS, Layout, Part, pack};
 
 /// Cycles between two calls for progress.
 pub(crate) const PROGRESS_CYCLES: u64 = 4096;
-/// The part of a capability word that says the number of SCPUs.
-const SCPUS: u64 = 0xff;
-/// Bits of a line.
-const LINE_BITS: u32 = 8 * LINE_BYTES as u32;
 
 /// The AFU that a session expects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,25 +42,15 @@ impl Expected {
     /// An AFU of a configuration whose Verilog may have been edited: of its capability word only the number of SCPUs is
     /// compared.
     pub fn edited(config: &Config) -> Self {
-        Self { capability: config.scpus.into(), compared: SCPUS, layout: Layout::of(LINE_BITS, config) }
+        Self { capability: config.scpus.into(), compared: Part::SCPUS.mask(), layout: Layout::of(LINE_BITS, config) }
     }
 
     /// Compares the parts of a capability word.
     fn check(&self, found: u64) -> Result<(), HostError> {
-        let parts = [
-            ("a number of SCPUs of", 0, 8),
-            ("an interval of", 8, 8),
-            ("contact fields (a mask)", 16, 4),
-            ("results (1: contacts alone)", 24, 1),
-            ("one radius for all spheres (1: yes)", 25, 1),
-            ("records (0: f32, 1: f16, 2: bf16) of", 26, 2),
-            ("an SCPU latency (another profile or clock) of", 32, 12),
-        ];
-        for (what, low, bits) in parts {
-            let part = |word: u64| (word & self.compared) >> low & ((1 << bits) - 1);
-            let (expected, found) = (part(self.capability), part(found));
+        for part in Part::ALL {
+            let (expected, found) = (part.of(self.capability), part.of(found & self.compared));
             if expected != found {
-                return Err(HostError::Capability { what, expected, found });
+                return Err(HostError::Capability { what: part.meaning, expected, found });
             }
         }
         Ok(())

@@ -6,14 +6,14 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use super::lines::{pack_contacts, unpack_pairs};
 use super::transport::{Transport, TransportError};
 use crate::afu::shell::spl2::map::{self, control, identity, latency, performance, pointers, scratch, status};
-use crate::afu::{Afu, BuildError, JobError, Layout, Spec};
+use crate::afu::{Afu, BuildError, JobError, Spec};
 use crate::config::Config;
 use crate::kernel::{Flow, Reference};
 use crate::link::spl2::{CsrOffset, DeviceWrite, Pages, SPL_ID};
 use crate::link::{LINE_BYTES, Line, LinkModel, Memory, Traffic};
+use crate::record::{Layout, pack_contacts, unpack_pairs};
 
 /// What reads of lines find that nobody wrote, as the simulated link has it.
 const UNWRITTEN: Line = [0xDEAD_BEEF; 16];

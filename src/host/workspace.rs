@@ -10,10 +10,10 @@ use rand::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::error::HostError;
-use crate::afu::Layout;
 use crate::afu::shell::spl2::map::{self, pointers};
 use crate::link::spl2::{Limits, MAX_PAGES, PAGE_BYTES, PAGE_LINES, Pages};
 use crate::link::{LINE_BYTES, Memory};
+use crate::record::Layout;
 
 /// The virtual byte address of a workspace.
 const BASE: u64 = 0x0000_7F12_3460_0000;

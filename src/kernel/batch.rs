@@ -5,7 +5,7 @@
 //! None of them fuses or reorders operations, so all give the same bits.
 
 use super::reference::native;
-use super::{ContactRecord, Fields, PairRecord};
+use crate::query::{CONTACT_WORDS, ContactRecord, FLAGS, Fields, PAIR_WORDS, PairRecord, Query};
 
 /// Records side by side in a block: whole registers of every level, and a block of pairs with its block of contacts
 /// is 4 KiB.
@@ -16,7 +16,10 @@ const LANES: usize = 64;
 /// A column of a whole batch would be simpler, but sixteen streams through memory evict one another from a cache.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[repr(align(64))]
-struct Block([[u32; LANES]; 8]);
+struct Block([[u32; LANES]; WORDS]);
+
+/// Words of a record of either kind.
+const WORDS: usize = if PAIR_WORDS > CONTACT_WORDS { PAIR_WORDS } else { CONTACT_WORDS };
 
 /// A batch of records, structure of arrays. What the last block has over is zero words.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -28,7 +31,7 @@ pub struct Batch {
 impl Batch {
     /// `count` records of zero words: room for contacts.
     pub fn zeros(count: usize) -> Self {
-        Self { blocks: vec![Block([[0; LANES]; 8]); count.div_ceil(LANES)], count }
+        Self { blocks: vec![Block([[0; LANES]; WORDS]); count.div_ceil(LANES)], count }
     }
 
     /// The batch of some pairs.
@@ -46,7 +49,7 @@ impl Batch {
 
     /// The contacts in a batch of contacts, in their order.
     pub fn contacts(&self) -> impl Iterator<Item = ContactRecord> + '_ {
-        let record = |block: &Block, lane: usize| ContactRecord(block.0.map(|column| column[lane]));
+        let record = |block: &Block, lane: usize| ContactRecord(std::array::from_fn(|word| block.0[word][lane]));
         (0..self.count).map(move |i| record(&self.blocks[i / LANES], i % LANES))
     }
 
@@ -133,14 +136,15 @@ fn avx512(pairs: &[Block], contacts: &mut [Block], fields: Fields) {
 #[inline(always)]
 fn blocks(pairs: &[Block], contacts: &mut [Block], fields: Fields) {
     for (pairs, contacts) in pairs.iter().zip(contacts) {
-        if !fields.need_distance() {
+        if fields == Fields::HIT {
             block(pairs, contacts, Fields::HIT);
             continue;
         }
         block(pairs, contacts, Fields::ALL);
-        for (asked, columns) in [(fields.position, 0..3), (fields.normal, 3..6), (fields.depth, 6..7)] {
-            if !asked {
-                contacts.0[columns].fill([0; LANES]);
+        let mut asked = ContactRecord::words(fields).peekable();
+        for (word, column) in contacts.0[..FLAGS].iter_mut().enumerate() {
+            if asked.next_if_eq(&word).is_none() {
+                column.fill(0);
             }
         }
     }
@@ -149,7 +153,7 @@ fn blocks(pairs: &[Block], contacts: &mut [Block], fields: Fields) {
 #[inline(always)]
 fn block(pairs: &Block, contacts: &mut Block, fields: Fields) {
     for lane in 0..LANES {
-        let contact = native(&PairRecord(pairs.0.each_ref().map(|column| column[lane])), fields);
+        let contact = native(Query::SphereSphere, &PairRecord(std::array::from_fn(|word| pairs.0[word][lane])), fields);
         for (column, word) in contacts.0.iter_mut().zip(contact.0) {
             column[lane] = word;
         }

@@ -1,8 +1,9 @@
 //! The kernel of the profile `exact`: a decision and a depth from exact squares, or the admission that they need more.
 
-use super::Fields;
-use super::contact::{Contact, Pair};
+use super::contact::{Contact, Delivery};
+use super::sphere_sphere::Spheres;
 use crate::number::{Format, Window};
+use crate::query::Fields;
 use nalgebra::Vector3;
 
 /// A contact as far as the kernel can tell.
@@ -14,13 +15,14 @@ pub struct Filtered<T: Window> {
     pub unsettled: T::Bool,
 }
 
-/// The contact of a pair that is `valid`; the pair and the contact's numbers are in the format `record`. Fields that
-/// are not asked for are zero.
+/// The contact of two spheres that are `valid`, their words by their places in the record; the words and the contact's
+/// numbers are in the format `record`. Fields that are not asked for are zero.
 ///
 /// With T = (r1+r2)² − |p1−p2|² the spheres touch where T ≥ 0, and their depth is T / ((r1+r2) + |p1−p2|), in which
 /// nothing cancels. Differences are in [`Format::DIFFERENCE`], T in a window of exact squares ([`Window`]), and what
 /// follows in [`Format::TAIL`]. `docs/exact.md` proves that every number is within a unit in the last place.
-pub fn exact<T: Window>(pair: Pair<T>, valid: T::Bool, record: Format, fields: Fields) -> Filtered<T> {
+pub fn exact<T: Window>(word: impl Fn(usize) -> T, valid: T::Bool, record: Format, fields: Fields) -> Filtered<T> {
+    let pair = Spheres::read(word);
     let (difference, tail) = (Format::DIFFERENCE, Format::TAIL);
     let unasked = pair.r1.constant(0.0);
     let wide = |number: T| number.to(difference);
@@ -37,10 +39,8 @@ pub fn exact<T: Window>(pair: Pair<T>, valid: T::Bool, record: Format, fields: F
     let [x, y, z] = [(x, "tail_dx"), (y, "tail_dy"), (z, "tail_dz")].map(|(v, name)| v.to(tail).named(name));
     let q = ((x * x + y * y) + z * z).named("distance_squared");
     let coincident = hit & q.le(zero);
-    if !fields.need_distance() {
-        let nowhere = Vector3::new(unasked, unasked, unasked);
-        let contact = Contact { hit, coincident, position: nowhere, normal: nowhere, depth: unasked };
-        return Filtered { contact, unsettled };
+    if fields == Fields::HIT {
+        return Filtered { contact: Contact::decision(hit, coincident, unasked), unsettled };
     }
 
     let d = q.sqrt().named("distance");
@@ -52,23 +52,14 @@ pub fn exact<T: Window>(pair: Pair<T>, valid: T::Bool, record: Format, fields: F
     let r1 = pair.r1.to(tail);
     let k = (depth * depth.constant(0.5) - r1).named("offset");
 
-    let deliver = |asked: bool, value: T, name: &str| {
-        if asked { T::select(hit, value, zero).to(record).named(name) } else { unasked }
-    };
-    let one = zero.constant(1.0);
-    let normal = [(nx, one, "normal_x"), (ny, zero, "normal_y"), (nz, zero, "normal_z")];
-    let normal =
-        normal.map(|(n, if_coincident, name)| deliver(fields.normal, T::select(coincident, if_coincident, n), name));
-    let position = [(0, nx, "position_x"), (1, ny, "position_y"), (2, nz, "position_z")].map(|(axis, n, name)| {
+    let deliver = Delivery { hit, zero, unasked, record, fields };
+    let n = Vector3::new(nx, ny, nz);
+    let x_axis = Vector3::new(zero.constant(1.0), zero, zero);
+    let normal = deliver.normal(|axis| T::select(coincident, x_axis[axis], n[axis]));
+    let position = deliver.position(|axis| {
         let centre = pair.p1[axis].to(tail);
-        deliver(fields.position, T::select(coincident, centre, centre + n * k), name)
+        T::select(coincident, centre, centre + n[axis] * k)
     });
-    let contact = Contact {
-        hit,
-        coincident,
-        position: position.into(),
-        normal: normal.into(),
-        depth: deliver(fields.depth, depth, "depth"),
-    };
+    let contact = Contact { hit, coincident, position, normal, depth: deliver.depth(depth) };
     Filtered { contact, unsettled }
 }

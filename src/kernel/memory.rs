@@ -1,8 +1,8 @@
 //! Words of records in memory that are shorter than binary32: pairs are rounded to them on their way in, and what comes
 //! back is widened, which loses nothing.
 
-use super::PairRecord;
 use crate::number::{Format, Number, Rounding, Soft};
+use crate::query::PairRecord;
 
 /// Whether records in this format are the binary32 words themselves.
 #[inline]
@@ -47,6 +47,7 @@ impl PairRecord {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::query::Query;
 
     #[test]
     fn every_word_of_16_bits_comes_back_as_it_was() {
@@ -95,10 +96,11 @@ mod tests {
 
     #[test]
     fn a_pair_becomes_invalid_by_what_its_record_cannot_hold() {
+        let broken = |pair: PairRecord| pair.broken(Query::SphereSphere).map(|input| input.name);
         let pair = PairRecord::from_spheres([1.0, 70_000.0, 0.0, -1e-9], [0.0, 0.0, 0.0, 0.5]);
-        assert_eq!(pair.invalid_field(), Some(3));
-        assert_eq!(pair.rounded(Format::HALF).invalid_field(), Some(1), "and the radius is -0 there");
-        assert_eq!(pair.rounded(Format::BFLOAT).invalid_field(), Some(3));
+        assert_eq!(broken(pair), Some("r1"));
+        assert_eq!(broken(pair.rounded(Format::HALF)), Some("y1"), "and the radius is -0 there");
+        assert_eq!(broken(pair.rounded(Format::BFLOAT)), Some("r1"));
         assert_eq!(pair.rounded(Format::BINARY32), pair);
     }
 }

@@ -1,24 +1,63 @@
-//! The contact of two spheres, written once for every [`Number`](crate::number::Number): the reference kernel, its
-//! exact twins and the netlist are readings of [`contact`]. Records are what memory holds.
+//! The mathematics of every query, written once for every [`Number`]: the reference kernel, its exact twins and the
+//! netlist are readings of [`contact()`].
 
 pub mod batch;
 mod contact;
 pub mod double;
 mod engine;
 mod exact;
-mod fields;
 mod memory;
-mod record;
 mod reference;
 mod settle;
+mod sphere_plane;
+mod sphere_sphere;
 mod truth;
 
-pub use contact::{Contact, Pair, contact};
+pub use crate::query::{ContactRecord, Fields, FieldsError, Flow, PairRecord};
+pub use contact::{Contact, Scale};
 pub use engine::{Engine, EngineError};
 pub use exact::{Filtered, exact};
-pub use fields::{Fields, FieldsError};
 pub use memory::{narrow, widen};
-pub use record::{ContactRecord, Flow, PAIR_FIELDS, PairRecord};
 pub use reference::{Arithmetic, Reference};
 pub use settle::settle;
 pub use truth::{Truth, UlpErrors, ulp};
+
+use crate::number::{Format, Number, Precise};
+use crate::query::Query;
+
+/// The one place that knows which file has a query's mathematics.
+macro_rules! of_query {
+    ($query:expr, $function:ident($($argument:expr),*)) => {
+        match $query {
+            Query::SphereSphere => sphere_sphere::$function($($argument),*),
+            Query::SpherePlane => sphere_plane::$function($($argument),*),
+        }
+    };
+}
+
+/// The contact of a pair that is `valid`, computed in the format `arithmetic`; the pair's words, by their places in its
+/// record, and the contact's numbers are in the format `record`. Fields that are not asked for are zero.
+///
+/// The order of every sum and product is part of the contract: each rounds once, and hardware, reference and peers
+/// must round alike. Touching counts as contact.
+#[inline(always)]
+pub fn contact<T: Number>(
+    query: Query,
+    word: impl Fn(usize) -> T,
+    valid: T::Bool,
+    arithmetic: Format,
+    record: Format,
+    fields: Fields,
+) -> Contact<T> {
+    of_query!(query, contact(word, valid, arithmetic, record, fields))
+}
+
+/// How far the decision about a valid pair is from being the other one, as a share of what it is made of: 0 to 1.
+fn margin(query: Query, word: impl Fn(usize) -> Precise) -> f64 {
+    of_query!(query, margin(word))
+}
+
+/// What the errors of a contact are judged by.
+fn scale(query: Query, pair: &PairRecord) -> Scale {
+    of_query!(query, scale(pair))
+}

@@ -1,8 +1,11 @@
 //! The reference kernel: [`contact`] over records, in any format.
 
-use super::record::word;
-use super::{Contact, ContactRecord, Fields, Filtered, Flow, PairRecord, contact, exact, narrow, settle, widen};
+use super::{Contact, Filtered, contact, exact, narrow, settle, widen};
 use crate::number::{Format, Number, Soft};
+use crate::query::{ContactRecord, FLAGS, Fields, Flow, PairRecord, Query};
+
+/// The only NaN in any record that this crate computes.
+const NAN: u32 = 0x7FC0_0000;
 
 /// What every other implementation is compared with, bit for bit.
 ///
@@ -11,6 +14,7 @@ use crate::number::{Format, Number, Soft};
 /// contact's words are those of memory, widened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reference {
+    query: Query,
     arithmetic: Arithmetic,
     fields: Fields,
     record: Format,
@@ -36,7 +40,7 @@ impl Arithmetic {
 }
 
 impl Reference {
-    /// The kernel that computes in `arithmetic` and gives `fields`; the others are zero words.
+    /// The kernel of two spheres that computes in `arithmetic` and gives `fields`; the others are zero words.
     pub const fn new(arithmetic: Format, fields: Fields) -> Self {
         Self::of(Arithmetic::Rounded(arithmetic), fields)
     }
@@ -48,7 +52,13 @@ impl Reference {
 
     /// Either of them.
     pub const fn of(arithmetic: Arithmetic, fields: Fields) -> Self {
-        Self { arithmetic, fields, record: Format::BINARY32 }
+        Self { query: Query::SphereSphere, arithmetic, fields, record: Format::BINARY32 }
+    }
+
+    /// The same for another query. The kernel of `exact` is for spheres alone.
+    #[must_use]
+    pub const fn of_query(self, query: Query) -> Self {
+        Self { query, ..self }
     }
 
     /// The same over records in memory of the widths of `record`.
@@ -60,7 +70,7 @@ impl Reference {
     /// What the kernel gives for one pair. That of `exact` leaves some pairs unsettled: see [`settle`].
     pub fn run(&self, pair: &PairRecord) -> ContactRecord {
         if self.arithmetic == Arithmetic::Rounded(Format::BINARY32) && self.record == Format::BINARY32 {
-            native(pair, self.fields)
+            native(self.query, pair, self.fields)
         } else {
             self.run_soft(pair)
         }
@@ -82,17 +92,16 @@ impl Reference {
     pub fn run_soft(&self, pair: &PairRecord) -> ContactRecord {
         let record = self.arithmetic.record(self.record);
         let pair = pair.rounded(record);
-        let spheres = pair.read(|word| Soft::from_bits(record, narrow(word, record).into()));
-        let valid = pair.is_valid();
-        let word = |number: Soft| widen(number.bits() as u32, record);
+        let word = |i: usize| Soft::from_bits(record, narrow(pair.0[i], record).into());
+        let valid = pair.is_valid(self.query);
+        let bits = |number: Soft| widen(number.bits() as u32, record);
         match self.arithmetic {
             Arithmetic::Rounded(format) => {
-                let contact = contact(spheres, valid, format, record, self.fields);
-                write(contact, valid, word)
+                write(contact(self.query, word, valid, format, record, self.fields), valid, bits)
             }
             Arithmetic::Exact => {
-                let Filtered { contact, unsettled } = exact(spheres, valid, record, self.fields);
-                if unsettled { ContactRecord::UNSETTLED } else { write(contact, valid, word) }
+                let Filtered { contact, unsettled } = exact(word, valid, record, self.fields);
+                if unsettled { ContactRecord::UNSETTLED } else { write(contact, valid, bits) }
             }
         }
     }
@@ -100,20 +109,21 @@ impl Reference {
 
 /// The contact of one pair, in the machine's own arithmetic.
 #[inline(always)]
-pub(super) fn native(pair: &PairRecord, fields: Fields) -> ContactRecord {
-    let valid = pair.is_valid();
-    let contact = contact(pair.read(f32::from_bits), valid, Format::BINARY32, Format::BINARY32, fields);
-    write(contact, valid, word)
+pub(super) fn native(query: Query, pair: &PairRecord, fields: Fields) -> ContactRecord {
+    let valid = pair.is_valid(query);
+    let word = |i: usize| f32::from_bits(pair.0[i]);
+    let contact = contact(query, word, valid, Format::BINARY32, Format::BINARY32, fields);
+    // Whatever NaN the machine made, it is the canonical one.
+    write(contact, valid, |value: f32| if value.is_nan() { NAN } else { value.to_bits() })
 }
 
 /// The record of a contact.
 #[inline(always)]
-fn write<T: Number<Bool = bool>>(contact: Contact<T>, valid: bool, word: impl Fn(T) -> u32) -> ContactRecord {
+fn write<T: Number<Bool = bool>>(contact: Contact<T>, valid: bool, bits: impl Fn(T) -> u32) -> ContactRecord {
     // Selections rather than a `match`: the batch kernel is made of this, without branches.
     let touching = if contact.coincident { Flow::Coincident.flags() } else { Flow::Real.flags() };
     let apart = if valid { Flow::Fake.flags() } else { Flow::Invalid.flags() };
-    let flags = if contact.hit { touching } else { apart };
-    let Contact { position: p, normal: n, depth, .. } = contact;
-    let [px, py, pz, nx, ny, nz, depth] = [p.x, p.y, p.z, n.x, n.y, n.z, depth].map(word);
-    ContactRecord([px, py, pz, nx, ny, nz, depth, flags])
+    let mut record = ContactRecord::of_flags(if contact.hit { touching } else { apart });
+    record.0[..FLAGS].copy_from_slice(&contact.numbers().map(bits));
+    record
 }

@@ -1,6 +1,7 @@
 //! What the host does with pairs that the kernel of the profile `exact` leaves unsettled.
 
-use super::{ContactRecord, Fields, PairRecord, Truth};
+use super::Truth;
+use crate::query::{ContactRecord, Fields, PairRecord};
 
 /// Replaces the unsettled records among the `contacts` of `pairs` by the truth, correctly rounded, and says how many
 /// there were. Fields that are not asked for are zero words.
@@ -8,12 +9,7 @@ pub fn settle(pairs: &[PairRecord], contacts: &mut [ContactRecord], fields: Fiel
     let mut count = 0;
     for (pair, contact) in pairs.iter().zip(contacts) {
         if contact.is_unsettled() {
-            *contact = Truth::of(pair).record();
-            for (asked, words) in [(fields.position, 0..3), (fields.normal, 3..6), (fields.depth, 6..7)] {
-                if !asked {
-                    contact.0[words].fill(0);
-                }
-            }
+            *contact = Truth::of(pair).record().only(fields);
             count += 1;
         }
     }

@@ -1,33 +1,40 @@
-//! The truth: what a pair of spheres gives in arithmetic whose rounding decides nothing.
+//! The truth: what a pair gives in arithmetic whose rounding decides nothing.
 
-use super::contact::{Contact, contact};
-use super::{ContactRecord, Fields, Flow, PairRecord};
-use crate::number::{Format, Number, Precise};
+use super::{Contact, Scale, contact, margin, scale};
+use crate::number::{Format, Precise};
+use crate::query::{ContactRecord, FLAGS, Fields, Flow, PairRecord, Query};
 use nalgebra::Vector3;
 
 /// The contact of a pair as it truly is: [`contact`] read with [`Precise`], in which the decision is exact and every
 /// number can be rounded correctly.
 #[derive(Clone, Copy, Debug)]
 pub struct Truth {
+    query: Query,
     pair: PairRecord,
     contact: Option<Contact<Precise>>,
     flow: Flow,
 }
 
 impl Truth {
-    /// What is true of a pair.
+    /// What is true of two spheres.
     pub fn of(pair: &PairRecord) -> Self {
-        let read = |fields| contact(spheres(pair), true, Format::BINARY32, Format::BINARY32, fields);
-        if !pair.is_valid() {
-            return Self { pair: *pair, contact: None, flow: Flow::Invalid };
+        Self::of_query(Query::SphereSphere, pair)
+    }
+
+    /// What is true of a pair.
+    pub fn of_query(query: Query, pair: &PairRecord) -> Self {
+        let read = |fields| contact(query, precise(pair), true, Format::BINARY32, Format::BINARY32, fields);
+        let without = |flow| Self { query, pair: *pair, contact: None, flow };
+        if !pair.is_valid(query) {
+            return without(Flow::Invalid);
         }
         // The decision needs no root, and most pairs without contact then need nothing more.
         if !read(Fields::HIT).hit {
-            return Self { pair: *pair, contact: None, flow: Flow::Fake };
+            return without(Flow::Fake);
         }
         let contact = read(Fields::ALL);
         let flow = if contact.coincident { Flow::Coincident } else { Flow::Real };
-        Self { pair: *pair, contact: Some(contact), flow }
+        Self { contact: Some(contact), ..without(flow) }
     }
 
     /// Which way the pair goes.
@@ -58,33 +65,25 @@ impl Truth {
     /// The record with every number correctly rounded (IEEE 754-2019, clause 4.3.1). A zero is +0, but for the
     /// position of coincident spheres, which is the first centre as it is.
     pub fn record(&self) -> ContactRecord {
-        let mut words = [self.flow.flags(); 8];
-        let Some(contact) = &self.contact else {
-            words[..7].fill(0);
-            return ContactRecord(words);
-        };
-        let numbers = contact.position.iter().chain(contact.normal.iter()).chain([&contact.depth]);
-        for (word, number) in words.iter_mut().zip(numbers) {
-            *word = number.to_f32().to_bits();
-        }
+        let mut record = ContactRecord::of_flags(self.flow.flags());
+        let Some(contact) = &self.contact else { return record };
+        record.0[..FLAGS].copy_from_slice(&contact.numbers().map(|number| number.to_f32().to_bits()));
         if self.flow == Flow::Coincident {
-            words[..3].copy_from_slice(&self.pair.0[..3]);
+            record.0[..3].copy_from_slice(&self.pair.0[..3]);
         }
-        ContactRecord(words)
+        record
     }
 
-    /// How far the decision is from being the other one: |s − d| over the larger of the two, with the distance d and
-    /// the sum of the radii s; 0 to 1. An invalid pair's is 1.
+    /// How far the decision is from being the other one, 0 to 1. Of two spheres |s − d| over the larger of the two,
+    /// with the distance d and the sum of the radii s; of a sphere and a plane |depth| over the sum of the sizes that
+    /// it is made of. An invalid pair's is 1.
     pub fn margin(&self) -> f64 {
-        if self.flow == Flow::Invalid {
-            return 1.0;
-        }
-        let pair = spheres(&self.pair);
-        let apart: Vector3<Precise> = pair.p1 - pair.p2;
-        let distance = (apart.x * apart.x + apart.y * apart.y + apart.z * apart.z).sqrt();
-        let sum = pair.r1 + pair.r2;
-        let larger = distance.max(sum);
-        if larger.is_zero() { 0.0 } else { ((distance - sum).abs() / larger).to_f64() }
+        if self.flow == Flow::Invalid { 1.0 } else { margin(self.query, precise(&self.pair)) }
+    }
+
+    /// What the errors of an answer are judged by.
+    pub fn scale(&self) -> Scale {
+        scale(self.query, &self.pair)
     }
 
     /// The largest errors of another answer to this pair; nothing unless both are contacts.
@@ -101,11 +100,8 @@ impl Truth {
         let largest = |given: [f32; 3], truth: &Vector3<Precise>, unit: [f64; 3]| {
             (0..3).map(|i| away(given[i], truth[i], unit[i])).fold(0.0, f64::max)
         };
-        let [x, y, z, r1, .., r2] = self.pair.values();
-        let unit = |axis: usize| {
-            let makers = [[x, y, z][axis], r1, r2].map(|v| v.abs());
-            ulp(makers.into_iter().fold(truth.position[axis].abs().to_f32(), f32::max))
-        };
+        let axes = self.scale().axes;
+        let unit = |axis: usize| ulp(truth.position[axis].abs().to_f32().max(axes[axis]));
         Some(UlpErrors {
             depth: away(answer.depth(), truth.depth, ulp(truth.depth.abs().to_f32())),
             normal: largest(answer.normal(), &truth.normal, [ulp(1.0); 3]),
@@ -122,7 +118,7 @@ pub struct UlpErrors {
     pub depth: f64,
     /// Of the normal's components, in units of 1.
     pub normal: f64,
-    /// Of the position's components, each in units of the largest of it, the first centre's and the radii.
+    /// Of the position's components, each in units of the largest of it and what it is made of.
     pub position: f64,
 }
 
@@ -140,7 +136,7 @@ pub fn ulp(value: f32) -> f64 {
     2.0_f64.powi(biased as i32 - 150)
 }
 
-/// Both spheres, exactly.
-pub(super) fn spheres(pair: &PairRecord) -> super::Pair<Precise> {
-    pair.read(|word| Precise::from_f64(f32::from_bits(word).into()))
+/// A pair's words, exactly.
+fn precise(pair: &PairRecord) -> impl Fn(usize) -> Precise {
+    |word| Precise::from_f64(f32::from_bits(pair.0[word]).into())
 }

@@ -1,63 +1,68 @@
 //! Arrays of pairs as NumPy's users have them: of binary16, binary32 or binary64, in either byte order and either
-//! order of indices, n × 8 or n × 2 × 4.
+//! order of indices: n × 8, or n × 2 × 4 where a pair is of two bodies alike.
 
 use std::path::Path;
 
 use super::npy_header::{Header, Problem};
 use super::{FileError, Rounded};
-use crate::kernel::{PAIR_FIELDS, PairRecord, widen};
+use crate::kernel::widen;
 use crate::number::Format;
+use crate::query::{PairRecord, Query};
 
 /// The pairs of an array, and which numbers had to be rounded to binary32.
-pub fn read(file: &Path, bytes: &[u8]) -> Result<(Vec<PairRecord>, Option<Rounded>), FileError> {
-    parse(bytes).map_err(|Problem(field, problem)| FileError::Npy { file: file.to_owned(), field, problem })
+pub fn read(query: Query, file: &Path, bytes: &[u8]) -> Result<(Vec<PairRecord>, Option<Rounded>), FileError> {
+    parse(query, bytes).map_err(|Problem(field, problem)| FileError::Npy { file: file.to_owned(), field, problem })
 }
 
-fn parse(bytes: &[u8]) -> Result<(Vec<PairRecord>, Option<Rounded>), Problem> {
+fn parse(query: Query, bytes: &[u8]) -> Result<(Vec<PairRecord>, Option<Rounded>), Problem> {
     let (header, data) = Header::split(bytes)?;
     let number = Number::of(&header.descr)?;
     // In C order the words of a pair stand together either way; in Fortran order each word of all pairs does.
-    let (count, fortran_place): (u64, fn(usize) -> usize) = match *header.shape.as_slice() {
-        [count, 8] => (count, |word| word),
-        [count, 2, 4] => (count, |word| word / 4 + 2 * (word % 4)),
-        _ => return Err(Problem("shape", format!("{:?} should be [n, 8] or [n, 2, 4]", header.shape))),
+    let words = query.shape().inputs.len();
+    // A row of its own for each body, where both have as many words.
+    let rows = if query == Query::SphereSphere { 2 } else { 1 };
+    let (count, rows) = match *header.shape.as_slice() {
+        [count, of] if of == words as u64 => (count, 1),
+        [count, 2, of] if rows == 2 && 2 * of == words as u64 => (count, 2),
+        _ => {
+            let split = if rows == 2 { format!(" or [n, 2, {}]", words / 2) } else { String::new() };
+            return Err(Problem("shape", format!("{:?} should be [n, {words}]{split}", header.shape)));
+        }
     };
+    let fortran_place = |word: usize| word / (words / rows) + rows * (word % (words / rows));
     // The shape is believed only where the file bears it out.
     let (size, there) = (number.size(), data.len());
-    if count.checked_mul(8 * size as u64) != Some(there as u64) {
-        let problem = format!("{count} records of {} bytes, but the data has {there} bytes", 8 * size);
+    if count.checked_mul((words * size) as u64) != Some(there as u64) {
+        let problem = format!("{count} records of {} bytes, but the data has {there} bytes", words * size);
         return Err(Problem("shape", problem));
     }
-    let count = there / (8 * size);
+    let count = there / (words * size);
     let mut pairs = Vec::with_capacity(count);
     let mut rounded: Option<Rounded> = None;
     for pair in 0..count {
-        let mut words = [0; 8];
-        for (word, to) in words.iter_mut().enumerate() {
-            let place = if header.fortran_order { fortran_place(word) * count + pair } else { 8 * pair + word };
+        let mut record = PairRecord::default();
+        for (word, (field, to)) in query.shape().names().zip(&mut record.0).enumerate() {
+            let place = if header.fortran_order { fortran_place(word) * count + pair } else { words * pair + word };
             let bits = number.bits(&data[place * size..(place + 1) * size]);
             *to = number.to_binary32(bits);
             if let Some(given) = number.rounded(bits, *to) {
                 let is_beyond = given.is_finite() && f32::from_bits(*to).is_infinite();
                 if is_beyond {
-                    let problem = format!(
-                        "{given:e}, {} of pair {pair}, is beyond the largest binary32 number",
-                        PAIR_FIELDS[word]
-                    );
+                    let problem = format!("{given:e}, {field} of pair {pair}, is beyond the largest binary32 number");
                     return Err(Problem("data", problem));
                 }
                 let first = Rounded {
                     numbers: 0,
-                    of: 8 * count as u64,
+                    of: (words * count) as u64,
                     pair: pair as u64,
-                    field: PAIR_FIELDS[word],
+                    field,
                     given,
                     taken: f32::from_bits(*to),
                 };
                 rounded.get_or_insert(first).numbers += 1;
             }
         }
-        pairs.push(PairRecord(words));
+        pairs.push(record);
     }
     Ok((pairs, rounded))
 }

@@ -1,16 +1,26 @@
-//! Contacts as CSV: `pair,flow,pos_x,pos_y,pos_z,normal_x,normal_y,normal_z,depth,invalid`.
+//! Contacts as CSV: number and flow of a pair, position, normal, depth, whether it is invalid.
 
 use super::{FileError, table};
-use crate::kernel::{ContactRecord, Flow};
+use crate::query::{ContactRecord, Flow, NUMBERS};
 use std::io::{self, Write};
 use std::path::Path;
 
-const COLUMNS: [&str; 10] =
-    ["pair", "flow", "pos_x", "pos_y", "pos_z", "normal_x", "normal_y", "normal_z", "depth", "invalid"];
 const PAIR: usize = 0;
 const FLOW: usize = 1;
-const NUMBERS: usize = 2;
-const INVALID: usize = 9;
+const FIRST: usize = 2;
+const INVALID: usize = FIRST + NUMBERS;
+
+/// The columns: the pair's number and flow, the contact's numbers, whether it is invalid.
+const COLUMNS: [&str; INVALID + 1] = {
+    let mut columns = ["pair"; INVALID + 1];
+    (columns[FLOW], columns[INVALID]) = ("flow", "invalid");
+    let mut word = 0;
+    while word < NUMBERS {
+        columns[FIRST + word] = ContactRecord::NAMES[word];
+        word += 1;
+    }
+    columns
+};
 
 /// The contacts of a file with a row for each pair, in their order.
 pub fn read(file: &Path, text: &[u8]) -> Result<Vec<ContactRecord>, FileError> {
@@ -40,7 +50,7 @@ pub fn read_hits(file: &Path, text: &[u8]) -> Result<Vec<(u32, ContactRecord)>, 
     Ok(hits)
 }
 
-fn contact(row: &table::Row<10>) -> Result<ContactRecord, FileError> {
+fn contact(row: &table::Row<'_>) -> Result<ContactRecord, FileError> {
     let flow = Flow::ALL.into_iter().find(|flow| flow.name() == row.text(FLOW));
     let flow = flow
         .ok_or_else(|| row.error(FLOW, format!("`{}` is none of fake, grazing, real and invalid", row.text(FLOW))))?;
@@ -48,11 +58,11 @@ fn contact(row: &table::Row<10>) -> Result<ContactRecord, FileError> {
     if row.text(INVALID) != expected {
         return Err(row.error(INVALID, format!("`{}` should be {expected} for flow {flow}", row.text(INVALID))));
     }
-    let mut words = [flow.flags(); 8];
-    for (i, word) in words[..7].iter_mut().enumerate() {
-        *word = row.number(NUMBERS + i)?.to_bits();
+    let mut contact = ContactRecord::of_flags(flow.flags());
+    for (i, word) in contact.0[..NUMBERS].iter_mut().enumerate() {
+        *word = row.number(FIRST + i)?.to_bits();
     }
-    Ok(ContactRecord(words))
+    Ok(contact)
 }
 
 /// Flags that no kernel writes are written as far as the columns go: bits 2:1 as the flow, bit 3 as invalid.
@@ -62,8 +72,8 @@ pub fn write(out: impl Write, contacts: impl Iterator<Item = (u32, ContactRecord
     for (pair, contact) in contacts {
         out.write_field(pair.to_string())?;
         out.write_field(Flow::ALL[(contact.flags() >> 1 & 3) as usize].name())?;
-        for &word in &contact.0[..7] {
-            out.write_field(table::decimal(f32::from_bits(word)))?;
+        for number in contact.numbers() {
+            out.write_field(table::decimal(number))?;
         }
         out.write_field((contact.flags() >> 3 & 1).to_string())?;
         out.write_record(None::<&[u8]>)?;

@@ -2,13 +2,15 @@
 
 use super::{FileError, Set, SetError, array, contacts_csv, npy, pairs_csv};
 use crate::files;
-use crate::kernel::{ContactRecord, PairRecord};
+use crate::query::{CONTACT_WORDS, ContactRecord, PairRecord, Query};
 use std::fmt;
 use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 
 const PAIR_TYPE: &str = "<f4";
+/// Words of a contact with its pair's number.
+const HIT_WORDS: usize = CONTACT_WORDS + 1;
 const CONTACT_TYPE: &str = "<u4";
 
 /// The formats a file can have.
@@ -76,20 +78,20 @@ pub enum LoadError {
 ///
 /// # Errors
 /// When the name or the file is wrong.
-pub fn load(source: &str, seed: u64) -> Result<Vec<PairRecord>, LoadError> {
-    load_with_notes(source, seed).map(|loaded| loaded.pairs)
+pub fn load(query: Query, source: &str, seed: u64) -> Result<Vec<PairRecord>, LoadError> {
+    load_with_notes(query, source, seed).map(|loaded| loaded.pairs)
 }
 
 /// The same, with what reading a file changed.
 ///
 /// # Errors
 /// As [`load`].
-pub fn load_with_notes(source: &str, seed: u64) -> Result<Loaded, LoadError> {
+pub fn load_with_notes(query: Query, source: &str, seed: u64) -> Result<Loaded, LoadError> {
     let path = Path::new(source);
     if Set::is_name(source) || (Set::meant(source).is_some() && !path.exists()) {
-        return Ok(Loaded { pairs: source.parse::<Set>()?.pairs(seed), rounded: None });
+        return Ok(Loaded { pairs: source.parse::<Set>()?.pairs_of(query, seed)?, rounded: None });
     }
-    Ok(read_with_notes(path)?)
+    Ok(read_with_notes(query, path)?)
 }
 
 /// Whether `file` has a name that can be written: `.csv` or `.npy`.
@@ -104,18 +106,18 @@ pub fn check_name(file: &Path) -> Result<(), FileError> {
 ///
 /// # Errors
 /// When the file cannot be read or is not of that form.
-pub fn read_pairs(file: &Path) -> Result<Vec<PairRecord>, FileError> {
-    read_with_notes(file).map(|loaded| loaded.pairs)
+pub fn read_pairs(query: Query, file: &Path) -> Result<Vec<PairRecord>, FileError> {
+    read_with_notes(query, file).map(|loaded| loaded.pairs)
 }
 
 /// The same, with what reading changed. (Decimals in CSV are always taken as the nearest binary32 number.)
 ///
 /// # Errors
 /// As [`read_pairs`].
-pub fn read_with_notes(file: &Path) -> Result<Loaded, FileError> {
+pub fn read_with_notes(query: Query, file: &Path) -> Result<Loaded, FileError> {
     let (pairs, rounded) = match kind(file)? {
-        Kind::Csv => (pairs_csv::read(file, &bytes(file)?)?, None),
-        Kind::Npy => array::read(file, &bytes(file)?)?,
+        Kind::Csv => (pairs_csv::read(query, file, &bytes(file)?)?, None),
+        Kind::Npy => array::read(query, file, &bytes(file)?)?,
     };
     Ok(Loaded { pairs, rounded })
 }
@@ -127,7 +129,9 @@ pub fn read_with_notes(file: &Path) -> Result<Loaded, FileError> {
 pub fn read_contacts(file: &Path) -> Result<Vec<ContactRecord>, FileError> {
     match kind(file)? {
         Kind::Csv => contacts_csv::read(file, &bytes(file)?),
-        Kind::Npy => Ok(npy::read::<8>(file, &bytes(file)?, CONTACT_TYPE)?.into_iter().map(ContactRecord).collect()),
+        Kind::Npy => {
+            Ok(npy::read::<CONTACT_WORDS>(file, &bytes(file)?, CONTACT_TYPE)?.into_iter().map(ContactRecord).collect())
+        }
     }
 }
 
@@ -139,12 +143,12 @@ pub fn read_hits(file: &Path) -> Result<Vec<(u32, ContactRecord)>, FileError> {
     match kind(file)? {
         Kind::Csv => contacts_csv::read_hits(file, &bytes(file)?),
         Kind::Npy => {
-            let records: Vec<[u32; 9]> = npy::read(file, &bytes(file)?, CONTACT_TYPE)?;
+            let records: Vec<[u32; HIT_WORDS]> = npy::read(file, &bytes(file)?, CONTACT_TYPE)?;
             if let Some(wrong) = records.windows(2).position(|two| two[0][0] >= two[1][0]) {
                 let problem = format!("pair {} follows pair {}", records[wrong + 1][0], records[wrong][0]);
                 return Err(FileError::Npy { file: file.to_owned(), field: "data", problem });
             }
-            let hit = |[number, contact @ ..]: [u32; 9]| (number, ContactRecord(contact));
+            let hit = |[number, contact @ ..]: [u32; HIT_WORDS]| (number, ContactRecord(contact));
             Ok(records.into_iter().map(hit).collect())
         }
     }
@@ -154,10 +158,12 @@ pub fn read_hits(file: &Path) -> Result<Vec<(u32, ContactRecord)>, FileError> {
 ///
 /// # Errors
 /// When the name has another ending or the file cannot be written.
-pub fn write_pairs(file: &Path, pairs: &[PairRecord]) -> Result<(), FileError> {
+pub fn write_pairs(query: Query, file: &Path, pairs: &[PairRecord]) -> Result<(), FileError> {
     match kind(file)? {
-        Kind::Csv => write(file, |out| pairs_csv::write(out, pairs)),
-        Kind::Npy => write(file, |mut out| npy::write(&mut out, PAIR_TYPE, pairs.iter().map(|pair| pair.0))),
+        Kind::Csv => write(file, |out| pairs_csv::write(out, query, pairs)),
+        Kind::Npy => write(file, |mut out| {
+            npy::write(&mut out, PAIR_TYPE, query.shape().inputs.len(), pairs.iter().map(|pair| pair.0))
+        }),
     }
 }
 
@@ -165,8 +171,8 @@ pub fn write_pairs(file: &Path, pairs: &[PairRecord]) -> Result<(), FileError> {
 ///
 /// # Errors
 /// As `out` says.
-pub fn write_pairs_csv(out: impl Write, pairs: &[PairRecord]) -> io::Result<()> {
-    pairs_csv::write(out, pairs)
+pub fn write_pairs_csv(out: impl Write, query: Query, pairs: &[PairRecord]) -> io::Result<()> {
+    pairs_csv::write(out, query, pairs)
 }
 
 /// Writes contacts to a `.csv` or `.npy` file, which is there whole or not at all.
@@ -176,9 +182,9 @@ pub fn write_pairs_csv(out: impl Write, pairs: &[PairRecord]) -> io::Result<()> 
 pub fn write_contacts(file: &Path, contacts: &[ContactRecord]) -> Result<(), FileError> {
     match kind(file)? {
         Kind::Csv => write(file, |out| contacts_csv::write(out, (0..).zip(contacts.iter().copied()))),
-        Kind::Npy => {
-            write(file, |mut out| npy::write(&mut out, CONTACT_TYPE, contacts.iter().map(|contact| contact.0)))
-        }
+        Kind::Npy => write(file, |mut out| {
+            npy::write(&mut out, CONTACT_TYPE, CONTACT_WORDS, contacts.iter().map(|contact| contact.0))
+        }),
     }
 }
 
@@ -189,13 +195,13 @@ pub fn write_contacts(file: &Path, contacts: &[ContactRecord]) -> Result<(), Fil
 /// As [`write_contacts`].
 pub fn write_hits(file: &Path, hits: &[(u32, ContactRecord)]) -> Result<(), FileError> {
     let words = |(number, contact): &(u32, ContactRecord)| {
-        let mut words = [*number; 9];
+        let mut words = [*number; HIT_WORDS];
         words[1..].copy_from_slice(&contact.0);
         words
     };
     match kind(file)? {
         Kind::Csv => write(file, |out| contacts_csv::write(out, hits.iter().copied())),
-        Kind::Npy => write(file, |mut out| npy::write(&mut out, CONTACT_TYPE, hits.iter().map(words))),
+        Kind::Npy => write(file, |mut out| npy::write(&mut out, CONTACT_TYPE, HIT_WORDS, hits.iter().map(words))),
     }
 }
 

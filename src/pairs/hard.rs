@@ -1,21 +1,31 @@
 //! Pairs that are hard: where floating-point engines miss contacts, invent them, or lose their direction.
 
+use super::planes;
 use super::source::{LARGEST, Source, UNIT};
-use crate::kernel::PairRecord;
+use crate::query::{PairRecord, Query};
 
 /// One way in which a pair can be hard.
 #[derive(Clone, Copy, Debug)]
 pub struct Category {
-    name: &'static str,
-    about: &'static str,
-    number: u64,
-    make: fn(&mut Source) -> PairRecord,
+    pub(super) query: Query,
+    pub(super) name: &'static str,
+    pub(super) about: &'static str,
+    pub(super) number: u64,
+    pub(super) make: fn(&mut Source) -> PairRecord,
 }
 
-/// Every category. Pair i of `hard:N` is of the (i mod 17)th.
+/// The hard categories of a query, each in turn.
+pub fn categories(query: Query) -> &'static [Category] {
+    match query {
+        Query::SphereSphere => &CATEGORIES,
+        Query::SpherePlane => &planes::CATEGORIES,
+    }
+}
+
+/// Every category of two spheres. Pair i of `hard:N` is of the (i mod 17)th.
 pub const CATEGORIES: [Category; 17] = {
     const fn of(number: u64, name: &'static str, about: &'static str, make: fn(&mut Source) -> PairRecord) -> Category {
-        Category { name, about, number, make }
+        Category { query: Query::SphereSphere, name, about, number, make }
     }
     [
         of(0, "ordinary", "coordinates and radii around 1", Source::ordinary),
@@ -53,18 +63,19 @@ impl Category {
     pub fn pairs(self, count: u64, seed: u64) -> impl Iterator<Item = PairRecord> {
         // Categories are independent of one another: each has a stream of its own.
         let mut source = Source::new(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(self.number));
-        let make = self.make;
+        let (query, make) = (self.query, self.make);
         // A number beside the largest may be none: such a pair is drawn again.
-        let mut valid = std::iter::repeat_with(move || make(&mut source)).filter(|pair| pair.is_valid());
+        let mut valid = std::iter::repeat_with(move || make(&mut source)).filter(move |pair| pair.is_valid(query));
         (0..count).filter_map(move |_| valid.next())
     }
 }
 
 /// `count` pairs of all categories in turn.
-pub fn pairs(count: u64, seed: u64) -> Vec<PairRecord> {
-    let categories = CATEGORIES.len() as u64;
-    let mut streams = CATEGORIES.map(|category| category.pairs(count.div_ceil(categories), seed));
-    (0..count).filter_map(|i| streams[(i % categories) as usize].next()).collect()
+pub fn pairs(query: Query, count: u64, seed: u64) -> Vec<PairRecord> {
+    let categories = categories(query);
+    let of_each = count.div_ceil(categories.len() as u64);
+    let mut streams: Vec<_> = categories.iter().map(|category| category.pairs(of_each, seed)).collect();
+    (0..count).filter_map(|i| streams[i as usize % categories.len()].next()).collect()
 }
 
 impl Source {
@@ -256,7 +267,7 @@ impl Source {
         if self.flip() { pair((p1, r1), (p2, r2)) } else { pair((p2, r2), (p1, r1)) }
     }
 
-    fn flip(&mut self) -> bool {
+    pub(super) fn flip(&mut self) -> bool {
         self.bits() & 1 == 0
     }
 }
@@ -303,16 +314,21 @@ mod tests {
     #[test]
     fn what_overflows_is_drawn_again() {
         for category in CATEGORIES {
-            assert_eq!(category.pairs(60_000, 5).filter(|pair| pair.is_valid()).count(), 60_000, "{}", category.name());
+            assert_eq!(
+                category.pairs(60_000, 5).filter(|pair| pair.is_valid(Query::SphereSphere)).count(),
+                60_000,
+                "{}",
+                category.name()
+            );
         }
     }
 
     #[test]
     fn a_seed_gives_the_same_pairs_for_good() {
-        assert_eq!(pairs(40, 7)[..], pairs(1000, 7)[..40]);
-        assert_ne!(pairs(40, 7), pairs(40, 8));
-        assert_eq!(pairs(40, 7)[20], CATEGORIES[3].pairs(2, 7).last().unwrap());
-        let words = pairs(1700, 0).into_iter().flat_map(|pair| pair.0);
+        assert_eq!(pairs(Query::SphereSphere, 40, 7)[..], pairs(Query::SphereSphere, 1000, 7)[..40]);
+        assert_ne!(pairs(Query::SphereSphere, 40, 7), pairs(Query::SphereSphere, 40, 8));
+        assert_eq!(pairs(Query::SphereSphere, 40, 7)[20], CATEGORIES[3].pairs(2, 7).last().unwrap());
+        let words = pairs(Query::SphereSphere, 1700, 0).into_iter().flat_map(|pair| pair.0);
         let sum = words.fold(0_u64, |sum, word| sum.rotate_left(5) ^ u64::from(word));
         assert_eq!(sum, 8_010_911_902_353_169_898, "another machine or another version made these pairs otherwise");
     }

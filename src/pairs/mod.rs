@@ -11,6 +11,7 @@ mod hard;
 mod npy;
 mod npy_header;
 mod pairs_csv;
+mod planes;
 mod random;
 mod set;
 mod source;
@@ -22,6 +23,6 @@ pub use file::{
     LoadError, Loaded, Rounded, check_name, load, load_with_notes, read_contacts, read_hits, read_pairs,
     read_with_notes, write_contacts, write_hits, write_pairs, write_pairs_csv,
 };
-pub use hard::{CATEGORIES, Category};
+pub use hard::{CATEGORIES, Category, categories};
 pub use npy::numbers as npy_of_numbers;
 pub use set::{Set, SetError};

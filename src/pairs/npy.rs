@@ -43,16 +43,19 @@ pub fn numbers(shape: Vec<u64>, values: impl Iterator<Item = f64>) -> Vec<u8> {
     bytes
 }
 
-/// Writes records as elements of the type `descr`.
-pub fn write<const W: usize>(
+/// Writes the first `words` words of records as elements of the type `descr`.
+pub fn write(
     out: &mut impl Write,
     descr: &str,
-    records: impl ExactSizeIterator<Item = [u32; W]>,
+    words: usize,
+    records: impl ExactSizeIterator<Item: AsRef<[u32]>>,
 ) -> io::Result<()> {
-    let shape = vec![records.len() as u64, W as u64];
+    let shape = vec![records.len() as u64, words as u64];
     out.write_all(&Header { descr: descr.to_owned(), fortran_order: false, shape }.bytes())?;
-    for word in records.flatten() {
-        out.write_all(&word.to_le_bytes())?;
+    for record in records {
+        for word in &record.as_ref()[..words] {
+            out.write_all(&word.to_le_bytes())?;
+        }
     }
     Ok(())
 }

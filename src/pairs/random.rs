@@ -1,9 +1,10 @@
 //! Random pairs that reach every flow and every corner of the format.
 
+use super::planes;
 use super::source::{LARGEST, Source, UNIT};
-use crate::kernel::PairRecord;
+use crate::query::{PAIR_WORDS, PairRecord, Query, Rule};
 
-/// How a pair is made; pair i is made the (i mod 10)th way, so that ten pairs have every flow in them.
+/// How a pair of spheres is made; pair i is made the (i mod 10)th way, so that ten pairs have every flow in them.
 const KINDS: [fn(&mut Source) -> PairRecord; 10] = [
     Source::ordinary,
     Source::one_scale,
@@ -20,9 +21,13 @@ const KINDS: [fn(&mut Source) -> PairRecord; 10] = [
 /// `count` pairs. The first n of them are the same for every count of at least n.
 ///
 /// Nothing but integers and correctly rounded operations is used, so every machine makes the same pairs.
-pub fn pairs(count: u64, seed: u64) -> Vec<PairRecord> {
+pub fn pairs(query: Query, count: u64, seed: u64) -> Vec<PairRecord> {
+    let kinds: &[fn(&mut Source) -> PairRecord] = match query {
+        Query::SphereSphere => &KINDS,
+        Query::SpherePlane => &planes::KINDS,
+    };
     let mut source = Source::new(seed);
-    (0..count).map(|i| KINDS[(i % KINDS.len() as u64) as usize](&mut source)).collect()
+    (0..count).map(|i| kinds[i as usize % kinds.len()](&mut source)).collect()
 }
 
 impl Source {
@@ -116,19 +121,25 @@ impl Source {
     }
 
     /// Any words at all.
-    fn any_words(&mut self) -> PairRecord {
-        PairRecord([(); 8].map(|()| self.bits()))
+    pub(super) fn any_words(&mut self) -> PairRecord {
+        PairRecord([(); PAIR_WORDS].map(|()| self.bits()))
     }
 
     /// An ordinary pair but for one word: a NaN, an infinity or a negative radius.
     fn invalid(&mut self) -> PairRecord {
-        let mut pair = self.ordinary();
-        let place = self.below(8) as usize;
+        let pair = self.ordinary();
+        self.spoil(Query::SphereSphere, pair)
+    }
+
+    /// The pair with a word that breaks its rule.
+    pub(super) fn spoil(&mut self, query: Query, mut pair: PairRecord) -> PairRecord {
+        let inputs = query.shape().inputs;
+        let place = self.below(inputs.len() as u32) as usize;
         let sign = self.bits() & 0x8000_0000;
         pair.0[place] = match self.below(3) {
             0 => sign | 0x7F80_0000,
             1 => sign | 0x7F80_0000 | (1 + self.below(0x7F_FFFF)),
-            _ if place % 4 == 3 => 0x8000_0000 | (1 + self.below(0x7F7F_FFFF)),
+            _ if inputs[place].rule == Rule::NotNegative => 0x8000_0000 | (1 + self.below(0x7F7F_FFFF)),
             _ => sign | 0x7FC0_0000,
         };
         pair
@@ -148,7 +159,7 @@ mod tests {
 
     #[test]
     fn every_flow_is_well_represented() {
-        let pairs = pairs(100_000, 1);
+        let pairs = pairs(Query::SphereSphere, 100_000, 1);
         let flows = flows(&pairs);
         assert!(flows.iter().all(|&count| count > 4_000), "{flows:?}");
         assert!(pairs.iter().any(|pair| pair.0.contains(&0x8000_0000)), "a negative zero");
@@ -157,7 +168,7 @@ mod tests {
 
     #[test]
     fn each_kind_is_what_its_name_says() {
-        let pairs = pairs(100_000, 2);
+        let pairs = pairs(Query::SphereSphere, 100_000, 2);
         let kind = |i: usize| -> Vec<_> { pairs.iter().skip(i).step_by(KINDS.len()).copied().collect() };
         let all = 100_000 / KINDS.len();
         let [invalid, fake, _, real] = flows(&kind(2));
@@ -174,10 +185,12 @@ mod tests {
 
     #[test]
     fn a_seed_gives_the_same_pairs_for_good() {
-        assert_eq!(pairs(20, 7)[..], pairs(1000, 7)[..20]);
-        assert_ne!(pairs(20, 7), pairs(20, 8));
-        let sum =
-            pairs(1000, 0).iter().flat_map(|pair| pair.0).fold(0_u64, |sum, word| sum.rotate_left(5) ^ u64::from(word));
+        assert_eq!(pairs(Query::SphereSphere, 20, 7)[..], pairs(Query::SphereSphere, 1000, 7)[..20]);
+        assert_ne!(pairs(Query::SphereSphere, 20, 7), pairs(Query::SphereSphere, 20, 8));
+        let sum = pairs(Query::SphereSphere, 1000, 0)
+            .iter()
+            .flat_map(|pair| pair.0)
+            .fold(0_u64, |sum, word| sum.rotate_left(5) ^ u64::from(word));
         assert_eq!(sum, 6_429_847_647_678_066_930, "another machine or another version made these pairs otherwise");
     }
 }

@@ -1,7 +1,7 @@
 //! The sets of pairs that have names.
 
 use super::{dense, diamond, hard, random};
-use crate::kernel::PairRecord;
+use crate::query::{PairRecord, Query};
 use std::fmt;
 use std::str::FromStr;
 
@@ -33,6 +33,14 @@ pub enum SetError {
         name: String,
         /// The set that it may be meant for.
         meant: Option<String>,
+    },
+    /// A set of spheres alone.
+    #[error("set of pairs `{set}`: it has pairs of spheres alone; for {query} use random:N or hard:N")]
+    SpheresAlone {
+        /// The set.
+        set: Set,
+        /// What is asked.
+        query: Query,
     },
     /// Not a number, or too large a one.
     #[error("set of pairs `{name}`: `{size}` must be a number from {least} to {most}{}", tip(meant))]
@@ -78,13 +86,26 @@ impl Set {
         (likeness(&nearest) > 0.7).then(|| format!("{nearest}:{}", whole(size).unwrap_or_else(|| size.to_owned())))
     }
 
-    /// The pairs, the same on every machine. `seed` matters to all but the diamond.
+    /// The pairs of spheres, the same on every machine. `seed` matters to all but the diamond.
     pub fn pairs(self, seed: u64) -> Vec<PairRecord> {
         match self {
             Self::Diamond(layers) => diamond::pairs(layers),
-            Self::Random(count) => random::pairs(count, seed),
+            Self::Random(count) => random::pairs(Query::SphereSphere, count, seed),
             Self::Dense(count) => dense::pairs(count, seed),
-            Self::Hard(count) => hard::pairs(count, seed),
+            Self::Hard(count) => hard::pairs(Query::SphereSphere, count, seed),
+        }
+    }
+
+    /// The pairs of a query.
+    ///
+    /// # Errors
+    /// When the set is of spheres alone, and the query is not.
+    pub fn pairs_of(self, query: Query, seed: u64) -> Result<Vec<PairRecord>, SetError> {
+        match self {
+            _ if query == Query::SphereSphere => Ok(self.pairs(seed)),
+            Self::Random(count) => Ok(random::pairs(query, count, seed)),
+            Self::Hard(count) => Ok(hard::pairs(query, count, seed)),
+            Self::Diamond(_) | Self::Dense(_) => Err(SetError::SpheresAlone { set: self, query }),
         }
     }
 }

@@ -4,20 +4,20 @@ use super::{FileError, cure};
 use std::path::Path;
 
 /// A row: where it begins in the file's text, and its fields in the order of the columns asked for.
-pub struct Row<'a, const N: usize> {
+pub struct Row<'a> {
     file: &'a Path,
     text: &'a [u8],
     begin: u64,
-    columns: &'static [&'static str; N],
-    fields: [&'a str; N],
+    columns: &'a [&'static str],
+    fields: &'a [&'a str],
 }
 
 /// Reads a file whose header names exactly `columns`, in any order, and gives each row to `take`.
-pub fn read<const N: usize>(
+pub fn read(
     file: &Path,
     text: &[u8],
-    columns: &'static [&'static str; N],
-    mut take: impl FnMut(Row<'_, N>) -> Result<(), FileError>,
+    columns: &[&'static str],
+    mut take: impl FnMut(Row<'_>) -> Result<(), FileError>,
 ) -> Result<(), FileError> {
     let mut reader = csv::ReaderBuilder::new().has_headers(false).flexible(true).trim(csv::Trim::All).from_reader(text);
     let mut record = csv::StringRecord::new();
@@ -26,38 +26,39 @@ pub fn read<const N: usize>(
         return Err(FileError::Line { file: file.to_owned(), line: 1, problem });
     }
     let places = header(file, text, columns, &record)?;
+    let expected = columns.len();
     while reader.read_record(&mut record).map_err(|error| broken(file, text, error))? {
         let begin = record.position().map_or(0, csv::Position::byte);
         let line = || line_at(text, begin);
-        if let Some(problem) = cure::of_row(&record).filter(|_| record.len() != N) {
+        if let Some(problem) = cure::of_row(&record).filter(|_| record.len() != expected) {
             return Err(FileError::Line { file: file.to_owned(), line: line(), problem });
         }
-        if record.len() > N {
-            let problem = format!("{} fields under a header of {N}", record.len());
+        if record.len() > expected {
+            let problem = format!("{} fields under a header of {expected}", record.len());
             return Err(FileError::Line { file: file.to_owned(), line: line(), problem });
         }
-        let mut fields = [""; N];
+        let mut fields = vec![""; expected];
         for (i, &place) in places.iter().enumerate() {
             let missing = || FileError::Field {
                 file: file.to_owned(),
                 line: line(),
                 field: columns[i],
-                problem: format!("missing: the line has {} of {N} fields", record.len()),
+                problem: format!("missing: the line has {} of {expected} fields", record.len()),
             };
             fields[i] = record.get(place).ok_or_else(missing)?;
         }
-        take(Row { file, text, begin, columns, fields })?;
+        take(Row { file, text, begin, columns, fields: &fields })?;
     }
     Ok(())
 }
 
 /// Where each column stands.
-fn header<const N: usize>(
+fn header(
     file: &Path,
     text: &[u8],
-    columns: &'static [&'static str; N],
+    columns: &[&'static str],
     record: &csv::StringRecord,
-) -> Result<[usize; N], FileError> {
+) -> Result<Vec<usize>, FileError> {
     let line = line_at(text, record.position().map_or(0, csv::Position::byte));
     let known = |name: &str| columns.contains(&name);
     if let Some(unknown) = record.iter().find(|name| !known(name)) {
@@ -65,7 +66,7 @@ fn header<const N: usize>(
             .unwrap_or_else(|| format!("`{unknown}` is no column of this file; the header is {}", columns.join(",")));
         return Err(FileError::Line { file: file.to_owned(), line, problem });
     }
-    let mut places = [0; N];
+    let mut places = vec![0; columns.len()];
     for (place, &field) in places.iter_mut().zip(columns) {
         let mut found = record.iter().enumerate().filter(|(_, name)| *name == field);
         let problem = match (found.next(), found.next()) {
@@ -99,7 +100,7 @@ fn line_at(text: &[u8], begin: u64) -> u64 {
     1 + before.iter().chain(empty).filter(|&&byte| byte == b'\n').count() as u64
 }
 
-impl<const N: usize> Row<'_, N> {
+impl Row<'_> {
     /// The text of column `i`.
     pub fn text(&self, i: usize) -> &str {
         self.fields[i]

@@ -2,6 +2,7 @@
 //! that takes new operands in every cycle, or every few cycles with fewer operators, and never stalls.
 
 mod balance;
+mod contact;
 mod emit;
 mod guard;
 mod kernel;
@@ -9,13 +10,12 @@ mod names;
 mod range;
 mod report;
 mod share;
-mod sphere;
 mod trace;
 mod widen;
 mod wire;
 
+pub use contact::{Settings, contact_kernel, is_normal};
 pub use kernel::Kernel;
 pub use report::{KernelReport, OperatorUse};
-pub use sphere::{Settings, is_normal, sphere_kernel};
 pub use trace::{Ports, trace};
 pub use wire::{Bit, Wire};

@@ -7,8 +7,8 @@ use serde::Serialize;
 use super::table::{figure, grouped, table};
 use super::tally::{Flows, Tally};
 use crate::config::{Config, Results};
-use crate::kernel::PAIR_FIELDS;
-use crate::verify::{CONTACT_FIELDS, Mismatch};
+use crate::query::ContactRecord;
+use crate::verify::Mismatch;
 
 /// The JSON's schema. Within a number keys are only added: `CHANGELOG.md` has the rule.
 pub const SCHEMA: &str = "contact-afu/cosim/1";
@@ -113,14 +113,14 @@ impl From<&Mismatch> for MismatchFigures {
         let hex = |bits: u32| format!("{bits:08x}");
         let word = |(word, expected, got): (usize, u32, Option<u32>)| WordFigures {
             word,
-            field: CONTACT_FIELDS[word],
+            field: ContactRecord::NAMES[word],
             expected: hex(expected),
             got: got.map(hex),
         };
         Self {
             pair: mismatch.number,
             cycle: mismatch.cycle,
-            sent: PAIR_FIELDS.into_iter().zip(mismatch.pair.0.map(hex)).collect(),
+            sent: mismatch.query.shape().names().zip(mismatch.pair.0.map(hex)).collect(),
             words: mismatch.differences().map(word).collect(),
         }
     }
@@ -277,7 +277,7 @@ fn percent(share: Option<f64>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kernel::{ContactRecord, PairRecord};
+    use crate::query::{PairRecord, Query};
     use expect_test::expect;
 
     fn run() -> Run {
@@ -356,7 +356,7 @@ mod tests {
         let expected = ContactRecord([0, 0, 0, 0, 0, 0, 0x3f80_0000, 7]);
         let wrong = ContactRecord([0, 0, 0, 0, 0, 0, 0x3f80_0001, 7]);
         let pair = PairRecord::from_spheres([0.0, 0.0, 0.0, 0.5], [1.0, 0.0, -0.0, 0.5]);
-        let of = |number, cycle, got| Mismatch { number, cycle, pair, expected, got };
+        let of = |number, cycle, got| Mismatch { query: Query::SphereSphere, number, cycle, pair, expected, got };
         run.jobs[0].tally.mismatches = 2;
         run.jobs[0].mismatches = vec![of(3, Some(99), Some(wrong)), of(4, None, None)];
         run.jobs[1].failures = vec!["did not finish".to_owned()];

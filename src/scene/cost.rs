@@ -95,6 +95,7 @@ mod tests {
     use super::*;
     use crate::kernel::{Fields, Flow, PairRecord};
     use crate::pairs::Set;
+    use crate::query::Query;
 
     /// The bound is kept by depths, and by normals times the distance, on pairs of many sizes; and it is not idle.
     #[test]
@@ -132,6 +133,6 @@ mod tests {
 
     /// Nothing near the ends of binary32.
     fn ordinary(pair: &PairRecord) -> bool {
-        pair.is_valid() && (1e-30..1e30).contains(&size(pair))
+        pair.is_valid(Query::SphereSphere) && (1e-30..1e30).contains(&size(pair))
     }
 }

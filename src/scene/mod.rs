@@ -16,12 +16,12 @@ mod file;
 mod ladder;
 mod page;
 mod plan;
-mod query;
 mod read;
 mod results;
 #[cfg(feature = "ode")]
 mod run;
 mod start;
+mod still;
 mod text;
 
 pub use balance::Balance;
@@ -33,8 +33,8 @@ pub use file::{Effects, Given, Group, Pull, Scene, Shape, Start, Want};
 pub use ladder::ladder;
 pub use page::page;
 pub use plan::{Call, Plan, Row};
-pub use query::{Query, query};
 pub use results::{Energy, SCHEMA, SceneRun, Summary, Touching};
 #[cfg(feature = "ode")]
 pub use run::run;
 pub use start::check_start;
+pub use still::{Still, query};

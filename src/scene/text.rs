@@ -4,6 +4,7 @@ use super::cost::Cost;
 use super::plan::{Plan, Row};
 use super::results::SceneRun;
 use crate::pairs::npy_of_numbers;
+use crate::query::{ContactRecord, FLAGS};
 use crate::report::table::{grouped, table, words};
 
 impl Plan {
@@ -137,20 +138,13 @@ impl SceneRun {
     /// The contacts as CSV: only fields that were computed have columns.
     pub fn contacts_csv(&self) -> String {
         let fields = self.config.contact;
-        let asked = [
-            (fields.position, 0..3, ["pos_x", "pos_y", "pos_z"].as_slice()),
-            (fields.normal, 3..6, ["normal_x", "normal_y", "normal_z"].as_slice()),
-            (fields.depth, 6..7, ["depth"].as_slice()),
-        ];
-        let asked: Vec<_> = asked.into_iter().filter(|(asked, ..)| *asked).collect();
+        let numbers = || ContactRecord::words(fields).filter(|word| *word != FLAGS);
         let mut out = "step,first,second".to_owned();
-        asked.iter().flat_map(|(_, _, names)| names.iter()).for_each(|name| out += &format!(",{name}"));
+        numbers().for_each(|word| out += &format!(",{}", ContactRecord::NAMES[word]));
         out.push('\n');
         for contact in &self.contacts {
             out += &format!("{},{},{}", contact.step, contact.bodies[0], contact.bodies[1]);
-            for (_, words, _) in &asked {
-                contact.words[words.clone()].iter().for_each(|word| out += &format!(",{word}"));
-            }
+            numbers().for_each(|word| out += &format!(",{}", contact.words[word]));
             out.push('\n');
         }
         out

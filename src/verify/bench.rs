@@ -10,10 +10,11 @@ use crate::afu::{Afu, Spec, file_list, top_name};
 use crate::config::{self, Config, Results, Shell};
 use crate::cosim::spl2::Machine;
 use crate::cosim::{CosimError, Driver, File, Instance, Job, Model, Outcome, Source, Trace};
-use crate::host::{Expected, HostError, PROGRESS_CYCLES, Session, Workspace, lines};
+use crate::host::{Expected, HostError, PROGRESS_CYCLES, Session, Workspace};
 use crate::kernel::{PairRecord, Reference};
 use crate::link::spl2::{Spl2, Spl2Model};
 use crate::link::{Link, LinkModel, Traffic};
+use crate::record::pack;
 
 /// Its parameter that says how many SCPUs.
 const SCPUS: &str = "SCPUS";
@@ -207,7 +208,7 @@ impl Bench {
         progress: &mut dyn FnMut(Traffic),
     ) -> Result<Outcome, VerifyError> {
         let layout = &self.expected.layout;
-        let source = lines::pack(layout, pairs);
+        let source = pack(layout, pairs);
         let mut job = Job::new(&source, pairs.len() as u32, layout.destination_lines(pairs.len() as u64));
         job.scpus = Some(self.config.scpus);
         let only_hits = self.config.results == Results::Hits;

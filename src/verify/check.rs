@@ -4,12 +4,12 @@ use std::fmt;
 
 use super::mismatch::Mismatch;
 use super::replay::Setup;
-use crate::afu::Layout;
 use crate::config::{Config, Results};
 use crate::cosim::Outcome;
-use crate::host::lines::Contacts;
 use crate::host::received::{Records, by_pair};
-use crate::kernel::{ContactRecord, Fields, Flow, PairRecord, settle};
+use crate::kernel::settle;
+use crate::query::{ContactRecord, Fields, Flow, PairRecord, Query};
+use crate::record::{Contacts, Layout};
 
 /// Mismatches that a verdict's text shows in full.
 const SHOWN: usize = 3;
@@ -114,7 +114,7 @@ pub(super) fn check(
     if let Some(error) = outcome.job_error() {
         failed_checks.push(format!("the job ended with error {} ({error:?})", outcome.error));
     }
-    let job = Job { pairs, reference, memory: &memory, outcome: &outcome };
+    let job = Job { query: layout.query(), pairs, reference, memory: &memory, outcome: &outcome };
     let received = if layout.number_bits() > 0 { job.hits(&mut failed_checks) } else { job.all() };
     if !memory.rest_is_zero(received.records) {
         failed_checks.push("unused bits of the destination lines are not zero".to_owned());
@@ -128,6 +128,7 @@ pub(super) fn check(
 
 /// What is compared with what.
 struct Job<'a> {
+    query: Query,
     pairs: &'a [PairRecord],
     reference: &'a [ContactRecord],
     memory: &'a Contacts<'a>,
@@ -153,7 +154,7 @@ impl Job<'_> {
         got: Option<ContactRecord>,
     ) -> Mismatch {
         let written = |index| self.outcome.write_cycles.get(self.memory.line(index)).copied().flatten();
-        Mismatch { number, cycle: index.and_then(written), pair: self.pairs[number], expected, got }
+        Mismatch { query: self.query, number, cycle: index.and_then(written), pair: self.pairs[number], expected, got }
     }
 
     /// A record for each pair.
@@ -302,7 +303,8 @@ mod tests {
         let expected = Reference::new(Format::WIDE, config.contact).run_all(&[pair])[0];
         let mut got = expected;
         got.0[6] = 1;
-        let mismatch = |number| Mismatch { number, cycle: Some(99), pair, expected, got: Some(got) };
+        let mismatch =
+            |number| Mismatch { query: Query::SphereSphere, number, cycle: Some(99), pair, expected, got: Some(got) };
         let mut verdict = Verdict {
             setup: Setup { config, folder: None, link: LinkModel::hostile(), seed: 7 },
             pairs: 1000,

@@ -3,17 +3,17 @@
 use std::collections::HashSet;
 use std::path::Path;
 
-use crate::kernel::PairRecord;
 use crate::pairs::{FileError, Loaded, read_with_notes, write_pairs};
+use crate::query::{PairRecord, Query};
 
 /// The pairs of the corpus `file`; none where there is no such file.
 ///
 /// # Errors
 /// When there is one that cannot be read or is no CSV or npy file of pairs.
-pub fn read(file: &Path) -> Result<Loaded, FileError> {
+pub fn read(query: Query, file: &Path) -> Result<Loaded, FileError> {
     match file.try_exists() {
         Ok(false) => Ok(Loaded { pairs: Vec::new(), rounded: None }),
-        _ => read_with_notes(file),
+        _ => read_with_notes(query, file),
     }
 }
 
@@ -22,14 +22,14 @@ pub fn read(file: &Path) -> Result<Loaded, FileError> {
 ///
 /// # Errors
 /// As [`read`], and when it cannot be written.
-pub fn join(file: &Path, pairs: impl IntoIterator<Item = PairRecord>) -> Result<usize, FileError> {
-    let mut corpus = read(file)?.pairs;
+pub fn join(query: Query, file: &Path, pairs: impl IntoIterator<Item = PairRecord>) -> Result<usize, FileError> {
+    let mut corpus = read(query, file)?.pairs;
     let mut known: HashSet<PairRecord> = corpus.iter().copied().collect();
     let before = corpus.len();
     corpus.extend(pairs.into_iter().filter(|pair| known.insert(*pair)));
     let added = corpus.len() - before;
     if added > 0 {
-        write_pairs(file, &corpus)?;
+        write_pairs(query, file, &corpus)?;
     }
     Ok(added)
 }
@@ -43,11 +43,11 @@ mod tests {
         let room = tempfile::tempdir().expect("a temporary folder");
         let file = room.path().join("corpus.csv");
         let pair = |x: f32| PairRecord::from_spheres([x, 0.0, 0.0, 1.0], [0.0, f32::NAN, -0.0, 1e-45]);
-        assert_eq!(read(&file).expect("no file is no pairs").pairs, []);
-        assert_eq!(join(&file, []).expect("nothing to write"), 0);
+        assert_eq!(read(Query::SphereSphere, &file).expect("no file is no pairs").pairs, []);
+        assert_eq!(join(Query::SphereSphere, &file, []).expect("nothing to write"), 0);
         assert!(!file.exists());
-        assert_eq!(join(&file, [pair(1.0), pair(2.0), pair(1.0)]).expect("written"), 2);
-        assert_eq!(join(&file, [pair(2.0), pair(3.0)]).expect("written"), 1);
-        assert_eq!(read(&file).expect("as written").pairs, [pair(1.0), pair(2.0), pair(3.0)]);
+        assert_eq!(join(Query::SphereSphere, &file, [pair(1.0), pair(2.0), pair(1.0)]).expect("written"), 2);
+        assert_eq!(join(Query::SphereSphere, &file, [pair(2.0), pair(3.0)]).expect("written"), 1);
+        assert_eq!(read(Query::SphereSphere, &file).expect("as written").pairs, [pair(1.0), pair(2.0), pair(3.0)]);
     }
 }

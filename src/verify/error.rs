@@ -1,11 +1,12 @@
 //! Why there is no verdict.
 
-use crate::afu::{BuildError, OtherRadius};
+use crate::afu::BuildError;
 use crate::config::ReadError;
 use crate::cosim::CosimError;
 use crate::cosim::drive::DriveError;
 use crate::host::{HostError, TransportError};
 use crate::link::LinkError;
+use crate::record::OtherRadius;
 
 /// Why there is no verdict. (A mismatch is a verdict.)
 #[derive(Debug, thiserror::Error)]

@@ -2,15 +2,14 @@
 
 use std::fmt;
 
-use crate::kernel::{ContactRecord, Flow, PAIR_FIELDS, PairRecord};
-
-/// The words of a contact record, in order.
-pub const CONTACT_FIELDS: [&str; 8] = ["pos_x", "pos_y", "pos_z", "normal_x", "normal_y", "normal_z", "depth", "flags"];
+use crate::query::{ContactRecord, Flow, PairRecord, Query};
 
 /// One record that is not what it should be. As text it is a paragraph: the pair, and the words that differ, in hex and
 /// value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Mismatch {
+    /// What was asked of the pair.
+    pub query: Query,
     /// The pair's number in its job, from 0.
     pub number: usize,
     /// The cycle of the job in which its line was last written; none: it never was.
@@ -36,33 +35,29 @@ impl Mismatch {
 
 impl fmt::Display for Mismatch {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { number, cycle, pair, expected, got } = self;
+        let Self { query, number, cycle, pair, .. } = self;
         write!(f, "pair {number}, ")?;
         match cycle {
             Some(cycle) => write!(f, "written in cycle {cycle}")?,
             None => f.write_str("never written")?,
         }
         let word = |bits: u32| format!("{bits:08x} ({:?})", f32::from_bits(bits));
-        for (name, bits) in PAIR_FIELDS.into_iter().zip(pair.0) {
+        for (name, bits) in query.shape().names().zip(pair.0) {
             write!(f, "\n  {name:<9} {}", word(bits))?;
         }
-        for (index, _, _) in self.differences() {
-            let name = CONTACT_FIELDS[index];
-            let shown = |record: &ContactRecord| match name {
-                "flags" => format!("{:08x} ({})", record.0[index], flow(record)),
-                _ => word(record.0[index]),
-            };
-            write!(f, "\n  {name:<9} expected {}", shown(expected))?;
+        let told = |name: &str, bits: u32| match name {
+            "flags" => format!("{bits:08x} ({})", ContactRecord::of_flags(bits).flow().map_or("no flow", Flow::name)),
+            _ => word(bits),
+        };
+        for (index, expected, got) in self.differences() {
+            let name = ContactRecord::NAMES[index];
+            write!(f, "\n  {name:<9} expected {}", told(name, expected))?;
             if let Some(got) = got {
-                write!(f, ", got {}", shown(got))?;
+                write!(f, ", got {}", told(name, got))?;
             }
         }
         Ok(())
     }
-}
-
-fn flow(record: &ContactRecord) -> &'static str {
-    record.flow().map_or("no flow", Flow::name)
 }
 
 #[cfg(test)]
@@ -77,7 +72,8 @@ mod tests {
         let mut got = expected;
         got.0[6] = 1;
         got.0[7] = 2;
-        let mismatch = Mismatch { number: 3, cycle: Some(99), pair, expected, got: Some(got) };
+        let mismatch =
+            Mismatch { query: Query::SphereSphere, number: 3, cycle: Some(99), pair, expected, got: Some(got) };
         expect![[r#"
             pair 3, written in cycle 99
               x1        00000000 (0.0)

@@ -14,5 +14,5 @@ pub use bench::{Bench, Origin, Progress, rtl_sha256};
 pub use check::Verdict;
 pub use engine::{BenchEngine, Disagreement, Totals};
 pub use error::VerifyError;
-pub use mismatch::{CONTACT_FIELDS, Mismatch};
+pub use mismatch::Mismatch;
 pub use replay::{Command, Setup};

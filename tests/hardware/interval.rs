@@ -1,10 +1,11 @@
 //! The sphere kernel at intervals above 1 against the reference kernel, bit for bit: fewer operators, the same words.
 
 use contact_afu::hdl::{DelayModel, Evaluator, Module};
-use contact_afu::kernel::{Arithmetic, ContactRecord, Fields, Flow, PAIR_FIELDS, PairRecord, Reference};
+use contact_afu::kernel::{Arithmetic, ContactRecord, Fields, Flow, PairRecord, Reference};
 use contact_afu::number::Format;
 use contact_afu::pairs::Set;
-use contact_afu::pipeline::{KernelReport, Settings, sphere_kernel};
+use contact_afu::pipeline::{KernelReport, Settings, contact_kernel};
+use contact_afu::query::Query;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use std::sync::Arc;
@@ -13,7 +14,8 @@ const OUTPUTS: [&str; 7] = ["pos_x", "pos_y", "pos_z", "normal_x", "normal_y", "
 
 fn kernel(arithmetic: Arithmetic, fields: Fields, interval: u32) -> Arc<Module> {
     let (record, model) = (arithmetic.record(Format::BINARY32), DelayModel::default());
-    sphere_kernel(&Settings {
+    contact_kernel(&Settings {
+        query: Query::SphereSphere,
         arithmetic,
         record,
         fields,
@@ -30,7 +32,7 @@ fn kernel(arithmetic: Arithmetic, fields: Fields, interval: u32) -> Arc<Module> 
 /// before the first, there is nonsense on its inputs.
 fn run(module: &Arc<Module>, interval: u64, pairs: &[PairRecord], random: &mut impl RngExt) -> Vec<ContactRecord> {
     let mut evaluator = Evaluator::new(module, &[]).unwrap();
-    let inputs = PAIR_FIELDS.map(|name| evaluator.pin(name).unwrap());
+    let inputs: Vec<_> = Query::SphereSphere.shape().names().map(|name| evaluator.pin(name).unwrap()).collect();
     let [take, valid] = ["take", "valid"].map(|name| evaluator.pin(name).unwrap());
     let outputs = OUTPUTS.map(|name| evaluator.pin(name));
     let [hit, coincident, invalid] = ["hit", "grazing", "invalid_pair"].map(|name| evaluator.pin(name).unwrap());
@@ -54,13 +56,14 @@ fn run(module: &Arc<Module>, interval: u64, pairs: &[PairRecord], random: &mut i
         let is_there = begun > 0 && cycle < entries[begun - 1] + interval;
         let pair = if is_there { pairs[begun - 1] } else { PairRecord(std::array::from_fn(|_| random.random())) };
         inputs.iter().zip(pair.0).for_each(|(pin, word)| evaluator.write(*pin, word.into()));
-        evaluator.write(valid, if is_there { pair.is_valid().into() } else { random.random_range(0..2) });
+        evaluator
+            .write(valid, if is_there { pair.is_valid(Query::SphereSphere).into() } else { random.random_range(0..2) });
         evaluator.write(take, u64::from(entries.get(begun) == Some(&(cycle + 1))));
         if entries.get(contacts.len()) == Some(&cycle.wrapping_sub(latency)) {
             let pair = &pairs[contacts.len()];
             let mut words = outputs.map(|pin| pin.map_or(0, |pin| evaluator.read(pin) as u32)).to_vec();
-            assert_eq!(evaluator.read(invalid) == 0, pair.is_valid(), "{pair:?}");
-            let flow = match (pair.is_valid(), evaluator.read(hit), evaluator.read(coincident)) {
+            assert_eq!(evaluator.read(invalid) == 0, pair.is_valid(Query::SphereSphere), "{pair:?}");
+            let flow = match (pair.is_valid(Query::SphereSphere), evaluator.read(hit), evaluator.read(coincident)) {
                 (false, ..) => Flow::Invalid,
                 (true, 0, _) => Flow::Fake,
                 (true, _, 0) => Flow::Real,

@@ -1,10 +1,11 @@
 //! The sphere kernel's pipeline against the reference kernel, bit for bit, a new pair in every cycle.
 
 use contact_afu::hdl::{DelayModel, Evaluator, Module};
-use contact_afu::kernel::{Arithmetic, ContactRecord, Fields, Flow, PAIR_FIELDS, PairRecord, Reference, narrow, widen};
+use contact_afu::kernel::{Arithmetic, ContactRecord, Fields, Flow, PairRecord, Reference, narrow, widen};
 use contact_afu::number::Format;
 use contact_afu::pairs::Set;
-use contact_afu::pipeline::{KernelReport, Settings, sphere_kernel};
+use contact_afu::pipeline::{KernelReport, Settings, contact_kernel};
+use contact_afu::query::Query;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use std::ops::Range;
@@ -23,7 +24,8 @@ fn kernel_of(arithmetic: Arithmetic, fields: Fields) -> Arc<Module> {
 fn kernel_in(arithmetic: Arithmetic, fields: Fields, record: Format) -> Arc<Module> {
     let model = DelayModel::default();
     let record = arithmetic.record(record);
-    sphere_kernel(&Settings {
+    contact_kernel(&Settings {
+        query: Query::SphereSphere,
         arithmetic,
         record,
         fields,
@@ -43,9 +45,9 @@ fn run(module: &Arc<Module>, pairs: &[PairRecord]) -> Vec<ContactRecord> {
 
 /// The same of a pipeline whose words are in `record`, widened.
 fn run_in(module: &Arc<Module>, pairs: &[PairRecord], record: Format) -> Vec<ContactRecord> {
-    let is_valid = |pair: &PairRecord| pair.rounded(record).is_valid();
+    let is_valid = |pair: &PairRecord| pair.rounded(record).is_valid(Query::SphereSphere);
     let mut evaluator = Evaluator::new(module, &[]).unwrap();
-    let inputs = PAIR_FIELDS.map(|name| evaluator.pin(name).unwrap());
+    let inputs: Vec<_> = Query::SphereSphere.shape().names().map(|name| evaluator.pin(name).unwrap()).collect();
     let valid = evaluator.pin("valid").unwrap();
     let outputs = OUTPUTS.map(|name| evaluator.pin(name));
     let [hit, coincident] = ["hit", "grazing"].map(|name| evaluator.pin(name).unwrap());

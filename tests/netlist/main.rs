@@ -9,14 +9,15 @@ mod simulate;
 mod synthesise;
 mod verilated;
 
+use contact_afu::query::Query;
 use std::sync::Arc;
 
-use contact_afu::afu::Layout;
 use contact_afu::config::{Config, Profile, Shell};
 use contact_afu::hdl::{DelayModel, Module};
 use contact_afu::kernel::PairRecord;
 use contact_afu::operator::{Operator, Values};
 use contact_afu::pairs::{self, Set};
+use contact_afu::record::Layout;
 use contact_afu::synth::{Target, Unit};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -74,7 +75,7 @@ fn scpu(profile: &str, contact: &str, forms: &[As], pairs: &[PairRecord]) {
         .zip(&records)
         .map(|(pair, record)| {
             let fields = layout.contact_words().into_iter().rev().map(|word| (record.0[word].into(), 32));
-            fields.chain([(record.is_contact().into(), 1), ((!pair.is_valid()).into(), 1)]).collect()
+            fields.chain([(record.is_contact().into(), 1), ((!pair.is_valid(Query::SphereSphere)).into(), 1)]).collect()
         })
         .collect();
     let latency = unit.latency.expect("a pipeline");
@@ -133,7 +134,7 @@ fn verilated_scpu(profile: &str, form: As, pairs: &[PairRecord]) {
     let files = verilog(&unit.module, form);
     let found = verilated::scpu(&unit.module.name, &files, unit.latency.expect("a pipeline"), pairs);
     for ((pair, found), wanted) in pairs.iter().zip(&found).zip(&wanted) {
-        let flags = (wanted.is_contact(), !pair.is_valid());
+        let flags = (wanted.is_contact(), !pair.is_valid(Query::SphereSphere));
         assert_eq!(*found, (wanted.0, flags), "{}, of {pair:x?}", unit.title());
     }
     assert_eq!(found.len(), pairs.len());
@@ -142,7 +143,7 @@ fn verilated_scpu(profile: &str, form: As, pairs: &[PairRecord]) {
 
 fn corpus_and_mixed(count: u64) -> Vec<PairRecord> {
     let corpus = concat!(env!("CARGO_MANIFEST_DIR"), "/tb/corpus/hard.csv");
-    let mut pairs = pairs::read_pairs(corpus.as_ref()).expect("the corpus");
+    let mut pairs = pairs::read_pairs(Query::SphereSphere, corpus.as_ref()).expect("the corpus");
     pairs.extend(mixed(count));
     pairs
 }

@@ -3,6 +3,7 @@
 use contact_afu::kernel::{ContactRecord, Fields, Filtered, Flow, PairRecord, Reference, Truth, exact, ulp};
 use contact_afu::number::{Format, Precise};
 use contact_afu::pairs::{CATEGORIES, Set, read_pairs};
+use contact_afu::query::Query;
 use std::path::Path;
 
 const EXACT: Reference = Reference::exact(Fields::ALL);
@@ -38,7 +39,8 @@ fn every_category_is_right() {
 
 #[test]
 fn the_corpus_is_right() {
-    let corpus = read_pairs(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tb/corpus/hard.csv")).expect("the corpus");
+    let corpus = read_pairs(Query::SphereSphere, &Path::new(env!("CARGO_MANIFEST_DIR")).join("tb/corpus/hard.csv"))
+        .expect("the corpus");
     let swapped = corpus.iter().map(|pair| {
         let [x1, y1, z1, r1, x2, y2, z2, r2] = pair.0;
         PairRecord([x2, y2, z2, r2, x1, y1, z1, r1])
@@ -80,7 +82,7 @@ fn swapping_the_spheres_negates_the_normal() {
 fn fields_and_invalid_pairs() {
     for pair in Set::Random(20_000).pairs(4) {
         let whole = EXACT.run(&pair);
-        assert_eq!(pair.is_valid(), whole.flow() != Some(Flow::Invalid), "{pair:?}");
+        assert_eq!(pair.is_valid(Query::SphereSphere), whole.flow() != Some(Flow::Invalid), "{pair:?}");
         let mut part = Reference::exact(Fields { normal: false, ..Fields::ALL }).run(&pair);
         part.0[3..6].copy_from_slice(&whole.0[3..6]);
         assert_eq!(part, whole, "{pair:?}");
@@ -92,8 +94,8 @@ fn fields_and_invalid_pairs() {
 fn the_kernel_is_the_same_contact() {
     for pair in Set::Hard(5_100).pairs(6) {
         let truth = Truth::of(&pair);
-        let spheres = pair.read(|word| Precise::from_f64(f32::from_bits(word).into()));
-        let Filtered { contact, unsettled } = exact(spheres, true, Format::BINARY32, Fields::ALL);
+        let word = |word: usize| Precise::from_f64(f32::from_bits(pair.0[word]).into());
+        let Filtered { contact, unsettled } = exact(word, true, Format::BINARY32, Fields::ALL);
         assert!(!unsettled, "nothing is in doubt");
         assert_eq!(contact.hit, truth.is_contact(), "{pair:?}");
         if truth.flow() == Flow::Real {

@@ -6,6 +6,7 @@ use contact_afu::accuracy::{Answer, Judgement, Standard, judge};
 use contact_afu::kernel::{ContactRecord, Fields, Flow, PairRecord, Reference, Truth, UlpErrors, ulp};
 use contact_afu::number::Format;
 use contact_afu::pairs::{CATEGORIES, Set, read_pairs};
+use contact_afu::query::Query;
 use std::path::{Path, PathBuf};
 
 const WIDE: Reference = Reference::new(Format::WIDE, Fields::ALL);
@@ -19,7 +20,7 @@ fn corpus_file() -> PathBuf {
 fn corpus() -> Vec<(String, PairRecord)> {
     let text = std::fs::read_to_string(corpus_file()).expect("the corpus");
     let names = text.lines().skip(1).map(|line| line.split(',').next().expect("a name").to_owned());
-    let pairs = read_pairs(&corpus_file()).expect("the corpus");
+    let pairs = read_pairs(Query::SphereSphere, &corpus_file()).expect("the corpus");
     assert_eq!(names.clone().count(), pairs.len());
     names.zip(pairs).collect()
 }
@@ -99,7 +100,7 @@ fn wide_never_fails_grossly() {
         assert!(!found.bad, "{what}: {pair:?}: {wide:?}: {found:?}");
         *failures_of_paper += u32::from(judge(&standard, &Answer::from(paper)).bad);
         let flow = paper.flow().expect("flags of a kernel");
-        assert!(wide == paper || raises(pair, flow), "{what}: {pair:?}");
+        assert!(wide == paper || raises(Query::SphereSphere, pair, flow), "{what}: {pair:?}");
     };
     for (name, pair) in corpus() {
         for pair in [pair, swapped(&pair)] {
@@ -122,7 +123,10 @@ fn wide_never_fails_grossly_in_a_million_pairs() {
         for pair in Set::Hard(part.end).pairs(4).drain(part.start as usize..) {
             let (wide, paper) = (WIDE.run(&pair), PAPER.run(&pair));
             assert!(!judged(&pair, wide).bad, "{pair:?}: {wide:?}");
-            assert!(wide == paper || raises(&pair, paper.flow().expect("flags of a kernel")), "{pair:?}");
+            assert!(
+                wide == paper || raises(Query::SphereSphere, &pair, paper.flow().expect("flags of a kernel")),
+                "{pair:?}"
+            );
         }
     });
 }
@@ -136,7 +140,8 @@ fn check_symmetry(reference: &Reference, pair: &PairRecord, most: &mut f64) {
         return;
     }
     assert_eq!(there.0[6], back.0[6], "depth of {pair:?}");
-    let in_range = *reference == WIDE || !(raises(pair, Flow::Real) || raises(&swapped(pair), Flow::Real));
+    let in_range = *reference == WIDE
+        || !(raises(Query::SphereSphere, pair, Flow::Real) || raises(Query::SphereSphere, &swapped(pair), Flow::Real));
     for axis in 0..3 {
         let (n, m) = (there.0[3 + axis], back.0[3 + axis]);
         let same = n == m ^ 0x8000_0000 || (n | m) << 1 == 0 || n == m && f32::from_bits(n).is_nan();

@@ -4,6 +4,7 @@
 use crate::support::watched::raises;
 use contact_afu::config::Profile;
 use contact_afu::kernel::{ContactRecord, Fields, Flow, PairRecord, Truth, ulp};
+use contact_afu::query::Query;
 use proptest::prelude::*;
 use proptest::test_runner::{TestError, TestRunner};
 
@@ -82,7 +83,7 @@ fn in_each_profile<T: std::fmt::Debug>(
             let found = kernel.run(&pair);
             if kernel.name == "paper" {
                 let flow = found.flow().expect("flags of a kernel");
-                prop_assert!(!raises(&pair, flow), "these scales are within binary32");
+                prop_assert!(!raises(Query::SphereSphere, &pair, flow), "these scales are within binary32");
             }
             let tells = check(&kernel, pair, &more)?;
             let mut counts = counts.borrow_mut();

@@ -3,6 +3,7 @@
 use contact_afu::kernel::{ContactRecord, Fields, PairRecord, Reference};
 use contact_afu::number::Format;
 use contact_afu::pairs::{self, Set};
+use contact_afu::query::Query;
 use std::fs;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
@@ -28,12 +29,12 @@ fn pairs_survive_both_formats() {
     for set in [Set::Diamond(3), Set::Random(20_000), Set::Random(0)] {
         let expected = set.pairs(3);
         let npy = folder.path().join("pairs.npy");
-        pairs::write_pairs(&npy, &expected).unwrap();
-        assert_eq!(pairs::read_pairs(&npy).unwrap(), expected);
+        pairs::write_pairs(Query::SphereSphere, &npy, &expected).unwrap();
+        assert_eq!(pairs::read_pairs(Query::SphereSphere, &npy).unwrap(), expected);
         let csv = folder.path().join("pairs.csv");
-        pairs::write_pairs(&csv, &expected).unwrap();
+        pairs::write_pairs(Query::SphereSphere, &csv, &expected).unwrap();
         let canonical: Vec<_> = expected.iter().map(|pair| PairRecord(pair.0.map(canonical))).collect();
-        assert_eq!(pairs::read_pairs(&csv).unwrap(), canonical);
+        assert_eq!(pairs::read_pairs(Query::SphereSphere, &csv).unwrap(), canonical);
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2, "nothing is left beside the files");
     }
 }
@@ -84,7 +85,7 @@ fn csv_is_plain_to_read() {
     let folder = folder();
     let file = folder.path().join("pairs.csv");
     let pair = PairRecord::from_spheres([0.1, -0.0, 1e-45, f32::MAX], [16_777_216.0, f32::NAN, f32::INFINITY, 1.0]);
-    pairs::write_pairs(&file, &[pair]).unwrap();
+    pairs::write_pairs(Query::SphereSphere, &file, &[pair]).unwrap();
     let expected = "x1,y1,z1,r1,x2,y2,z2,r2\n0.1,-0,1e-45,3.4028235e38,16777216,NaN,inf,1\n";
     assert_eq!(fs::read_to_string(&file).unwrap(), expected);
 
@@ -103,7 +104,7 @@ fn columns_stand_in_any_order_and_spaces_do_not_count() {
     let folder = folder();
     let file = put(&folder, "pairs.csv", "\u{feff}r2, r1,x1,y1,z1,x2,y2,z2\r\n8, 4,1,2,3,5,6,+7e0\r\n");
     let expected = PairRecord::from_spheres([1.0, 2.0, 3.0, 4.0], [5.0, 6.0, 7.0, 8.0]);
-    assert_eq!(pairs::read_pairs(&file).unwrap(), [expected]);
+    assert_eq!(pairs::read_pairs(Query::SphereSphere, &file).unwrap(), [expected]);
 }
 
 /// Our npy files are another library's too, and the other way round.
@@ -113,7 +114,7 @@ fn npy_is_understood_by_another_library() {
     let folder = folder();
     let expected = Set::Diamond(3).pairs(0);
     let ours = folder.path().join("ours.npy");
-    pairs::write_pairs(&ours, &expected).unwrap();
+    pairs::write_pairs(Query::SphereSphere, &ours, &expected).unwrap();
     let read = npyz::NpyFile::new(fs::File::open(&ours).unwrap()).unwrap();
     assert_eq!(read.shape(), [132, 8]);
     let values: Vec<f32> = read.into_vec().unwrap();
@@ -124,10 +125,14 @@ fn npy_is_understood_by_another_library() {
     let mut writer = npyz::WriteOptions::new().default_dtype().shape(&[132, 8]).writer(out).begin_nd().unwrap();
     writer.extend(expected.iter().flat_map(|pair| pair.values())).unwrap();
     writer.finish().unwrap();
-    assert_eq!(pairs::read_pairs(&theirs).unwrap(), expected);
+    assert_eq!(pairs::read_pairs(Query::SphereSphere, &theirs).unwrap(), expected);
 }
 
 const HEADER: &str = "x1,y1,z1,r1,x2,y2,z2,r2\n";
+
+fn spheres(file: &Path) -> Result<Vec<PairRecord>, pairs::FileError> {
+    pairs::read_pairs(Query::SphereSphere, file)
+}
 
 /// The one line that a wrong file gives, its folder left out.
 fn complaint<T: std::fmt::Debug>(read: fn(&Path) -> Result<T, pairs::FileError>, file: &Path) -> String {
@@ -160,10 +165,10 @@ fn a_wrong_csv_is_named_by_line_and_field() {
         (format!("{HEADER}1,2,3,4,5,6,7,1e39\n"), ", line 2, field r2: `1e39` is beyond the largest binary32 number"),
     ] {
         let file = put(&folder, "pairs.csv", &text);
-        assert_eq!(complaint(pairs::read_pairs, &file), expected, "{text}");
+        assert_eq!(complaint(spheres, &file), expected, "{text}");
     }
     let file = put(&folder, "pairs.csv", [HEADER.as_bytes(), b"1,2,3,4,5,6,7,8\n1,\xFF,3,4,5,6,7,8\n"].concat());
-    assert_eq!(complaint(pairs::read_pairs, &file), ", line 3: not UTF-8 text");
+    assert_eq!(complaint(spheres, &file), ", line 3: not UTF-8 text");
 
     let header = "pair,flow,pos_x,pos_y,pos_z,normal_x,normal_y,normal_z,depth,invalid\n";
     for (line, expected) in [
@@ -208,7 +213,7 @@ fn a_csv_of_a_common_tool_is_refused_with_its_cure() {
         (text(HEADER.trim(), &format!("# {row}")), "line 2, field x1: `# 1` is not a number; comments are not read"),
     ] {
         let file = put(&folder, "pairs.csv", &text);
-        let said = complaint(pairs::read_pairs, &file);
+        let said = complaint(spheres, &file);
         assert!(said.contains(expected), "{text}{said}");
     }
 }
@@ -251,7 +256,7 @@ fn arrays_of_other_types_and_orders_are_converted() {
                     true => write(array, values.iter().copied()),
                     false => write(array, values.iter().map(|value| f64::from(*value))),
                 }
-                let loaded = pairs::read_with_notes(&file).unwrap();
+                let loaded = pairs::read_with_notes(Query::SphereSphere, &file).unwrap();
                 assert_eq!(loaded.pairs, expected, "{descr} {shape:?} {order:?}");
                 assert_eq!(loaded.rounded, None);
             }
@@ -269,7 +274,7 @@ fn numbers_that_binary32_does_not_have_are_rounded_with_a_note() {
     let data: Vec<u8> = values.iter().flat_map(|value| value.to_be_bytes()).collect();
     let mut bytes = npy(&header(">f8"), 0);
     bytes.extend(&data);
-    let loaded = pairs::read_with_notes(&put(&folder, "pairs.npy", &bytes)).unwrap();
+    let loaded = pairs::read_with_notes(Query::SphereSphere, &put(&folder, "pairs.npy", &bytes)).unwrap();
     assert_eq!(loaded.pairs[0].values(), [1.0, 1.0, 1.0, 0.1, 1.0, 1.0, 1.0, 1.0]);
     assert_eq!(loaded.pairs[1].values()[0], 0.0);
     assert!(loaded.pairs[1].values()[7].is_nan());
@@ -281,7 +286,7 @@ fn numbers_that_binary32_does_not_have_are_rounded_with_a_note() {
     let halves = [0x3E00_u16, 0x0001, 0xFBFF, 0x7C00, 0x7E01, 0x8000, 0, 0];
     let mut bytes = npy(&header("<f2"), 0);
     bytes.extend(halves.iter().chain(&halves).flat_map(|half| half.to_le_bytes()));
-    let loaded = pairs::read_with_notes(&put(&folder, "pairs.npy", &bytes)).unwrap();
+    let loaded = pairs::read_with_notes(Query::SphereSphere, &put(&folder, "pairs.npy", &bytes)).unwrap();
     let values = loaded.pairs[1].values();
     assert_eq!(values[..4], [1.5, 2.0_f32.powi(-24), -65504.0, f32::INFINITY]);
     assert!(values[4].is_nan() && values[5].to_bits() == 0x8000_0000);
@@ -321,14 +326,14 @@ fn a_wrong_npy_is_named_by_field() {
         ),
     ] {
         let file = put(&folder, "pairs.npy", &bytes);
-        assert_eq!(complaint(pairs::read_pairs, &file), expected);
+        assert_eq!(complaint(spheres, &file), expected);
     }
     let mut beyond = array("<f8", "False", "(1, 2, 4)", 64);
     let at = beyond.len() - 16;
     beyond[at..at + 8].copy_from_slice(&(-1e39_f64).to_le_bytes());
     let file = put(&folder, "pairs.npy", beyond);
     let expected = ", data: -1e39, z2 of pair 0, is beyond the largest binary32 number";
-    assert_eq!(complaint(pairs::read_pairs, &file), expected);
+    assert_eq!(complaint(spheres, &file), expected);
     let file = put(&folder, "contacts.npy", array("<f4", "False", "(1, 8)", 32));
     assert_eq!(complaint(pairs::read_contacts, &file), ", descr: '<f4' should be '<u4'");
 }
@@ -337,15 +342,22 @@ fn a_wrong_npy_is_named_by_field() {
 fn an_absent_file_and_a_strange_name_are_refused() {
     let folder = folder();
     for name in ["absent.csv", "absent.npy"] {
-        let complaint = complaint(pairs::read_pairs, &folder.path().join(name));
+        let complaint = complaint(spheres, &folder.path().join(name));
         assert!(complaint.starts_with(": cannot be read: "), "{complaint}");
     }
     let strange = folder.path().join("pairs.txt");
-    assert_eq!(complaint(pairs::read_pairs, &strange), ": the name must end in .csv or .npy");
-    assert!(pairs::write_pairs(&strange, &[]).is_err());
+    assert_eq!(complaint(spheres, &strange), ": the name must end in .csv or .npy");
+    assert!(pairs::write_pairs(Query::SphereSphere, &strange, &[]).is_err());
     let error = pairs::write_contacts(&folder.path().join("no/such/folder.csv"), &[ContactRecord::default()]);
     assert!(error.unwrap_err().to_string().contains("cannot be written"));
-    assert!(pairs::load("diamond:x", 0).unwrap_err().to_string().contains("`x` must be a number from 1 to 100"));
-    assert!(pairs::load("diamnd:3", 0).unwrap_err().to_string().ends_with("did you mean diamond:3?"));
-    assert_eq!(pairs::load("diamond:3", 0).unwrap().len(), 132);
+    assert!(
+        pairs::load(Query::SphereSphere, "diamond:x", 0)
+            .unwrap_err()
+            .to_string()
+            .contains("`x` must be a number from 1 to 100")
+    );
+    assert!(
+        pairs::load(Query::SphereSphere, "diamnd:3", 0).unwrap_err().to_string().ends_with("did you mean diamond:3?")
+    );
+    assert_eq!(pairs::load(Query::SphereSphere, "diamond:3", 0).unwrap().len(), 132);
 }

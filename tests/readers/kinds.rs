@@ -1,5 +1,6 @@
 //! Every kind of file that is read: right ones, and what reads them.
 
+use contact_afu::query::Query;
 use std::fs;
 use std::path::Path;
 
@@ -8,7 +9,7 @@ use contact_afu::accuracy::{self, Task};
 use contact_afu::config::{self, Config, Profile, Results, Shell};
 use contact_afu::kernel::ContactRecord;
 use contact_afu::link::{Description, Link, LinkModel};
-use contact_afu::scene::{Plan, Query, Scene};
+use contact_afu::scene::{Plan, Scene, Still};
 use contact_afu::synth::{self, Figures};
 use contact_afu::{pairs, report, sweep};
 use serde_json::{Value, json};
@@ -55,7 +56,7 @@ fn arrays(pairs: &[contact_afu::kernel::PairRecord]) -> Vec<Vec<u8>> {
 
 /// Pairs and contacts.
 fn of_pairs(room: &Path) -> Vec<Kind> {
-    let some = pairs::load("random:6", 3).unwrap();
+    let some = pairs::load(Query::SphereSphere, "random:6", 3).unwrap();
     let contacts: Vec<_> = some.iter().map(|pair| ContactRecord(pair.0)).collect();
     let real = Config::default();
     let real = contact_afu::kernel::Reference::new(real.profile.format(), real.contact).run_all(&some);
@@ -66,19 +67,27 @@ fn of_pairs(room: &Path) -> Vec<Kind> {
     };
     let corpus = file("tb/corpus/hard.csv");
     let lines: Vec<&[u8]> = corpus.split_inclusive(|&byte| byte == b'\n').take(12).collect();
-    let pairs = |path: &Path| pairs::read_pairs(path).is_ok();
+    let pairs = |path: &Path| pairs::read_pairs(Query::SphereSphere, path).is_ok();
     let records = |path: &Path| pairs::read_contacts(path).is_ok();
     vec![
         Kind {
             name: "pairs.csv",
             form: Form::Csv,
-            seeds: [written("a.csv", &|path| pairs::write_pairs(path, &some).unwrap()), vec![lines.concat()]].concat(),
+            seeds: [
+                written("a.csv", &|path| pairs::write_pairs(Query::SphereSphere, path, &some).unwrap()),
+                vec![lines.concat()],
+            ]
+            .concat(),
             read: pairs,
         },
         Kind {
             name: "pairs.npy",
             form: Form::Bytes,
-            seeds: [written("a.npy", &|path| pairs::write_pairs(path, &some).unwrap()), arrays(&some)].concat(),
+            seeds: [
+                written("a.npy", &|path| pairs::write_pairs(Query::SphereSphere, path, &some).unwrap()),
+                arrays(&some),
+            ]
+            .concat(),
             read: pairs,
         },
         Kind {
@@ -113,7 +122,7 @@ fn of_users(room: &Path) -> Vec<Kind> {
     let spheres = |path: &Path| {
         let scene =
             Scene::read(&path.with_extension(if path.ends_with("spheres.csv") { "csv.toml" } else { "ply.toml" }));
-        scene.is_ok_and(|scene| Query::of(&scene).is_ok())
+        scene.is_ok_and(|scene| Still::of(&scene).is_ok())
     };
     let ply = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nproperty float \
                radius\nend_header\n0 1 2 0.5\n3 4 5 1.5\n";

@@ -6,6 +6,7 @@
 mod kinds;
 mod mutate;
 
+use contact_afu::query::Query;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::fs;
 use std::path::Path;
@@ -97,9 +98,10 @@ fn declared_sizes_are_not_believed() {
                 text.extend((declared as u16).to_le_bytes());
                 text.extend(header.bytes().chain([0; 64]));
                 fs::write(&path, &text).unwrap();
-                for read in
-                    [|path: &Path| pairs::read_pairs(path).is_ok(), |path: &Path| pairs::read_contacts(path).is_ok()]
-                {
+                for read in [
+                    |path: &Path| pairs::read_pairs(Query::SphereSphere, path).is_ok(),
+                    |path: &Path| pairs::read_contacts(path).is_ok(),
+                ] {
                     let before = USED.load(Relaxed);
                     MOST.store(before, Relaxed);
                     let accepted = read(&path);
@@ -115,5 +117,5 @@ fn declared_sizes_are_not_believed() {
     let header = "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 8), }\n";
     let length = (header.len() as u16).to_le_bytes();
     fs::write(&path, [&b"\x93NUMPY\x01\x00"[..], &length[..], header.as_bytes(), &[0; 64][..]].concat()).unwrap();
-    assert_eq!(pairs::read_pairs(&path).unwrap().len(), 2);
+    assert_eq!(pairs::read_pairs(Query::SphereSphere, &path).unwrap().len(), 2);
 }

@@ -5,6 +5,7 @@
 mod adopt;
 mod cocotb;
 
+use contact_afu::query::Query;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -240,8 +241,8 @@ fn reference(config: &Config, pairs: &[PairRecord]) -> (Vec<String>, [i64; 3]) {
     let records = Reference::new(config.profile.format(), config.contact).run_all(pairs);
     let lines = records.chunks(2).map(|line| hex_line(&line.iter().flat_map(|record| record.0).collect::<Vec<_>>()));
     let contacts = records.iter().filter(|record| record.is_contact()).count();
-    let invalid = pairs.iter().filter(|pair| !pair.is_valid()).count();
-    let first = pairs.iter().position(|pair| !pair.is_valid()).map_or(-1, |number| number as i64);
+    let invalid = pairs.iter().filter(|pair| !pair.is_valid(Query::SphereSphere)).count();
+    let first = pairs.iter().position(|pair| !pair.is_valid(Query::SphereSphere)).map_or(-1, |number| number as i64);
     (lines.collect(), [contacts as i64, invalid as i64, first])
 }
 
@@ -250,7 +251,7 @@ fn icarus_gives_the_reference_bits() {
     for (profile, scpus) in [("wide", 3), ("paper", 2)] {
         let config = Config { profile: profile.parse().unwrap(), shell: Shell::Line, ..Config::default() };
         let (folder, _) = write(&generate(config.clone()));
-        let pairs = pairs::load("random:300", 7).unwrap();
+        let pairs = pairs::load(Query::SphereSphere, "random:300", 7).unwrap();
         let (said, lines) = icarus(folder.path(), scpus, &pairs, 5);
         assert!(said.contains("done 1 error 0"), "{said}");
         assert_eq!(lines, reference(&config, &pairs).0, "{profile}");
@@ -260,8 +261,8 @@ fn icarus_gives_the_reference_bits() {
 /// The committed AFU, shell and all: two jobs, and nothing that was never reset reaches a valid output.
 #[test]
 fn icarus_gives_the_reference_bits_below_spl2() {
-    let mut pairs = pairs::load("random:300", 7).unwrap();
-    pairs.extend(pairs::load("hard:101", 7).unwrap());
+    let mut pairs = pairs::load(Query::SphereSphere, "random:300", 7).unwrap();
+    pairs.extend(pairs::load(Query::SphereSphere, "hard:101", 7).unwrap());
     let (said, lines) = icarus(&root().join("rtl"), 3, &pairs, 5);
     let (expected, [contacts, invalid, first]) = reference(&Config::shipped(), &pairs);
     assert!(contacts > 0 && invalid > 0, "all kinds");
@@ -279,7 +280,7 @@ fn icarus_gives_the_reference_bits_below_spl2() {
 /// The bench is able to fail: a register without its reset is seen, and so is a line that goes elsewhere.
 #[test]
 fn a_spoilt_shell_is_found_out() {
-    let pairs = pairs::load("random:20", 7).unwrap();
+    let pairs = pairs::load(Query::SphereSphere, "random:20", 7).unwrap();
     for (file, old, new, fault) in [
         ("afu_top.v", "wire power_on = ~reset_n;", "wire power_on = 1'b0;", "a valid is unknown"),
         (

@@ -2,6 +2,7 @@
 
 use contact_afu::kernel::{Fields, Flow, PairRecord, contact};
 use contact_afu::number::{Format, Number};
+use contact_afu::query::Query;
 use std::cell::Cell;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Sub, SubAssign};
 
@@ -102,11 +103,11 @@ impl Number for Watched {
 }
 
 /// Whether the pair's own flow in f32 overflows or underflows.
-pub fn raises(pair: &PairRecord, flow: Flow) -> bool {
+pub fn raises(query: Query, pair: &PairRecord, flow: Flow) -> bool {
     // Only a real contact computes more than the decision does.
     let fields = if flow == Flow::Real { Fields::ALL } else { Fields::HIT };
     RAISED.set(false);
-    let spheres = pair.read(|word| Watched(f32::from_bits(word)));
-    let _ = contact(spheres, true, Format::BINARY32, Format::BINARY32, fields);
+    let word = |word: usize| Watched(f32::from_bits(pair.0[word]));
+    let _ = contact(query, word, true, Format::BINARY32, Format::BINARY32, fields);
     RAISED.get()
 }

@@ -3,9 +3,9 @@
 
 use crate::kernel::{Flow, PairRecord};
 
-use super::pack::{Line, pack, pack_contacts, unpack_pairs};
 use super::shell::BenchText;
 use super::{Afu, COUNT_BITS};
+use crate::record::{Line, pack, pack_contacts, unpack_pairs};
 
 /// Spheres one in the other, beside each other, touching, far apart, equal; and what is no pair of spheres.
 const SPHERES: [([f32; 4], [f32; 4]); 13] = [

@@ -1,8 +1,9 @@
 //! The core's ports for its host: what a job is started with, and what comes of it.
 
 use super::interface;
-use crate::afu::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, JobError, Spec, timing};
+use crate::afu::{ADDRESS_BITS, EPOCH_BITS, Spec};
 use crate::config::Results;
+use crate::record::{COUNT_BITS, Capability, JobError};
 
 /// Bits of `mode`.
 const MODE_BITS: u32 = 4;
@@ -67,12 +68,5 @@ fn errors(spec: &Spec) -> String {
 }
 
 fn capability(spec: &Spec) -> String {
-    let config = &spec.config;
-    let hits = (config.results == Results::Hits).then(|| ", 24 set: only contacts come back".to_owned());
-    let radius = config.radius.map(|radius| format!(", 25 set: every sphere's radius is {radius}"));
-    let code = timing::record_code(config.record);
-    let record = (code > 0).then(|| format!(", 27:26 are {code}: words of records are {}", config.record));
-    let always =
-        "7:0 SCPUS, 15:8 interval, 19:16 fields (hit, depth, normal, position from bit 16 up), 43:32 SCPU latency";
-    [Some(always.to_owned()), hits, radius, record].into_iter().flatten().collect()
+    Capability::describe(Capability::new(&spec.config, 0).bits())
 }

@@ -13,11 +13,11 @@ pub use job::Job;
 pub use monitor::ProtocolError;
 
 use super::instance::{Clock, Instance};
-use crate::afu::Capability;
 use crate::config::Results;
 use crate::link::{Link, Traffic};
 use crate::outcome::Outcome;
 use crate::patience;
+use crate::record::Capability;
 use job::Running;
 use monitor::Monitor;
 use ports::Ports;

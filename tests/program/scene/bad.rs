@@ -78,11 +78,11 @@ fn moving_bodies_are_fewer_and_files_say_what_is_wrong_in_them() {
     ] {
         std::fs::write(&points, text).unwrap();
         let read = Scene::read(&scene).expect("the scene itself is one");
-        let error = contact_afu::scene::Query::of(&read).expect_err(expected).to_string();
+        let error = contact_afu::scene::Still::of(&read).expect_err(expected).to_string();
         assert!(error.contains(expected), "{error}");
     }
     std::fs::write(&points, "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 1\n0 0 2.5\n").unwrap();
-    let query = contact_afu::scene::Query::of(&Scene::read(&scene).unwrap()).unwrap();
+    let query = contact_afu::scene::Still::of(&Scene::read(&scene).unwrap()).unwrap();
     assert_eq!(query.balls.iter().map(|ball| ball.centre[2]).collect::<Vec<_>>(), [1.0, 2.5]);
 }
 

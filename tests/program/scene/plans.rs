@@ -11,7 +11,7 @@ use contact_afu::kernel::PairRecord;
 use contact_afu::link::LinkModel;
 use contact_afu::pairs::Set;
 #[cfg(feature = "cosim")]
-use contact_afu::scene::Query;
+use contact_afu::scene::Still;
 use contact_afu::scene::{Part, Plan};
 #[cfg(feature = "cosim")]
 use contact_afu::verify::Bench;
@@ -188,7 +188,7 @@ fn the_bytes_over_the_link_are_the_plan_s() {
     for example in super::EXAMPLES {
         let scene = scene(example);
         let plan = Plan::of(&scene).unwrap();
-        let query = Query::of(&scene).unwrap();
+        let query = Still::of(&scene).unwrap();
         let mut pairs: Vec<PairRecord> = query.pairs().into_iter().chain(Set::Random(400).pairs(2)).collect();
         if let Some(radius) = plan.config.radius {
             pairs.iter_mut().for_each(|pair| (pair.0[3], pair.0[7]) = (radius.to_bits(), radius.to_bits()));

@@ -1,6 +1,7 @@
 use contact_afu::kernel::{Flow, PairRecord};
 use contact_afu::link::LinkModel;
 use contact_afu::pairs::Set;
+use contact_afu::query::Query;
 
 /// What makes a pair invalid, and where: NaN (quiet, signalling, negative), infinities, a radius below zero.
 fn invalid(number: usize, pair: PairRecord) -> PairRecord {
@@ -24,7 +25,7 @@ fn an_invalid_pair_has_no_effect_on_its_neighbours() {
         .pairs(8)
         .into_iter()
         .chain(Set::Random(1_400).pairs(8))
-        .filter(|pair| pair.is_valid())
+        .filter(|pair| pair.is_valid(Query::SphereSphere))
         .collect();
     let mut mixed = Vec::new();
     let mut spoilt = 0;
@@ -35,8 +36,8 @@ fn an_invalid_pair_has_no_effect_on_its_neighbours() {
         }
         mixed.push(pair);
     }
-    assert!(spoilt > 5_000 && mixed.iter().filter(|pair| !pair.is_valid()).count() == spoilt);
-    let first = mixed.iter().position(|pair| !pair.is_valid()).map(|number| number as u32);
+    assert!(spoilt > 5_000 && mixed.iter().filter(|pair| !pair.is_valid(Query::SphereSphere)).count() == spoilt);
+    let first = mixed.iter().position(|pair| !pair.is_valid(Query::SphereSphere)).map(|number| number as u32);
 
     for (name, bench) in super::benches() {
         let alone = bench.run(&valid, &LinkModel::hostile(), 5).expect("a job");
@@ -47,7 +48,7 @@ fn an_invalid_pair_has_no_effect_on_its_neighbours() {
         assert_eq!((alone.outcome.invalid, alone.outcome.first_invalid), (0, None), "{name}");
         assert_eq!((together.outcome.invalid, together.outcome.first_invalid), (spoilt as u32, first), "{name}");
         let (told, kept): (Vec<_>, Vec<_>) =
-            mixed.iter().zip(&together.contacts).partition(|(pair, _)| !pair.is_valid());
+            mixed.iter().zip(&together.contacts).partition(|(pair, _)| !pair.is_valid(Query::SphereSphere));
         assert!(told.iter().all(|(_, contact)| contact.0 == [0, 0, 0, 0, 0, 0, 0, Flow::Invalid.flags()]), "{name}");
         let kept: Vec<_> = kept.into_iter().map(|(_, contact)| *contact).collect();
         assert!(kept == alone.contacts, "{name}: a neighbour differs");

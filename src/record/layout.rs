@@ -1,7 +1,7 @@
 //! Where records lie in lines: computed once, read by hardware, host and files alike.
 
 use crate::config::{Config, RecordFormat, Results};
-use crate::kernel::{Fields, PAIR_FIELDS, PairRecord};
+use crate::query::{ContactRecord, Fields, Input, PairRecord, Query};
 
 use super::COUNT_BITS;
 
@@ -11,6 +11,7 @@ use super::COUNT_BITS;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout {
     line_bits: u32,
+    query: Query,
     record: RecordFormat,
     word_bits: u32,
     fields: Fields,
@@ -36,18 +37,25 @@ pub struct OtherRadius {
 }
 
 impl Layout {
-    /// The layout of full pairs and of a contact with `fields` for each, in lines of `line_bits` (a power of two) bits.
+    /// The layout of full pairs of spheres and of a contact with `fields` for each, in lines of `line_bits` (a power
+    /// of two) bits.
     pub fn new(line_bits: u32, fields: Fields) -> Self {
         let record = RecordFormat::F32;
         let word_bits = record.format().width();
-        Self { line_bits, record, word_bits, fields, results: Results::All, radius: None }
+        let query = Query::default();
+        Self { line_bits, query, record, word_bits, fields, results: Results::All, radius: None }
     }
 
     /// The layout of a configuration, in lines of `line_bits` (a power of two) bits.
     pub fn of(line_bits: u32, config: &Config) -> Self {
         let radius = config.radius.map(f32::to_bits);
-        let (record, word_bits) = (config.record, config.record.format().width());
-        Self { record, word_bits, results: config.results, radius, ..Self::new(line_bits, config.contact) }
+        let Config { query, record, results, contact, .. } = *config;
+        Self { query, record, word_bits: record.format().width(), results, radius, ..Self::new(line_bits, contact) }
+    }
+
+    /// What is asked of a pair.
+    pub fn query(&self) -> Query {
+        self.query
     }
 
     /// The fields of a contact.
@@ -75,15 +83,21 @@ impl Layout {
         self.line_bits
     }
 
-    /// Which of a pair's eight words are in the record, in order: all but radii that are the hardware's.
-    pub fn pair_words(&self) -> Vec<usize> {
-        (0..PAIR_FIELDS.len()).filter(|word| self.radius.is_none() || word % 4 != 3).collect()
+    /// The words of a pair that are in the record, in order, each with its place in a [`PairRecord`]: all but radii
+    /// that are the hardware's.
+    pub fn inputs(&self) -> impl Iterator<Item = (usize, &'static Input)> + Clone {
+        let fixed = self.radius.is_some();
+        self.query.shape().inputs.iter().enumerate().filter(move |(_, input)| !(fixed && input.is_radius))
     }
 
     /// The pair whose words of the record are these; a radius that is the hardware's is put in its place.
-    pub fn pair(&self, words: &[u32]) -> PairRecord {
-        let mut pair = PairRecord([self.radius.unwrap_or(0); 8]);
-        self.pair_words().into_iter().zip(words).for_each(|(word, value)| pair.0[word] = *value);
+    pub fn pair(&self, words: impl IntoIterator<Item = u32>) -> PairRecord {
+        let mut pair = PairRecord::default();
+        if let Some(radius) = self.radius {
+            // Of all words, since those of the record follow.
+            pair.0.fill(radius);
+        }
+        self.inputs().zip(words).for_each(|((place, _), value)| pair.0[place] = value);
         pair
     }
 
@@ -92,11 +106,12 @@ impl Layout {
     /// # Errors
     /// The first pair with another radius than the hardware's.
     pub fn check(&self, pairs: &[PairRecord]) -> Result<(), OtherRadius> {
-        let Some(radius) = self.radius.map(f32::from_bits) else { return Ok(()) };
+        let Some(radius) = self.radius else { return Ok(()) };
+        let radii = || self.query.shape().inputs.iter().enumerate().filter(|(_, input)| input.is_radius);
         for (pair, record) in pairs.iter().enumerate() {
-            let values = record.values();
-            if let Some(word) = [3, 7].into_iter().find(|&word| values[word].to_bits() != radius.to_bits()) {
-                return Err(OtherRadius { pair, field: PAIR_FIELDS[word], found: values[word], radius });
+            if let Some((place, input)) = radii().find(|(place, _)| record.0[*place] != radius) {
+                let [found, radius] = [record.0[place], radius].map(f32::from_bits);
+                return Err(OtherRadius { pair, field: input.name, found, radius });
             }
         }
         Ok(())
@@ -104,7 +119,7 @@ impl Layout {
 
     /// Bits a pair takes in a line.
     pub fn pair_bits(&self) -> u32 {
-        (self.pair_words().len() as u32 * self.word_bits).next_power_of_two()
+        (self.inputs().count() as u32 * self.word_bits).next_power_of_two()
     }
 
     /// Pairs a source line.
@@ -112,14 +127,9 @@ impl Layout {
         self.line_bits / self.pair_bits()
     }
 
-    /// Which of a full contact's eight words are in the record, in order; empty where only the hit is asked for.
+    /// Which words of a [`ContactRecord`] are in the record, in order; empty where only the hit is asked for.
     pub fn contact_words(&self) -> Vec<usize> {
-        if self.fields == Fields::HIT {
-            return vec![];
-        }
-        let groups =
-            [(self.fields.position, 0..3), (self.fields.normal, 3..6), (self.fields.depth, 6..7), (true, 7..8)];
-        groups.into_iter().filter(|(used, _)| *used).flat_map(|(_, words)| words).collect()
+        ContactRecord::words(self.fields).collect()
     }
 
     /// Bits of a record before those of the contact: the pair's number, where only contacts come back.
@@ -139,7 +149,7 @@ impl Layout {
 
     /// Bits of a result as an SCPU gives it: the record in its line, or, where only contacts come back, the words that
     /// follow the number, of which there may be none.
-    pub(super) fn result_bits(&self) -> u32 {
+    pub(crate) fn result_bits(&self) -> u32 {
         match self.results {
             Results::All => self.contact_bits(),
             Results::Hits => self.contact_words().len() as u32 * self.word_bits,
@@ -192,7 +202,7 @@ mod tests {
             let config = Config { contact, results, radius, record: RecordFormat::F16, ..Config::default() };
             let layout = Layout::of(512, &config);
             assert_eq!((layout.pair_bits(), layout.pairs_per_line()), (128, 4), "six words are padded to eight");
-            assert_eq!(layout.pair_words().len(), if radius.is_some() { 6 } else { 8 });
+            assert_eq!(layout.inputs().count(), if radius.is_some() { 6 } else { 8 });
             assert_eq!(layout.contacts_per_line() * layout.contact_bits(), 512);
             layout.contact_bits()
         };

@@ -1,11 +1,10 @@
-//! Records out of lines, by the layout; [`pack`] puts them in. Here records have words of binary32; in lines they have
-//! those of the layout's numbers, from which they are widened.
+//! Contacts out of lines, by the layout: what [`pack`](super::pack) puts in. Here records have words of binary32; in
+//! lines they have those of the layout's numbers, from which they are widened.
 
-use crate::afu::Layout;
-use crate::afu::pack::{DWORD, FLAGS, get};
-pub(crate) use crate::afu::pack::{pack, pack_contacts, unpack_pairs};
-use crate::kernel::{ContactRecord, Flow, widen};
-use crate::link::Line;
+use super::Layout;
+use super::pack::{DWORD, Line, get};
+use crate::kernel::widen;
+use crate::query::{ContactRecord, FLAGS, Flow};
 
 /// Destination lines as records.
 pub(crate) struct Contacts<'a> {
@@ -98,10 +97,11 @@ impl<'a> Contacts<'a> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::{pack, pack_contacts, unpack_pairs};
     use super::*;
     use crate::config::{Config, RecordFormat, Results};
-    use crate::kernel::Fields;
-    use crate::kernel::{PairRecord, narrow};
+    use crate::kernel::narrow;
+    use crate::query::{Fields, PairRecord};
 
     fn records(count: u32) -> Vec<ContactRecord> {
         let flow = |i: u32| Flow::ALL[i as usize % 4].flags();

@@ -1,7 +1,8 @@
 //! Records into lines, and pairs out of them, by the layout. Here records have words of binary32; in lines they have
 //! those of the layout's numbers, to which they are rounded.
 
-use crate::kernel::{ContactRecord, PairRecord, narrow, widen};
+use crate::kernel::{narrow, widen};
+use crate::query::{ContactRecord, FLAGS, PairRecord};
 
 use super::Layout;
 
@@ -9,9 +10,7 @@ use super::Layout;
 pub(crate) type Line = [u32; 16];
 
 /// Bits of a dword of a line.
-pub(crate) const DWORD: usize = 32;
-/// A contact's word that is no number: its flags.
-pub(crate) const FLAGS: usize = 7;
+pub(super) const DWORD: usize = 32;
 
 /// Puts a word of `bits` bits, which lies in one dword, into zero bits of a line.
 fn put(line: &mut Line, at: usize, bits: u32, word: u32) {
@@ -20,18 +19,17 @@ fn put(line: &mut Line, at: usize, bits: u32, word: u32) {
 }
 
 /// A word of `bits` bits, which lies in one dword.
-pub(crate) fn get(line: &Line, at: usize, bits: u32) -> u32 {
+pub(super) fn get(line: &Line, at: usize, bits: u32) -> u32 {
     line[at / DWORD] >> (at % DWORD) & u32::MAX >> (DWORD as u32 - bits)
 }
 
 /// The source lines of pairs; what is unused of the last is zero.
 pub(crate) fn pack(layout: &Layout, pairs: &[PairRecord]) -> Vec<Line> {
-    let (room, words, bits, record) =
-        (layout.pair_bits() as usize, layout.pair_words(), layout.word_bits(), layout.record().format());
+    let (room, bits, record) = (layout.pair_bits() as usize, layout.word_bits(), layout.record().format());
     let line = |pairs: &[PairRecord]| {
         let mut line: Line = [0; 16];
         for (place, pair) in pairs.iter().enumerate() {
-            for (slot, &word) in words.iter().enumerate() {
+            for (slot, (word, _)) in layout.inputs().enumerate() {
                 put(&mut line, place * room + slot * bits as usize, bits, narrow(pair.0[word], record));
             }
         }
@@ -42,11 +40,10 @@ pub(crate) fn pack(layout: &Layout, pairs: &[PairRecord]) -> Vec<Line> {
 
 /// The pairs of source lines.
 pub(crate) fn unpack_pairs(layout: &Layout, lines: &[Line], count: usize) -> Vec<PairRecord> {
-    let (room, words, bits, record) =
-        (layout.pair_bits() as usize, layout.pair_words().len(), layout.word_bits(), layout.record().format());
+    let (room, bits, record) = (layout.pair_bits() as usize, layout.word_bits(), layout.record().format());
     let pair = |line: &Line, place: usize| {
         let word = |slot: usize| widen(get(line, place * room + slot * bits as usize, bits), record);
-        layout.pair(&(0..words).map(word).collect::<Vec<_>>())
+        layout.pair((0..).map(word).take(layout.inputs().count()))
     };
     let places = 0..layout.pairs_per_line() as usize;
     lines

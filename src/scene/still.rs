@@ -1,4 +1,4 @@
-//! Scenes in which nothing moves: one query, all of it collision detection.
+//! Scenes in which nothing moves: one step, all of it collision detection.
 
 use std::collections::HashMap;
 use std::time::Instant;
@@ -9,9 +9,9 @@ use super::results::{SceneRun, Touching};
 use super::{Part, Scene, SceneError};
 use crate::kernel::{Engine, PairRecord};
 
-/// What a query asks: which spheres of two sets, or of one.
+/// A scene in which nothing moves: which spheres of two sets, or of one, touch.
 #[derive(Clone, Debug)]
-pub struct Query {
+pub struct Still {
     /// All spheres, those of `queries` last.
     pub balls: Vec<Ball>,
     /// How many are bodies.
@@ -20,8 +20,8 @@ pub struct Query {
     pub candidates: Vec<[usize; 2]>,
 }
 
-impl Query {
-    /// The query of a scene: its bodies against its queries, or against each other where there are none.
+impl Still {
+    /// Of a scene: its bodies against its queries, or against each other where there are none.
     ///
     /// # Errors
     /// When a file of bodies cannot be read.
@@ -90,7 +90,7 @@ fn candidates(balls: &[Ball], bodies: usize) -> Vec<[usize; 2]> {
 /// # Errors
 /// When bodies cannot be read, or the engine fails.
 pub fn query(scene: &Scene, plan: &Plan, engine: &mut dyn Engine, name: &str) -> Result<SceneRun, SceneError> {
-    let query = Query::of(scene)?;
+    let query = Still::of(scene)?;
     let mut results = SceneRun::begin(scene, plan, name.to_owned())?;
     let pairs = query.pairs();
     let begun = Instant::now();
@@ -130,15 +130,15 @@ mod tests {
             "[[queries]]\nshape = \"random\"\ncount = 200\nradius = 0.25\nseed = 4\ncorners = [[-9.0, -9.0, -9.0], [9.0, 9.0, 9.0]]\n",
         ] {
             let scene = Scene::parse("test", &format!("{text}{queries}")).unwrap();
-            let query = Query::of(&scene).unwrap();
-            let mut every = Query { candidates: Vec::new(), ..query.clone() };
+            let query = Still::of(&scene).unwrap();
+            let mut every = Still { candidates: Vec::new(), ..query.clone() };
             let others = if queries.is_empty() { 0..300 } else { 300..500 };
             for first in 0..300 {
                 every.candidates.extend(others.clone().filter(|&other| other > first).map(|other| [first, other]));
             }
             assert_eq!(every.candidates.len() as u64, query.all_pairs());
             let reference = Plan::of(&scene).unwrap().config.profile.reference(Fields::HIT);
-            let touching = |query: &Query| {
+            let touching = |query: &Still| {
                 let contacts = reference.run_all(&query.pairs());
                 query
                     .candidates

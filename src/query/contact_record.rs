@@ -1,0 +1,159 @@
+//! A contact as words: one order for every query.
+
+use super::{Fields, Flow};
+
+/// Numbers that are asked for together.
+#[derive(Clone, Copy, Debug)]
+pub struct Group {
+    /// What it is called in options.
+    pub name: &'static str,
+    /// Whether it is among the fields asked for.
+    pub is_asked: fn(Fields) -> bool,
+    /// The names of its words in files and hardware.
+    pub words: &'static [&'static str],
+    /// What they are.
+    pub meaning: &'static str,
+}
+
+/// The numbers of a contact, in the order of its record.
+pub const GROUPS: [Group; 3] = [
+    Group {
+        name: "position",
+        is_asked: |fields| fields.position,
+        words: &["pos_x", "pos_y", "pos_z"],
+        meaning: "contact position",
+    },
+    Group {
+        name: "normal",
+        is_asked: |fields| fields.normal,
+        words: &["normal_x", "normal_y", "normal_z"],
+        meaning: "contact normal",
+    },
+    Group { name: "depth", is_asked: |fields| fields.depth, words: &["depth"], meaning: "penetration depth" },
+];
+
+/// Numbers of a contact.
+pub const NUMBERS: usize = GROUPS[0].words.len() + GROUPS[1].words.len() + GROUPS[2].words.len();
+/// The word after them: the [flags](Flow::flags).
+pub const FLAGS: usize = NUMBERS;
+/// Words of a contact.
+pub const CONTACT_WORDS: usize = NUMBERS + 1;
+
+/// A contact: position x y z, normal x y z, depth, flags.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub struct ContactRecord(pub [u32; CONTACT_WORDS]);
+
+impl ContactRecord {
+    /// What the kernel of the profile `exact` writes for a pair that needs more than its window: bit 4 of the flags,
+    /// and nothing else. The host puts the contact in its place before anyone reads it.
+    pub const UNSETTLED: Self = Self::of_flags(16);
+
+    /// The names of its words, in order.
+    pub const NAMES: [&'static str; CONTACT_WORDS] = {
+        let mut names = ["flags"; CONTACT_WORDS];
+        let (mut word, mut group) = (0, 0);
+        while group < GROUPS.len() {
+            let mut i = 0;
+            while i < GROUPS[group].words.len() {
+                names[word] = GROUPS[group].words[i];
+                (word, i) = (word + 1, i + 1);
+            }
+            group += 1;
+        }
+        names
+    };
+
+    /// Which words are in the record of these fields, in order. None but the flags has no record: that is one bit.
+    pub fn words(fields: Fields) -> impl Iterator<Item = usize> {
+        let asked = GROUPS.iter().flat_map(move |group| group.words.iter().map(move |_| (group.is_asked)(fields)));
+        asked.chain([fields != Fields::HIT]).enumerate().filter(|(_, asked)| *asked).map(|(word, _)| word)
+    }
+
+    /// The record of these flags and no number.
+    pub const fn of_flags(flags: u32) -> Self {
+        let mut words = [0; CONTACT_WORDS];
+        words[FLAGS] = flags;
+        Self(words)
+    }
+
+    /// The record with zero words for what is not asked for.
+    #[must_use]
+    pub fn only(self, fields: Fields) -> Self {
+        let mut record = Self::of_flags(self.flags());
+        Self::words(fields).for_each(|word| record.0[word] = self.0[word]);
+        record
+    }
+
+    /// Whether it is no contact yet, but the admission that the pair needs more.
+    pub const fn is_unsettled(self) -> bool {
+        self.flags() & 16 != 0
+    }
+
+    /// The flags word: see [`Flow::flags`].
+    pub const fn flags(self) -> u32 {
+        self.0[FLAGS]
+    }
+
+    /// Whether the pair touches.
+    pub const fn is_contact(self) -> bool {
+        self.flags() & 1 == 1
+    }
+
+    /// Which way the pair went; nothing when the flags are none that a kernel writes.
+    pub fn flow(self) -> Option<Flow> {
+        Flow::ALL.into_iter().find(|flow| flow.flags() == self.flags())
+    }
+
+    /// The numbers, in order: position, normal, depth.
+    pub fn numbers(self) -> [f32; NUMBERS] {
+        std::array::from_fn(|word| f32::from_bits(self.0[word]))
+    }
+
+    /// Where the bodies touch.
+    pub fn position(self) -> [f32; 3] {
+        let [x, y, z, ..] = self.numbers();
+        [x, y, z]
+    }
+
+    /// The direction that parts them, pointing into the first.
+    pub fn normal(self) -> [f32; 3] {
+        let [_, _, _, x, y, z, _] = self.numbers();
+        [x, y, z]
+    }
+
+    /// How deep they overlap.
+    pub fn depth(self) -> f32 {
+        let [.., depth] = self.numbers();
+        depth
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn flags_are_those_of_the_design() {
+        assert_eq!(Flow::ALL.map(Flow::flags), [8, 2, 5, 7]);
+        for flow in Flow::ALL {
+            let record = ContactRecord::of_flags(flow.flags());
+            assert_eq!(record.flow(), Some(flow));
+            assert_eq!((record.is_contact(), record.is_contact()), (flow.is_contact(), flow >= Flow::Coincident));
+        }
+        assert_eq!(ContactRecord::default().flow(), None);
+    }
+
+    #[test]
+    fn words_are_those_of_the_fields() {
+        let names = ["pos_x", "pos_y", "pos_z", "normal_x", "normal_y", "normal_z", "depth", "flags"];
+        assert_eq!(ContactRecord::NAMES, names);
+        let of = |fields: &str| ContactRecord::words(fields.parse().expect("fields")).collect::<Vec<_>>();
+        assert!(of("hit").is_empty());
+        assert_eq!(of("depth"), [6, 7]);
+        assert_eq!(of("normal"), [3, 4, 5, 7]);
+        assert_eq!(of("position,depth"), [0, 1, 2, 6, 7]);
+        let record = ContactRecord([1, 2, 3, 4, 5, 6, 7, 8]);
+        assert_eq!(record.only("normal".parse().expect("fields")).0, [0, 0, 0, 4, 5, 6, 0, 8]);
+        assert_eq!(record.only(Fields::HIT), ContactRecord::of_flags(8));
+    }
+}

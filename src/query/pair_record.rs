@@ -1,0 +1,72 @@
+//! A pair as words.
+
+use super::{Input, Query};
+
+/// Words that a pair of any query has at most. A record has room for sixteen.
+pub const PAIR_WORDS: usize = {
+    let (mut most, mut i) = (0, 0);
+    while i < Query::ALL.len() {
+        let words = Query::ALL[i].shape().inputs.len();
+        if words > most {
+            most = words;
+        }
+        i += 1;
+    }
+    most
+};
+
+/// A pair: the words of its query's [`inputs`](super::Shape::inputs), floating-point numbers as raw binary32.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub struct PairRecord(pub [u32; PAIR_WORDS]);
+
+impl PairRecord {
+    /// Two spheres, each x y z and radius.
+    pub fn from_spheres([x1, y1, z1, r1]: [f32; 4], [x2, y2, z2, r2]: [f32; 4]) -> Self {
+        Self([x1, y1, z1, r1, x2, y2, z2, r2].map(f32::to_bits))
+    }
+
+    /// A sphere (x y z and radius), and the plane of all points p with n · p = d (the normal n, of length 1, and d).
+    pub fn from_sphere_and_plane([x, y, z, r]: [f32; 4], [nx, ny, nz, d]: [f32; 4]) -> Self {
+        Self([x, y, z, r, nx, ny, nz, d].map(f32::to_bits))
+    }
+
+    /// Whether every word keeps its [rule](super::Rule).
+    #[inline(always)]
+    pub fn is_valid(&self, query: Query) -> bool {
+        // Without branches, for the batch kernel.
+        query.shape().inputs.iter().zip(self.0).fold(true, |all, (input, word)| all & input.rule.holds(word))
+    }
+
+    /// The first word that breaks its rule.
+    pub fn broken(&self, query: Query) -> Option<&'static Input> {
+        query.shape().inputs.iter().zip(self.0).find(|(input, word)| !input.rule.holds(*word)).map(|(input, _)| input)
+    }
+
+    /// The words read as numbers.
+    pub fn values(self) -> [f32; PAIR_WORDS] {
+        self.0.map(f32::from_bits)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Rule;
+    use super::*;
+
+    #[test]
+    fn words_that_break_their_rule_are_found_in_every_place() {
+        for query in Query::ALL {
+            let good = PairRecord([-0.0; PAIR_WORDS].map(f32::to_bits));
+            assert!(good.is_valid(query) && good.broken(query).is_none());
+            for (i, input) in query.shape().inputs.iter().enumerate() {
+                for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1e-45, f32::MIN, f32::MAX] {
+                    let mut pair = good;
+                    pair.0[i] = bad.to_bits();
+                    let breaks = !bad.is_finite() || input.rule == Rule::NotNegative && bad < 0.0;
+                    assert_eq!(pair.is_valid(query), !breaks, "{bad} as {}", input.name);
+                    assert_eq!(pair.broken(query).map(|input| input.name), breaks.then_some(input.name));
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! The data of a query.
+
+use super::Flow;
+
+/// What a word of a pair must be. A pair that breaks a rule is invalid, which hardware sees in the raw words.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rule {
+    /// Neither an infinity nor a NaN.
+    Finite,
+    /// Finite, and not below zero (−0 is not).
+    NotNegative,
+    /// Finite, and a component of a vector of length 1: that is the caller's promise, which nobody checks.
+    UnitLength,
+}
+
+impl Rule {
+    const SIGN: u32 = 0x8000_0000;
+    const INFINITY: u32 = 0x7F80_0000;
+
+    /// Whether a binary32 word keeps it.
+    #[inline(always)]
+    pub const fn holds(self, word: u32) -> bool {
+        (word & Self::INFINITY != Self::INFINITY) & (!matches!(self, Self::NotNegative) | (word <= Self::SIGN))
+    }
+}
+
+/// A word of a pair.
+#[derive(Clone, Copy, Debug)]
+pub struct Input {
+    /// Its name in files, messages and hardware.
+    pub name: &'static str,
+    /// What it is.
+    pub meaning: &'static str,
+    /// What it must be.
+    pub rule: Rule,
+    /// Whether it is a sphere's radius, which `--radius` makes part of the hardware.
+    pub is_radius: bool,
+}
+
+impl Input {
+    pub(super) const fn new(name: &'static str, meaning: &'static str, rule: Rule) -> Self {
+        Self { name, meaning, rule, is_radius: false }
+    }
+
+    pub(super) const fn radius(name: &'static str, meaning: &'static str) -> Self {
+        Self { name, meaning, rule: Rule::NotNegative, is_radius: true }
+    }
+}
+
+/// A query as data: what hardware, files, checks and documentation must know of it.
+#[derive(Debug)]
+pub struct Shape {
+    /// Its name in options, files and reports.
+    pub name: &'static str,
+    /// Its number in the capability word.
+    pub code: u32,
+    /// The Verilog module of its kernel.
+    pub kernel: &'static str,
+    /// What a pair is, in the plural: "two spheres".
+    pub bodies: &'static str,
+    /// The words of a pair, in the order of its record.
+    pub inputs: &'static [Input],
+    /// Which ways a valid pair can go.
+    pub flows: &'static [Flow],
+    /// What is computed, in the notation of [`Shape::inputs`]: a paragraph of PORTS.md.
+    pub computes: &'static str,
+}
+
+impl Shape {
+    /// The names of a pair's words, in order: the header of its files.
+    pub fn names(&self) -> impl Iterator<Item = &'static str> + Clone {
+        self.inputs.iter().map(|input| input.name)
+    }
+}

@@ -1,0 +1,207 @@
+//! The capability word: what an AFU says of itself, declared once.
+
+use crate::config::{Config, RecordFormat, Results};
+use crate::query::{Fields, GROUPS, Query};
+
+use super::Layout;
+
+/// A part of the word.
+#[derive(Clone, Copy, Debug)]
+pub struct Part {
+    /// Its lowest bit.
+    pub low: u32,
+    /// How many bits it has.
+    pub bits: u32,
+    /// What it says.
+    pub meaning: &'static str,
+    /// Whether every AFU of the first versions had it: the others are told of only where they are not 0.
+    always: bool,
+}
+
+const fn part(low: u32, bits: u32, meaning: &'static str, always: bool) -> Part {
+    Part { low, bits, meaning, always }
+}
+
+const INTERVAL: Part = part(8, 8, "interval", true);
+const FIELDS: Part = part(16, 4, "fields (hit, depth, normal, position from the lowest bit up)", true);
+const HITS: Part = part(24, 1, "results (1: contacts alone)", false);
+const ONE_RADIUS: Part = part(25, 1, "one radius for all spheres (1: yes)", false);
+const RECORD: Part = part(26, 2, "words of records (0: f32, 1: f16, 2: bf16)", false);
+const QUERY: Part = part(28, 4, "query (0: sphere-sphere, 1: sphere-plane)", false);
+const LATENCY: Part = part(32, 12, "SCPU latency (of profile and clock), in cycles", true);
+
+/// Cycles that a pair spends outside its SCPU, from the line port and back: far above those of any configuration.
+pub(crate) const AROUND_CYCLES: u64 = 128;
+
+impl Part {
+    /// The number of SCPUs.
+    pub const SCPUS: Self = part(0, 8, "SCPUs", true);
+    /// Every part, from the lowest bit up. The bits between them are zero.
+    pub const ALL: [Self; 8] = [Self::SCPUS, INTERVAL, FIELDS, HITS, ONE_RADIUS, RECORD, QUERY, LATENCY];
+
+    /// Its value in a word.
+    pub const fn of(self, word: u64) -> u64 {
+        word >> self.low & self.most()
+    }
+
+    /// The bits of it in a word.
+    pub const fn mask(self) -> u64 {
+        self.most() << self.low
+    }
+
+    const fn most(self) -> u64 {
+        (1 << self.bits) - 1
+    }
+
+    /// The word of this part alone; the largest value that it holds if the value is larger.
+    fn word(self, value: u32) -> u64 {
+        u64::from(value).min(self.most()) << self.low
+    }
+}
+
+/// What an AFU says of itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Capability {
+    /// Sphere Collision Processing Units.
+    pub scpus: u32,
+    /// Cycles from one pair to the next in an SCPU.
+    pub interval: u32,
+    /// Which results of a pair are given.
+    pub fields: Fields,
+    /// Which pairs come back.
+    pub results: Results,
+    /// Whether all spheres have one radius, which is not in the records.
+    pub one_radius: bool,
+    /// The numbers of the records.
+    pub record: RecordFormat,
+    /// What is asked of a pair; none that this version knows: `None`.
+    pub query: Option<Query>,
+    /// Cycles of a pair in an SCPU.
+    pub scpu_cycles: u32,
+}
+
+impl Capability {
+    /// Of an AFU whose SCPUs take so many cycles.
+    pub fn new(config: &Config, scpu_cycles: u32) -> Self {
+        Self {
+            scpus: config.scpus,
+            interval: config.interval,
+            fields: config.contact,
+            results: config.results,
+            one_radius: config.radius.is_some(),
+            record: config.record,
+            query: Some(config.query),
+            scpu_cycles,
+        }
+    }
+
+    /// As a word.
+    pub fn bits(&self) -> u64 {
+        let asked = GROUPS.iter().fold(0, |mask, group| mask << 1 | u32::from((group.is_asked)(self.fields)));
+        let query = self.query.map_or(u32::MAX, |query| query.shape().code);
+        Part::SCPUS.word(self.scpus)
+            | INTERVAL.word(self.interval)
+            | FIELDS.word(asked << 1 | 1)
+            | HITS.word((self.results == Results::Hits).into())
+            | ONE_RADIUS.word(self.one_radius.into())
+            | RECORD.word(self.record as u32)
+            | QUERY.word(query)
+            | LATENCY.word(self.scpu_cycles)
+    }
+
+    /// Takes a word apart.
+    pub fn from_bits(bits: u64) -> Self {
+        let part = |part: Part| part.of(bits) as u32;
+        let asked = |bit: u32| part(FIELDS) >> bit & 1 == 1;
+        Self {
+            scpus: part(Part::SCPUS),
+            interval: part(INTERVAL),
+            fields: Fields { depth: asked(1), normal: asked(2), position: asked(3) },
+            results: if part(HITS) == 1 { Results::Hits } else { Results::All },
+            one_radius: part(ONE_RADIUS) == 1,
+            record: match part(RECORD) {
+                1 => RecordFormat::F16,
+                2 => RecordFormat::Bf16,
+                _ => RecordFormat::F32,
+            },
+            query: Query::ALL.into_iter().find(|query| query.shape().code == part(QUERY)),
+            scpu_cycles: part(LATENCY),
+        }
+    }
+
+    /// The parts of a word in prose, each with its bits.
+    pub fn describe(word: u64) -> String {
+        let told = |part: &Part| part.always || part.of(word) > 0;
+        let place = |part: &Part| match part.bits {
+            1 => part.low.to_string(),
+            bits => format!("{}:{}", part.low + bits - 1, part.low),
+        };
+        let parts = Part::ALL.iter().filter(|part| told(part));
+        parts.map(|part| format!("{} {}", place(part), part.meaning)).collect::<Vec<_>>().join(", ")
+    }
+
+    /// Pairs in a source line.
+    pub fn pairs_per_line(&self) -> u32 {
+        let config = Config {
+            query: self.query.unwrap_or_default(),
+            record: self.record,
+            radius: self.one_radius.then_some(0.0),
+            ..Config::default()
+        };
+        Layout::of(super::LINE_BITS, &config).pairs_per_line()
+    }
+
+    /// Cycles that the SCPUs take for so many pairs if none waits for memory. In an interval each SCPU takes one pair,
+    /// and all together no more than one line per cycle. The first turn may come a whole interval late, and the last
+    /// round may be of a single pair.
+    pub fn computing_cycles(&self, pairs: u64) -> u64 {
+        let interval = u64::from(self.interval.max(1));
+        let each_interval = u64::from(self.scpus).clamp(1, u64::from(self.pairs_per_line()) * interval);
+        (pairs.div_ceil(each_interval) + 1) * interval
+    }
+
+    /// A bound on the cycles from a line of pairs in to their contacts out, for an AFU that waits for nothing.
+    pub fn latency_cycles(&self) -> u64 {
+        AROUND_CYCLES + u64::from(self.scpu_cycles) + u64::from(self.interval)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_word_says_what_it_was_made_of() {
+        let fields = "normal".parse().expect("fields");
+        let base = Config { scpus: 7, interval: 3, contact: fields, ..Config::default() };
+        for config in [
+            base.clone(),
+            Config { results: Results::Hits, ..base.clone() },
+            Config { radius: Some(0.5), record: RecordFormat::Bf16, ..base.clone() },
+            Config { query: Query::SpherePlane, record: RecordFormat::F16, ..base },
+        ] {
+            let said = Capability::new(&config, 99);
+            assert_eq!(Capability::from_bits(said.bits()), said);
+            assert_eq!(said.pairs_per_line(), Layout::of(512, &config).pairs_per_line());
+        }
+        // Every part has bits of its own, and those between are zero.
+        let all = Part::ALL.iter().fold(0_u64, |all, part| {
+            assert_eq!(all & part.mask(), 0, "{part:?}");
+            all | part.mask()
+        });
+        assert_eq!(all, 0x0000_0FFF_FF0F_FFFF);
+        assert_eq!(Capability::from_bits(u64::MAX).query, None);
+    }
+
+    #[test]
+    fn all_scpus_take_a_pair_an_interval_but_no_more_than_a_line_a_cycle() {
+        let of = |scpus, interval, record| {
+            Capability::new(&Config { scpus, interval, record, ..Config::default() }, 0).computing_cycles(1000)
+        };
+        assert_eq!(of(1, 31, RecordFormat::F16), 31 * 1001);
+        assert_eq!(of(10, 5, RecordFormat::F32), 5 * 101);
+        assert_eq!(of(19, 5, RecordFormat::F32), 5 * 101);
+        assert_eq!(of(64, 1, RecordFormat::F16), 251);
+        assert_eq!(of(0, 0, RecordFormat::F32), 1001, "whatever a word says");
+    }
+}

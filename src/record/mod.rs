@@ -1,0 +1,21 @@
+//! Records: where the words of pairs and contacts lie in lines of memory, and what an AFU says of itself. Declared
+//! once, and read by hardware, host, checks and documentation.
+
+mod capability;
+mod contacts;
+mod job_error;
+mod layout;
+mod pack;
+
+#[cfg(test)]
+pub(crate) use capability::AROUND_CYCLES;
+pub use capability::{Capability, Part};
+pub(crate) use contacts::Contacts;
+pub use job_error::JobError;
+pub use layout::{Layout, OtherRadius};
+pub(crate) use pack::{Line, pack, pack_contacts, unpack_pairs};
+
+/// Bits of a line of memory.
+pub const LINE_BITS: u32 = 512;
+/// Bits of a pair count or number.
+pub const COUNT_BITS: u32 = 32;
