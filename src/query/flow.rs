@@ -45,7 +45,7 @@ impl Flow {
         match self {
             Self::Invalid => "invalid pair",
             Self::Fake => "no contact",
-            Self::Coincident => "contact, the centres are equal",
+            Self::Coincident => "contact, coincident centres",
             Self::Real => "contact",
         }
     }
