@@ -61,6 +61,7 @@ pub mod query;
 pub mod record;
 pub mod report;
 pub mod scene;
+pub mod store;
 #[cfg(feature = "cosim")]
 pub mod sweep;
 pub mod synth;

@@ -9,6 +9,7 @@ use std::process::Command;
 const HOUSE: &[(&str, &[&str])] = &[
     ("number", &[]),
     ("files", &[]),
+    ("store", &["files"]),
     ("hdl", &[]),
     ("plot", &[]),
     ("query", &["number"]),
@@ -25,14 +26,20 @@ const HOUSE: &[(&str, &[&str])] = &[
     ("outcome", &["link", "afu"]),
     (
         "cosim",
-        &["outcome", "query", "record", "config", "patience", "afu", "link", "pairs", "kernel", "number", "files"],
+        &[
+            "outcome", "store", "query", "record", "config", "patience", "afu", "link", "pairs", "kernel", "number",
+            "files",
+        ],
     ),
     ("host", &["outcome", "query", "record", "cosim", "patience", "link", "afu", "config", "kernel", "number"]),
     ("verify", &["query", "record", "host", "cosim", "link", "pairs", "afu", "config", "kernel", "number"]),
     ("tools", &["cosim"]),
     (
         "synth",
-        &["query", "record", "tools", "config", "afu", "pipeline", "operator", "kernel", "hdl", "number", "files"],
+        &[
+            "store", "query", "record", "tools", "config", "afu", "pipeline", "operator", "kernel", "hdl", "number",
+            "files",
+        ],
     ),
     (
         "report",
@@ -44,8 +51,8 @@ const HOUSE: &[(&str, &[&str])] = &[
     (
         "accuracy",
         &[
-            "query", "record", "report", "plot", "synth", "verify", "host", "cosim", "config", "ode", "afu", "link",
-            "pairs", "kernel", "number",
+            "store", "query", "record", "report", "plot", "synth", "verify", "host", "cosim", "config", "ode", "afu",
+            "link", "pairs", "kernel", "number",
         ],
     ),
     (
@@ -62,7 +69,7 @@ const HOUSE: &[(&str, &[&str])] = &[
     (
         "sweep",
         &[
-            "query", "record", "report", "synth", "verify", "host", "cosim", "config", "afu", "link", "pairs",
+            "store", "query", "record", "report", "synth", "verify", "host", "cosim", "config", "afu", "link", "pairs",
             "kernel", "number",
         ],
     ),

@@ -1,9 +1,10 @@
 //! Contenders on a set of pairs, judged against the truth and measured.
 
 use super::spread::Gathered;
-use super::{Answer, Contender, ErrorStatistics, Row, Standard, Tally, judge};
+use super::{Answer, Contender, ErrorStatistics, Row, Standard, StudyError, Tally, judge};
 use crate::kernel::{EngineError, PairRecord};
-use sha2::{Digest, Sha256};
+use crate::store::{Key, Store, sha256};
+use serde::{Deserialize, Serialize};
 use std::thread;
 
 /// Pairs that are judged at a time: the truth about each takes 2 KB.
@@ -19,36 +20,39 @@ pub struct ContenderError {
     pub error: EngineError,
 }
 
-/// A row for each contender on `pairs`, all valid, which are called `set`: one of `earlier` whose pairs, name and
-/// version are the same, or measured now. `progress` hears of pairs done. Says how many rows are of `earlier`.
+/// A row for each contender on `pairs`, all valid, which are called `set`: one that `store` holds, or measured now and
+/// kept there. `progress` is called with the pairs done. Returns the rows, and how many of them the store held.
 ///
 /// # Errors
-/// When a contender fails.
+/// If a contender fails, or a row cannot be read or kept.
 pub fn measure(
     set: &str,
     pairs: &[PairRecord],
     contenders: &mut [Box<dyn Contender>],
-    earlier: &[Row],
+    store: &Store,
     mut progress: impl FnMut(u64),
-) -> Result<(Vec<Row>, usize), ContenderError> {
-    let mut rows: Vec<Row> =
-        contenders.iter().map(|contender| Row::new(set, &contender.name(), key(&contender.name(), pairs))).collect();
+) -> Result<(Vec<Row>, usize), StudyError> {
+    let mut rows = Vec::new();
     let mut open = Vec::new();
-    for (index, row) in rows.iter_mut().enumerate() {
-        match earlier.iter().find(|known| known.key == row.key) {
-            Some(known) => {
-                (row.tally, row.errors) = (known.tally, known.errors);
+    for (index, contender) in contenders.iter().enumerate() {
+        let name = contender.name();
+        let mut row = Row::new(set, &name, hash(&name, pairs));
+        let key = Key::new("errors/1", &(&name, &row.key))?;
+        match store.get(&key)? {
+            Some(Judged { tally, errors }) => {
+                (row.tally, row.errors) = (tally, errors);
                 progress(pairs.len() as u64);
             }
-            None => open.push((index, Gathered::default())),
+            None => open.push((index, key, Gathered::default())),
         }
+        rows.push(row);
     }
     let resumed = rows.len() - open.len();
     // No contender is left to answer: no need of the truth either.
     let anyone = !open.is_empty();
     for batch in pairs.chunks(BATCH).take_while(|_| anyone) {
         let standards = standards(batch);
-        for (index, errors) in &mut open {
+        for (index, _, errors) in &mut open {
             let contender = &mut contenders[*index];
             let answers =
                 contender.answers(batch).map_err(|error| ContenderError { contender: contender.name(), error })?;
@@ -58,10 +62,20 @@ pub fn measure(
             progress(batch.len() as u64);
         }
     }
-    for (index, errors) in open {
-        rows[index].errors = errors.errors();
+    for (index, key, errors) in open {
+        let row = &mut rows[index];
+        row.errors = errors.errors();
+        store.put(&key, &Judged { tally: row.tally, errors: row.errors })?;
     }
     Ok((rows, resumed))
+}
+
+/// What is kept of a row: the rest of it is asked for.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Judged {
+    tally: Tally,
+    errors: ErrorStatistics,
 }
 
 /// The truth about each pair, found on all processors.
@@ -100,9 +114,13 @@ pub fn assess(pairs: &[PairRecord], answers: &[Answer]) -> (Tally, ErrorStatisti
 }
 
 /// SHA-256 of everything that decides a row: this program's version, the contender, the pairs.
-fn key(contender: &str, pairs: &[PairRecord]) -> String {
-    let mut hash = Sha256::new();
-    hash.update(format!("{} {contender} ", env!("CARGO_PKG_VERSION")));
-    pairs.iter().flat_map(|pair| pair.0).for_each(|word| hash.update(word.to_le_bytes()));
-    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+fn hash(contender: &str, pairs: &[PairRecord]) -> String {
+    with_pairs(format!("{} {contender} ", env!("CARGO_PKG_VERSION")), pairs)
+}
+
+/// SHA-256 of a text and pairs.
+pub(super) fn with_pairs(text: String, pairs: &[PairRecord]) -> String {
+    let mut bytes = text.into_bytes();
+    bytes.extend(pairs.iter().flat_map(|pair| pair.0).flat_map(u32::to_le_bytes));
+    sha256(&bytes)
 }

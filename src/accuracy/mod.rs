@@ -1,8 +1,8 @@
-//! How right answers are: engines and profiles on the same pairs, judged against the truth, in one store of results.
+//! How right answers are: engines and profiles on the same pairs, judged against the truth.
 //!
 //! A [`Contender`] answers pairs; [`judge`] says what is wrong with an answer; [`measure`] does so for contenders on a
-//! set of pairs, and makes a [`Row`] of each, keyed by what went in. [`fill`] does that over the hard categories, and
-//! keeps the rows in a [`Record`].
+//! set of pairs, and makes a [`Row`] of each, which it keeps in a [`Store`](crate::store::Store). [`fill`] does that
+//! over the hard categories, and makes [`HardResults`] of them.
 
 mod answer;
 mod contender;
@@ -13,7 +13,7 @@ mod measure;
 mod ode;
 #[cfg(feature = "parry")]
 mod parry;
-mod record;
+mod results;
 mod spread;
 mod study;
 mod tally;
@@ -29,7 +29,7 @@ pub use measure::{ContenderError, assess, measure};
 pub use ode::OdeDouble;
 #[cfg(feature = "parry")]
 pub use parry::Parry;
-pub use record::{Record, RecordError, Row, SCHEMA};
+pub use results::{HardResults, Row, SCHEMA};
 pub use spread::{ErrorStatistics, Spread};
 pub use study::{StudyError, Task, fill};
 pub use tally::Tally;

@@ -1,9 +1,10 @@
 //! Contenders over the hard categories.
 
-use super::{Contender, Record, RecordError};
-use super::{ContenderError, measure};
+use super::{Contender, ContenderError, HardResults, SCHEMA, measure};
 use crate::kernel::PairRecord;
 use crate::pairs::CATEGORIES;
+use crate::report::folder;
+use crate::store::{self, Store, StoreError};
 use std::path::Path;
 
 /// What contenders are given.
@@ -21,37 +22,49 @@ pub enum StudyError {
     /// An engine failed.
     #[error(transparent)]
     Engine(#[from] ContenderError),
-    /// The folder is not ours, or could not be read or written.
+    /// The folder is not ours, or could not be written.
     #[error(transparent)]
-    Record(#[from] RecordError),
+    Folder(#[from] folder::Error),
+    /// A row could not be read or kept.
+    #[error(transparent)]
+    Store(#[from] StoreError),
 }
 
-/// Fills `record` with a row for each category and contender: those of an earlier run in `folder` whose pairs, name and
-/// version are the same, and the others measured now. The folder, where there is one, is written after each category.
-/// `progress` hears of every pair and contender done. Says how many rows are of an earlier run.
+/// Fills `results` with a row for each category and contender: those that the folder's store holds, and the others
+/// measured now. The folder, where there is one, is written after each category. `progress` is called with the pairs
+/// done of a category. Returns how many rows the store held.
 ///
 /// # Errors
-/// When an engine fails, or the folder is not ours (`force` takes it all the same) or cannot be written.
+/// If an engine fails, if the folder is not ours or holds another study (`force` takes it all the same), or if it
+/// cannot be read or written.
 pub fn fill(
-    record: &mut Record,
+    results: &mut HardResults,
     contenders: &mut [Box<dyn Contender>],
     task: Task,
     folder: Option<(&Path, bool)>,
     mut progress: impl FnMut(&str, u64),
 ) -> Result<usize, StudyError> {
-    let earlier = folder.map_or(Ok(Vec::new()), |(folder, force)| record.earlier(folder, force))?;
+    let store = open(folder, SCHEMA)?;
     let mut all = 0;
     let categories = CATEGORIES.len() as u64;
     for (number, category) in (0..).zip(CATEGORIES) {
         let count = (task.pairs + categories - 1 - number) / categories;
         let pairs: Vec<PairRecord> = category.pairs(count, task.seed).collect();
         let name = category.name();
-        let (rows, resumed) = measure(name, &pairs, contenders, &earlier, |pairs| progress(name, pairs))?;
+        let (rows, resumed) = measure(name, &pairs, contenders, &store, |pairs| progress(name, pairs))?;
         all += resumed;
-        record.rows.extend(rows);
+        results.rows.extend(rows);
         if let Some((folder, _)) = folder {
-            record.save(folder)?;
+            results.save(folder)?;
         }
     }
     Ok(all)
+}
+
+/// The store in a folder for results of this schema, which is taken even if it is not ours with `true`; without a
+/// folder one that does not last.
+pub(super) fn open(folder: Option<(&Path, bool)>, schema: &str) -> Result<Store, StudyError> {
+    let Some((folder, force)) = folder else { return Ok(Store::temporary()?) };
+    folder::check_study(folder, schema, force)?;
+    Ok(Store::open(&folder.join(store::FOLDER)))
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::thread;
 
 use clap::Args;
-use contact_afu::accuracy::trade::{self, ResultsError, Size, TradeError, Work};
+use contact_afu::accuracy::trade::{self, Size, TradeError, Work};
 use contact_afu::config::Profile;
 
 use super::failure::{Failure, Kind};
@@ -17,8 +17,8 @@ use super::{link, origin, output, progress};
 /// netlists are kept, so only a first run builds them.
 #[derive(Args, Debug)]
 pub struct Accuracy {
-    /// Folder to write: report.html, front.svg, throughput.svg, link.svg, results.csv, results.json, and manifest.json,
-    /// from which the same command goes on where it was stopped. Without it, a row a profile
+    /// Folder to write: report.html, front.svg, throughput.svg, link.svg, results.csv, results.json, and
+    /// measurements/, from which the same command goes on where it was stopped. Without it, a row a profile
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Some ten configurations and fewer pairs; no areas unless --synth asks for them, no routes unless --seeds does
@@ -117,23 +117,13 @@ pub fn run(options: &Accuracy) -> Result<(), Failure> {
     }
 }
 
-impl From<ResultsError> for Failure {
-    fn from(error: ResultsError) -> Self {
-        match error {
-            ResultsError::Folder(error) => error.into(),
-            _ => Self::caused(Kind::Other, error),
-        }
-    }
-}
-
 impl From<TradeError> for Failure {
     fn from(error: TradeError) -> Self {
         match error {
             TradeError::Verify(error) => error.into(),
             TradeError::Synth(error) => error.into(),
-            TradeError::Results(error) => error.into(),
+            TradeError::Study(error) => error.into(),
             TradeError::Link(_) => Self::caused(Kind::Usage, error),
-            TradeError::Engine(_) => Self::caused(Kind::Other, error),
         }
     }
 }

@@ -73,10 +73,10 @@ impl From<contact_afu::config::Error> for Failure {
 
 impl From<contact_afu::report::folder::Error> for Failure {
     fn from(error: contact_afu::report::folder::Error) -> Self {
-        use contact_afu::report::folder::Error::{Foreign, Io, NotAFolder, Path};
+        use contact_afu::report::folder::Error::{Foreign, Io, NotAFolder, Other, Path, Text};
         let kind = match error {
-            Foreign(_) | NotAFolder(_) => Kind::Usage,
-            Path(_) | Io { .. } => Kind::Other,
+            Foreign(_) | NotAFolder(_) | Other { .. } => Kind::Usage,
+            Path(_) | Io { .. } | Text { .. } => Kind::Other,
         };
         Self::caused(kind, error)
     }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use contact_afu::accuracy::{self, Record, RecordError, StudyError, Task};
+use contact_afu::accuracy::{self, HardResults, StudyError, Task};
 use contact_afu::config::Profile;
 
 use super::failure::{Failure, Kind};
@@ -24,7 +24,7 @@ pub struct Hard {
     /// Profiles to judge, beside the other engines
     #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "paper,wide,exact")]
     profile: Vec<Profile>,
-    /// Folder to write: manifest.json (JSON of all) and hard.csv
+    /// Folder to write: manifest.json (JSON of all), hard.csv, and measurements/, from which the same command resumes
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Write into the folder even if afu did not make it; other files in it are left alone
@@ -39,22 +39,22 @@ pub fn run(options: &Hard) -> Result<(), Failure> {
     let task = Task { pairs: options.pairs, seed: options.seed };
     let (mut contenders, absent) =
         accuracy::contenders(&options.profile).map_err(|error| Failure::new(Kind::Other, error))?;
-    let mut record = Record::new(task, &absent);
+    let mut results = HardResults::new(task, &absent);
     let bar = progress::bar("hard", "pairs", task.pairs * contenders.len() as u64);
     let folder = options.out.as_deref().map(|folder| (folder, options.force));
-    let resumed = accuracy::fill(&mut record, &mut contenders, task, folder, |category, pairs| {
+    let resumed = accuracy::fill(&mut results, &mut contenders, task, folder, |category, pairs| {
         bar.set_prefix(category.to_owned());
         bar.inc(pairs);
     });
     bar.finish_and_clear();
     let resumed = resumed?;
     if resumed > 0 {
-        eprintln!("{resumed} of {} rows are of an earlier run", record.rows.len());
+        eprintln!("{resumed} of {} rows are of an earlier run", results.rows.len());
     }
     let stdout_taken = options.json.as_deref().is_some_and(output::is_stdout);
-    output::show(&record.tables(), stdout_taken)?;
+    output::show(&results.tables(), stdout_taken)?;
     match &options.json {
-        Some(path) => output::json(path, &record),
+        Some(path) => output::json(path, &results),
         None => Ok(()),
     }
 }
@@ -62,8 +62,8 @@ pub fn run(options: &Hard) -> Result<(), Failure> {
 impl From<StudyError> for Failure {
     fn from(error: StudyError) -> Self {
         match error {
-            StudyError::Record(RecordError::Folder(error)) => error.into(),
-            _ => Self::caused(Kind::Other, error),
+            StudyError::Folder(error) => error.into(),
+            StudyError::Engine(_) | StudyError::Store(_) => Self::caused(Kind::Other, error),
         }
     }
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use contact_afu::config::Config;
-use contact_afu::sweep::{Record, RecordError, SweepError, Swept, Task, fill};
+use contact_afu::sweep::{SweepError, SweepResults, Swept, Task, fill};
 
 use super::failure::{Failure, Kind};
 use super::list::List;
@@ -33,7 +33,7 @@ pub struct Sweep {
     /// Seed of random pairs, of the link, and of registers that no reset reaches
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = super::usage::seed)]
     seed: u64,
-    /// Folder to write: manifest.json (JSON of all) and sweep.csv
+    /// Folder to write: manifest.json (JSON of all), sweep.csv, and measurements/, from which the same command resumes
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     /// Write into the folder even if afu did not make it, or if it holds another sweep, whose rows are replaced; other
@@ -58,9 +58,9 @@ pub fn run(options: &Sweep) -> Result<(), Failure> {
     let pairs = super::pairs::load(base.query, &options.pairs, options.seed)?;
     let task = Task { pairs: &pairs, link: &link, seed: options.seed, counts: options.synth };
     let swept = Swept { scpus: options.scpus.0.clone(), interval: options.interval.0.clone() };
-    let mut record = Record::new(&options.pairs, &options.link, &task, &base, swept);
+    let mut results = SweepResults::new(&options.pairs, &options.link, &task, &base, swept);
     let bar = progress::spinner("");
-    let resumed = fill(&mut record, &configs, &task, &options.out, options.force, |config| {
+    let resumed = fill(&mut results, &configs, &task, &options.out, options.force, |config| {
         bar.set_message(format!(
             "{} SCPUs, interval {}: building the model and running it",
             config.scpus, config.interval
@@ -69,14 +69,14 @@ pub fn run(options: &Sweep) -> Result<(), Failure> {
     bar.finish_and_clear();
     let resumed = resumed?;
     if resumed > 0 {
-        eprintln!("{resumed} of {} rows are of an earlier run", record.rows.len());
+        eprintln!("{resumed} of {} rows are of an earlier run", results.rows.len());
     }
     let stdout_taken = options.json.as_deref().is_some_and(output::is_stdout);
-    output::show(&record.table(), stdout_taken)?;
+    output::show(&results.table(), stdout_taken)?;
     if let Some(path) = &options.json {
-        output::json(path, &record)?;
+        output::json(path, &results)?;
     }
-    let bad: Vec<String> = record.rows.iter().filter(|row| !row.passed()).map(|row| row.scpus.to_string()).collect();
+    let bad: Vec<String> = results.rows.iter().filter(|row| !row.passed()).map(|row| row.scpus.to_string()).collect();
     if bad.is_empty() {
         Ok(())
     } else {
@@ -105,9 +105,8 @@ impl From<SweepError> for Failure {
         match error {
             SweepError::Verify(error) => error.into(),
             SweepError::Synth(error) => error.into(),
-            SweepError::Record(RecordError::Folder(error)) => error.into(),
-            SweepError::Record(RecordError::Other { .. }) => Self::caused(Kind::Usage, error),
-            SweepError::Record(_) | SweepError::Cache(_) => Self::caused(Kind::Other, error),
+            SweepError::Folder(error) => error.into(),
+            SweepError::Store(_) | SweepError::Cache(_) => Self::caused(Kind::Other, error),
         }
     }
 }

@@ -1,6 +1,5 @@
 //! Compiled models: the built-in one, and those built and loaded at run time.
 
-use std::env;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
@@ -11,6 +10,7 @@ use super::error::CosimError;
 use super::instance::Instance;
 use super::source::Source;
 use super::verilate::{self, Design, Harness, Trace};
+use crate::store::user_folder;
 
 const HARNESS: Harness<'static> = Harness {
     header: include_str!("../../tb/harness.h"),
@@ -43,7 +43,7 @@ impl Model {
     /// # Errors
     /// [`CosimError::MissingTool`] without Verilator or a C++ compiler; [`CosimError::Build`] when one of them refuses.
     pub fn build(source: &Source, trace: Trace) -> Result<Self, CosimError> {
-        Self::build_in(source, trace, &cache_folder()?)
+        Self::build_in(source, trace, &user_folder().ok_or(CosimError::NoCache)?)
     }
 
     /// [`Model::build`] with a folder for built models instead of the user's.
@@ -108,12 +108,4 @@ impl Model {
 /// What the loader said: the error itself names only the call.
 fn cause(error: &libloading::Error) -> String {
     error.source().map_or_else(|| error.to_string(), |source| format!("{error}: {source}"))
-}
-
-/// Where built models are kept: `AFU_CACHE`, else the XDG cache folder's `contact-afu`.
-fn cache_folder() -> Result<PathBuf, CosimError> {
-    let set = |name: &str| env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
-    let xdg = || set("XDG_CACHE_HOME").filter(|path| path.is_absolute());
-    let user = || xdg().or_else(|| Some(set("HOME")?.join(".cache"))).map(|path| path.join("contact-afu"));
-    set("AFU_CACHE").or_else(user).ok_or(CosimError::NoCache)
 }

@@ -4,6 +4,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use serde::Serialize;
 use tempfile::TempDir;
 
 use super::manifest;
@@ -18,6 +19,25 @@ pub enum Error {
     /// The path names something other than a folder.
     #[error("{}: is not a folder", .0.display())]
     NotAFolder(PathBuf),
+    /// The folder holds results of something else.
+    #[error(
+        "{}: it holds {}; choose another folder, or give --force to replace what is there",
+        folder.display(), differences.join(", and ")
+    )]
+    Other {
+        /// The folder.
+        folder: PathBuf,
+        /// How they differ from what was to be written.
+        differences: Vec<String>,
+    },
+    /// A value could not be turned into text.
+    #[error("cannot write {}: {message}", path.display())]
+    Text {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        message: String,
+    },
     /// A file inside would leave the folder.
     #[error("{0}: a file of a result folder has a plain relative path")]
     Path(String),
@@ -111,13 +131,66 @@ pub fn check(target: &Path, force: bool) -> Result<(), Error> {
         Err(error) if error.kind() == io::ErrorKind::NotADirectory => Err(Error::NotAFolder(target.to_owned())),
         Err(error) => Err(Error::Io { path: target.to_owned(), error }),
         Ok(mut entries) => {
-            if force || entries.next().is_none() || manifest::is_ours(target) {
+            if force || entries.next().is_none() || manifest::schema(target).is_some() {
                 Ok(())
             } else {
                 Err(Error::Foreign(target.to_owned()))
             }
         }
     }
+}
+
+/// Whether results of this schema may be put at `target`: as [`check`] has it, and no results of another study there.
+///
+/// # Errors
+/// As [`check`], or [`Error::Other`].
+pub fn check_study(target: &Path, schema: &str, force: bool) -> Result<(), Error> {
+    check(target, force)?;
+    // Within a study the number alone differs.
+    let study = |schema: &str| schema.trim_end_matches(|c: char| c.is_ascii_digit()).to_owned();
+    match manifest::schema(target) {
+        Some(there) if !force && study(&there) != study(schema) => {
+            let differences = vec![format!("results of {there}, not {schema}")];
+            Err(Error::Other { folder: target.to_owned(), differences })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Replaces one file whole with a value as indented JSON and a line end.
+///
+/// # Errors
+/// If the value has no JSON, or the file system refuses; the old file is then as it was.
+pub fn replace_json(path: &Path, value: &impl Serialize) -> Result<(), Error> {
+    let mut text = serde_json::to_vec_pretty(value).map_err(as_text(path))?;
+    text.push(b'\n');
+    replace_file(path, &text)
+}
+
+/// Replaces one file whole with the CSV that `write` writes.
+///
+/// # Errors
+/// As [`replace_json`].
+pub fn replace_csv(
+    path: &Path,
+    write: impl FnOnce(&mut csv::Writer<Vec<u8>>) -> Result<(), csv::Error>,
+) -> Result<(), Error> {
+    let mut out = csv::Writer::from_writer(Vec::new());
+    write(&mut out).map_err(as_text(path))?;
+    replace_file(path, &out.into_inner().map_err(as_text(path))?)
+}
+
+fn as_text<E: std::fmt::Display>(path: &Path) -> impl FnOnce(E) -> Error + use<E> {
+    let path = path.to_owned();
+    move |error| Error::Text { path, message: error.to_string() }
+}
+
+/// Makes a folder, and those above it, where they are not there.
+///
+/// # Errors
+/// When the file system refuses.
+pub fn create(target: &Path) -> Result<(), Error> {
+    fs::create_dir_all(target).map_err(at(target))
 }
 
 /// Replaces one file whole ([`files::replace`]).
@@ -195,5 +268,23 @@ mod tests {
         replace_file(&file, b"new").expect("written");
         assert_eq!(fs::read(&file).expect("there"), b"new");
         assert!(matches!(check(&file, true), Err(Error::NotAFolder(_))));
+    }
+
+    #[test]
+    fn a_study_does_not_replace_another_unasked() {
+        let room = tempfile::tempdir().expect("a temporary folder");
+        let manifest = |schema: &str| {
+            replace_json(&room.path().join(manifest::NAME), &serde_json::json!({ "schema": schema })).expect("written");
+        };
+        check_study(room.path(), "contact-afu/hard/2", false).expect("an empty folder");
+        for (there, may) in
+            [("hard/2", true), ("hard/1", true), ("hard/17", true), ("sweep/2", false), ("harder/2", false)]
+        {
+            manifest(&format!("contact-afu/{there}"));
+            assert_eq!(check_study(room.path(), "contact-afu/hard/2", false).is_ok(), may, "{there}");
+            check_study(room.path(), "contact-afu/hard/2", true).expect("forced");
+        }
+        manifest("their/hard/2");
+        assert!(matches!(check_study(room.path(), "contact-afu/hard/2", false), Err(Error::Foreign(_))));
     }
 }

@@ -10,9 +10,9 @@ pub const NAME: &str = "manifest.json";
 /// What its `schema` begins with.
 pub const FAMILY: &str = "contact-afu/";
 
-/// Whether `folder` holds a manifest of ours.
-pub fn is_ours(folder: &Path) -> bool {
-    let Ok(text) = fs::read(folder.join(NAME)) else { return false };
-    let Ok(manifest) = serde_json::from_slice::<Value>(&text) else { return false };
-    manifest.get("schema").and_then(Value::as_str).is_some_and(|schema| schema.starts_with(FAMILY))
+/// The schema of the manifest in `folder`; `None` if there is none of ours.
+pub fn schema(folder: &Path) -> Option<String> {
+    let manifest: Value = serde_json::from_slice(&fs::read(folder.join(NAME)).ok()?).ok()?;
+    let schema = manifest.get("schema")?.as_str()?;
+    schema.starts_with(FAMILY).then(|| schema.to_owned())
 }

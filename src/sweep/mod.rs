@@ -1,19 +1,19 @@
 //! The same job for many AFUs: what each number of SCPUs gives, in a table that grows row by row and is resumed.
 
-mod record;
+mod results;
 mod row;
 
-pub use record::{Record, RecordError, SCHEMA, Swept};
+pub use results::{SCHEMA, SweepResults, Swept};
 pub use row::Row;
 
 use std::path::Path;
 use std::time::Instant;
 
-use sha2::{Digest, Sha256};
-
 use crate::config::Config;
 use crate::kernel::PairRecord;
 use crate::link::LinkModel;
+use crate::report::folder;
+use crate::store::{self, Key, Store, StoreError, sha256};
 use crate::synth::{Area, Options, SynthError, Target, Unit, synthesise};
 use crate::verify::{Bench, VerifyError, rtl_sha256};
 
@@ -30,40 +30,50 @@ pub struct Task<'a> {
     pub counts: bool,
 }
 
-/// Fills `record` with a row for each of `configs`: those of an earlier run whose Verilog is still the same, and the
-/// others measured now. The folder is written after each. Says how many rows are of an earlier run.
+impl Task<'_> {
+    /// What decides a row.
+    fn key(&self, config: &Config) -> Result<Key, SweepError> {
+        let version = env!("CARGO_PKG_VERSION");
+        let of = (version, config, rtl_sha256(config)?, fingerprint(self.pairs), self.link, self.seed);
+        Ok(Key::new("sweep/1", &of)?)
+    }
+}
+
+/// Fills `results` with a row for each of `configs`: those that the folder's store holds, and the others measured now.
+/// The folder is written after each. Returns how many rows the store held.
 ///
 /// # Errors
-/// As [`Bench::new`] and [`Bench::run`]; as [`Record::earlier`]; if the folder cannot be written.
+/// As [`Bench::new`] and [`Bench::run`]; as [`SweepResults::check`]; if the folder cannot be written.
 pub fn fill(
-    record: &mut Record,
+    results: &mut SweepResults,
     configs: &[Config],
     task: &Task,
     folder: &Path,
     force: bool,
     mut begins: impl FnMut(&Config),
 ) -> Result<usize, SweepError> {
-    let earlier = record.earlier(folder, force)?;
-    let mut rows = Vec::new();
-    for config in configs {
-        let known = earlier.iter().find(|row| (row.scpus, row.interval) == (config.scpus, config.interval));
-        let same = known.map(|row| Ok::<_, SweepError>(rtl_sha256(config)? == row.rtl_sha256)).transpose()?;
-        rows.push(known.filter(|_| same == Some(true)).cloned());
-    }
+    results.check(folder, force)?;
+    let store = Store::open(&folder.join(store::FOLDER));
+    let keys = configs.iter().map(|config| task.key(config)).collect::<Result<Vec<_>, _>>()?;
+    let mut rows = keys.iter().map(|key| store.get::<Row>(key)).collect::<Result<Vec<_>, _>>()?;
     let resumed = rows.iter().flatten().count();
-    for index in 0..rows.len() {
+    for (index, (config, key)) in configs.iter().zip(&keys).enumerate() {
         if rows[index].is_none() {
-            begins(&configs[index]);
-            rows[index] = Some(measure(&configs[index], task)?);
-            record.rows = rows.iter().flatten().cloned().collect();
-            record.save(folder)?;
+            begins(config);
+            let row = measure(config, task)?;
+            store.put(key, &row)?;
+            rows[index] = Some(row);
+            results.rows = rows.iter().flatten().cloned().collect();
+            results.save(folder)?;
         }
         if let Some(row) = rows[index].take_if(|row| task.counts && row.scpu_luts.is_none()) {
-            rows[index] = Some(row.with_area(area(&configs[index])?));
+            let row = row.with_area(area(config)?);
+            store.put(key, &row)?;
+            rows[index] = Some(row);
         }
     }
-    record.rows = rows.into_iter().flatten().collect();
-    record.save(folder)?;
+    results.rows = rows.into_iter().flatten().collect();
+    results.save(folder)?;
     Ok(resumed)
 }
 
@@ -89,10 +99,6 @@ fn fingerprint(pairs: &[PairRecord]) -> String {
     sha256(&pairs.iter().flat_map(|pair| pair.0).flat_map(u32::to_le_bytes).collect::<Vec<_>>())
 }
 
-fn sha256(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
-}
-
 /// Why a sweep did not come to its end.
 #[derive(Debug, thiserror::Error)]
 pub enum SweepError {
@@ -107,5 +113,8 @@ pub enum SweepError {
     Verify(#[from] VerifyError),
     /// The folder is not ours, or could not be read or written.
     #[error(transparent)]
-    Record(#[from] RecordError),
+    Folder(#[from] folder::Error),
+    /// A row could not be read or kept.
+    #[error(transparent)]
+    Store(#[from] StoreError),
 }

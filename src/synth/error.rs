@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::afu::BuildError;
 use crate::files;
 use crate::hdl::BuildErrors;
+use crate::store::StoreError;
 use crate::tools::MissingTool;
 
 /// Why a unit could not be measured.
@@ -50,9 +51,9 @@ pub enum SynthError {
         /// Why.
         source: io::Error,
     },
-    /// No folder for results.
-    #[error("no folder for results: set AFU_CACHE, XDG_CACHE_HOME or HOME")]
-    NoCache,
+    /// Netlists and routes cannot be kept.
+    #[error(transparent)]
+    Store(#[from] StoreError),
 }
 
 impl SynthError {

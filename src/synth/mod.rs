@@ -4,7 +4,6 @@
 //! needs a handful of pins and every path that counts runs from register to register. The wrapper's own cells are
 //! counted with the unit as a black box, and subtracted. The clock is the median over the seeds of the placer.
 
-mod cache;
 mod cells;
 mod error;
 mod figures;

@@ -6,10 +6,10 @@ use std::fs;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use super::cache::{self, Cache};
 use super::cells::Cells;
 use super::yosys::{Netlist, read, run};
 use super::{SynthError, Target, wrapper};
+use crate::store::{Key, Store};
 use crate::tools::Program;
 
 /// The clock the placer works towards, in MHz: more than any unit reaches, and the same for all.
@@ -99,9 +99,9 @@ pub(super) struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// Places and routes, or finds the result in the cache.
-    pub fn route(&self, cache: &Cache) -> Result<Routed, SynthError> {
-        self.cached(cache, &[], |report| {
+    /// Places and routes, or finds the result in the store.
+    pub fn route(&self, store: &Store) -> Result<Routed, SynthError> {
+        self.kept(store, &[], |report| {
             let fastest = report.fmax.values().map(|clock| clock.achieved).reduce(f64::min);
             let clock_mhz = fastest.ok_or_else(|| self.unexpected("no clock in its report"))?;
             let clocked = |path: &&Path| path.from.starts_with("posedge") && path.to.starts_with("posedge");
@@ -112,8 +112,8 @@ impl Run<'_> {
     }
 
     /// The latest arrival at each cell from other registers, in ns after the clock; likewise.
-    pub fn arrivals(&self, cache: &Cache) -> Result<BTreeMap<String, f64>, SynthError> {
-        self.cached(cache, &["--detailed-timing-report"], |report| {
+    pub fn arrivals(&self, store: &Store) -> Result<BTreeMap<String, f64>, SynthError> {
+        self.kept(store, &["--detailed-timing-report"], |report| {
             let mut latest = BTreeMap::new();
             for net in report.detailed_net_timings.iter().filter(|net| net.event.starts_with("posedge")) {
                 for end in net.endpoints.iter().filter(|end| end.event.starts_with("posedge")) {
@@ -130,31 +130,25 @@ impl Run<'_> {
         SynthError::Unexpected { program, unit: self.unit.to_owned(), what: what.to_owned() }
     }
 
-    fn cached<T: Serialize + DeserializeOwned>(
+    fn kept<T: Serialize + DeserializeOwned>(
         &self,
-        cache: &Cache,
+        store: &Store,
         options: &[&str],
         take: impl FnOnce(Report) -> Result<T, SynthError>,
     ) -> Result<T, SynthError> {
         let seed = self.seed.to_string();
         let fixed = ["--top", wrapper::TOP, "--freq", GOAL_MHZ, "--timing-allow-fail", "-q"];
-        let mut parts = vec!["route 1", self.nextpnr.version(), &self.netlist.key, self.target.name(), &seed];
-        parts.extend(self.device);
-        parts.extend(fixed);
-        parts.extend(options);
-        let key = cache::key(&parts);
-        if let Some(kept) = cache.get(&key) {
-            return Ok(kept);
-        }
-        let room = cache.scratch()?;
-        let file = room.path().join("netlist.json");
-        fs::copy(&self.netlist.path, &file).map_err(|e| SynthError::io("write into", cache.folder(), e))?;
-        let mut command = self.nextpnr.command();
-        command.args(self.device).args(fixed).args(options);
-        command.args(["--json", "netlist.json", "--seed", &seed, "--report", "report.json"]);
-        run(self.nextpnr, command.current_dir(room.path()), self.unit)?;
-        let made = take(read(self.nextpnr, &room.path().join("report.json"), self.unit)?)?;
-        cache.put(&key, &made)?;
-        Ok(made)
+        let words = [self.device, &fixed[..], options].concat();
+        let of = (self.nextpnr.version(), &self.netlist.key, self.target.name(), self.seed, words);
+        store.get_or_make(&Key::new("route/1", &of)?, || {
+            let room = store.scratch()?;
+            let file = room.path().join("netlist.json");
+            fs::copy(&self.netlist.path, &file).map_err(|e| SynthError::io("write into", store.folder(), e))?;
+            let mut command = self.nextpnr.command();
+            command.args(self.device).args(fixed).args(options);
+            command.args(["--json", "netlist.json", "--seed", &seed, "--report", "report.json"]);
+            run(self.nextpnr, command.current_dir(room.path()), self.unit)?;
+            take(read(self.nextpnr, &room.path().join("report.json"), self.unit)?)
+        })
     }
 }

@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
-use super::cache::{self, Cache};
 use super::cells::{area, placed};
 use super::figures::{Figures, SCHEMA, Seed, Tools};
 use super::names::Source;
 use super::route::{Routed, Run};
 use super::yosys::{Design, Netlist, synthesise as cells};
 use super::{Area, SynthError, Target, Trimmed, Unit, wrapper};
+use crate::store::{Store, sha256};
 use crate::tools::Program;
 
 /// How a unit is measured.
@@ -27,7 +27,7 @@ pub struct Options {
 pub fn netlist(unit: &Unit, target: Target) -> Result<PathBuf, SynthError> {
     let files = Unit::files(&unit.wrapped()?, target);
     let design = Design { unit: &unit.title(), files: &files, top: wrapper::TOP };
-    let Netlist { path, .. } = cells(&Program::yosys()?, &design, target, &Cache::open()?)?;
+    let Netlist { path, .. } = cells(&Program::yosys()?, &design, target, &kept()?)?;
     Ok(path)
 }
 
@@ -42,16 +42,16 @@ pub fn synthesise(unit: &Unit, options: &Options, mut progress: impl FnMut(&str)
     let router = target.router().filter(|_| !options.seeds.is_empty());
     let yosys = Program::yosys()?;
     let nextpnr = router.map(|(architecture, _)| Program::nextpnr(architecture)).transpose()?;
-    let cache = Cache::open()?;
+    let store = kept()?;
 
     let bench = unit.wrapped()?;
     let files = Unit::files(&bench, target);
     let name = unit.title();
     progress(&format!("{name}: Yosys, {target}"));
     let design = Design { unit: &name, files: &files, top: wrapper::TOP };
-    let whole = cells(&yosys, &design, target, &cache)?;
+    let whole = cells(&yosys, &design, target, &store)?;
     let alone = Unit::wrapper_files(&bench, &unit.module);
-    let alone = cells(&yosys, &Design { files: &alone, ..design }, target, &cache)?;
+    let alone = cells(&yosys, &Design { files: &alone, ..design }, target, &store)?;
     let mut wrapper = area(target, &alone.cells);
     let trimmed = Trimmed::of(&whole.path, &unit.module)?;
     wrapper.ffs = wrapper.ffs.saturating_sub(trimmed.inputs + trimmed.outputs);
@@ -61,7 +61,7 @@ pub fn synthesise(unit: &Unit, options: &Options, mut progress: impl FnMut(&str)
         for &seed in &options.seeds {
             progress(&format!("{name}: nextpnr, seed {seed}"));
             let run = Run { nextpnr, netlist: &whole, target, device, seed, unit: &name };
-            routed.push((seed, run.route(&cache)?));
+            routed.push((seed, run.route(&store)?));
         }
     }
     let seeds = routed.iter().map(|(seed, run)| Seed { seed: *seed, clock_mhz: run.clock_mhz }).collect();
@@ -70,7 +70,6 @@ pub fn synthesise(unit: &Unit, options: &Options, mut progress: impl FnMut(&str)
     let median = routed.get(routed.len().saturating_sub(1) / 2).map(|(_, run)| run);
     let occupied: Option<Area> = median.and_then(|run| placed(target, &run.used));
     let clock_mhz = median.map(|run| run.clock_mhz);
-    let texts: Vec<&str> = files.iter().map(|(_, text)| text.as_str()).collect();
     Ok(Figures {
         schema: SCHEMA.to_owned(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -90,10 +89,21 @@ pub fn synthesise(unit: &Unit, options: &Options, mut progress: impl FnMut(&str)
         trimmed,
         seeds,
         critical: median.map(|run| Source::new(&bench, &files).tell(&run.path)).unwrap_or_default(),
-        verilog_sha256: cache::key(&texts),
+        verilog_sha256: sha256_of(&files),
         tools: Tools {
             yosys: yosys.version().to_owned(),
             nextpnr: nextpnr.map(|program| program.version().to_owned()),
         },
     })
+}
+
+/// Netlists and routes, which are kept.
+pub(super) fn kept() -> Result<Store, SynthError> {
+    Ok(Store::of_user("synth")?)
+}
+
+/// SHA-256 of the texts of files.
+pub(super) fn sha256_of(files: &[(String, String)]) -> String {
+    let part = |(_, text): &(String, String)| [&(text.len() as u64).to_le_bytes()[..], text.as_bytes()].concat();
+    sha256(&files.iter().flat_map(part).collect::<Vec<_>>())
 }

@@ -6,15 +6,16 @@ use std::process::{Command, Output};
 
 use serde::Deserialize;
 
-use super::cache::{self, Cache};
 use super::cells::Cells;
+use super::run::sha256_of;
 use super::{SynthError, Target};
+use crate::store::{Key, Store};
 use crate::tools::Program;
 
-/// A netlist in the cache.
+/// A netlist in the store.
 pub(super) struct Netlist {
-    /// Hash of all that it was made from.
-    pub key: String,
+    /// All that it was made from.
+    pub key: Key,
     /// Its cells by type.
     pub cells: Cells,
     /// The netlist, in Yosys's JSON.
@@ -41,12 +42,12 @@ struct Counts {
     num_cells_by_type: Cells,
 }
 
-/// Synthesises a design for a target, or finds its netlist in the cache.
+/// Synthesises a design for a target, or finds its netlist in the store.
 pub(super) fn synthesise(
     yosys: &Program,
     design: &Design<'_>,
     target: Target,
-    cache: &Cache,
+    store: &Store,
 ) -> Result<Netlist, SynthError> {
     let mut script: Vec<String> = design.files.iter().map(|(name, _)| format!("read_verilog {name}")).collect();
     script.push(format!("{} -top {}", target.synthesis(), design.top));
@@ -54,24 +55,22 @@ pub(super) fn synthesise(
     script.push("write_json netlist.json".to_owned());
     let script = script.join("; ");
 
-    let mut parts = vec!["synthesis 1", yosys.version(), &script];
-    parts.extend(design.files.iter().map(|(_, text)| text.as_str()));
-    let key = cache::key(&parts);
-    let path = cache.file(&key, "netlist");
-    if let Some(cells) = cache.get(&key)
+    let key = Key::new("netlist/1", &(yosys.version(), &script, sha256_of(design.files)))?;
+    let path = store.file(&key, "netlist");
+    if let Some(cells) = store.get(&key)?
         && path.is_file()
     {
         return Ok(Netlist { key, cells, path });
     }
-    let room = cache.scratch()?;
+    let room = store.scratch()?;
     for (name, text) in design.files {
         let file = room.path().join(name);
-        fs::write(&file, text).map_err(|e| SynthError::io("write into", cache.folder(), e))?;
+        fs::write(&file, text).map_err(|e| SynthError::io("write into", store.folder(), e))?;
     }
     run(yosys, yosys.command().args(["-q", "-p", &script]).current_dir(room.path()), design.unit)?;
     let cells = read::<Stat>(yosys, &room.path().join("stat.json"), design.unit)?.design.num_cells_by_type;
-    cache::keep(&room.path().join("netlist.json"), &path)?;
-    cache.put(&key, &cells)?;
+    fs::rename(room.path().join("netlist.json"), &path).map_err(|e| SynthError::io("create", &path, e))?;
+    store.put(&key, &cells)?;
     Ok(Netlist { key, cells, path })
 }
 

@@ -1,15 +1,17 @@
 //! Errors as the studies of accuracy have them, against computations of their own.
 
-use contact_afu::accuracy::{Answer, Contender, Contenders, ErrorStatistics, Formula, Profiled, Row, assess, measure};
+use contact_afu::accuracy::{Answer, Contender, Contenders, Formula, Profiled, Row, assess, measure};
 use contact_afu::kernel::{EngineError, PairRecord};
 use contact_afu::pairs::Set;
+use contact_afu::store::Store;
 
 fn profiled(name: &str) -> Box<dyn Contender> {
     Box::new(Profiled::new(&name.parse().expect("a profile")))
 }
 
 fn rows(pairs: &[PairRecord], mut contenders: Contenders) -> Vec<Row> {
-    measure("dense", pairs, &mut contenders, &[], |_| {}).expect("no contender fails").0
+    let store = Store::temporary().expect("a temporary folder");
+    measure("dense", pairs, &mut contenders, &store, |_| {}).expect("no contender fails").0
 }
 
 fn dense() -> Vec<PairRecord> {
@@ -95,17 +97,37 @@ fn a_broken_rounding_is_seen() {
     assert_eq!(bad.position, good.position);
 }
 
+/// A formula that can be asked once.
+struct Once(bool);
+
+impl Contender for Once {
+    fn name(&self) -> String {
+        "once".to_owned()
+    }
+
+    fn answers(&mut self, pairs: &[PairRecord]) -> Result<Vec<Answer>, EngineError> {
+        match std::mem::replace(&mut self.0, false) {
+            true => Formula.answers(pairs),
+            false => Err("asked again".into()),
+        }
+    }
+}
+
 #[test]
 fn a_known_row_is_not_measured_again() {
     let pairs = &dense()[..500];
-    let mut row = rows(pairs, vec![profiled("wide")]).remove(0);
-    let (tally, errors) = assess(pairs, &profiled("wide").answers(pairs).expect("answers"));
-    assert_eq!((row.tally, row.errors), (tally, errors));
-    row.errors = ErrorStatistics::default();
-    let mut contenders = vec![profiled("wide"), profiled("paper")];
-    let (again, known) = measure("dense", pairs, &mut contenders, &[row.clone()], |_| {}).expect("answers");
-    assert_eq!((known, &again[0]), (1, &row));
-    assert_ne!(again[1].errors, ErrorStatistics::default());
-    let (others, known) = measure("dense", &pairs[1..], &mut contenders, &[row], |_| {}).expect("answers");
-    assert_eq!((known, others.len()), (0, 2), "other pairs are other rows");
+    let store = Store::temporary().expect("a temporary folder");
+    let measured = |pairs: &[PairRecord], contenders: Contenders| {
+        let mut contenders = contenders;
+        measure("dense", pairs, &mut contenders, &store, |_| {}).map_err(|error| error.to_string())
+    };
+    let (rows, known) = measured(pairs, vec![Box::new(Once(true))]).expect("answers");
+    assert_eq!(known, 0);
+    let (tally, errors) = assess(pairs, &Formula.answers(pairs).expect("answers"));
+    assert_eq!((rows[0].tally, rows[0].errors), (tally, errors));
+
+    let (again, known) = measured(pairs, vec![Box::new(Once(false)), profiled("bfloat")]).expect("not asked again");
+    assert_eq!((known, &again[0]), (1, &rows[0]));
+    assert_ne!(again[1].errors, again[0].errors, "nor is one contender's row another's");
+    assert_eq!(measured(&pairs[1..], vec![Box::new(Once(false))]).expect_err("other pairs"), "once: asked again");
 }

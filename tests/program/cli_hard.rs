@@ -136,4 +136,14 @@ fn wrong_words_are_exit_2_and_a_foreign_folder_is_left_alone() {
     assert_eq!(fs::read_dir(room.path().join("out")).expect("there").count(), 1);
     hard(room.path(), &["--pairs", "17", "--force"]).success();
     assert!(room.path().join("out/theirs").exists() && room.path().join("out/hard.csv").exists());
+
+    // Ours, but of something else.
+    let manifest = room.path().join("out/manifest.json");
+    fs::write(&manifest, r#"{"schema": "contact-afu/sweep/1"}"#).expect("written");
+    let before = fs::read(&manifest).expect("there");
+    let refused = hard(room.path(), &["--pairs", "17"]).code(2);
+    let said = String::from_utf8(refused.get_output().stderr.clone()).expect("UTF-8");
+    assert!(said.contains("it holds results of contact-afu/sweep/1, not contact-afu/hard/1; choose another"), "{said}");
+    assert_eq!(fs::read(&manifest).expect("there"), before);
+    hard(room.path(), &["--pairs", "17", "--force"]).success();
 }

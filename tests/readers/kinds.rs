@@ -5,13 +5,15 @@ use std::fs;
 use std::path::Path;
 
 use contact_afu::accuracy::trade::{self, Bounds, Time};
-use contact_afu::accuracy::{self, Task};
+use contact_afu::accuracy::{self, HardResults, Task};
 use contact_afu::config::{self, Config, Profile, Results, Shell};
 use contact_afu::kernel::ContactRecord;
 use contact_afu::link::{Description, Link, LinkModel};
 use contact_afu::scene::{Plan, Scene, Still};
-use contact_afu::synth::{self, Figures};
-use contact_afu::{pairs, report, sweep};
+use contact_afu::store::{Key, Store};
+use contact_afu::sweep::{self, SweepResults};
+use contact_afu::synth::{self, Area, Figures};
+use contact_afu::{pairs, report};
 use serde_json::{Value, json};
 
 use crate::mutate::Form;
@@ -159,10 +161,14 @@ fn of_users(room: &Path) -> Vec<Kind> {
 }
 
 /// A sweep without rows.
-fn swept() -> sweep::Record {
+fn swept() -> SweepResults {
     let task = sweep::Task { pairs: &[], link: &LinkModel::ideal(), seed: 1, counts: false };
     let swept = sweep::Swept { scpus: vec![1], interval: vec![1] };
-    sweep::Record::new("random:5", "ideal", &task, &Config::default(), swept)
+    SweepResults::new("random:5", "ideal", &task, &Config::default(), swept)
+}
+
+fn measured() -> Key {
+    Key::new("area/1", &("wide", 7, 1.5)).unwrap()
 }
 
 /// What the program wrote and reads again: manifests, chosen configurations, studies to be resumed, figures.
@@ -185,7 +191,7 @@ fn of_the_program() -> Vec<Kind> {
     });
     figures.as_object_mut().unwrap().extend(area.as_object().unwrap().clone());
     let text = |value: &Value| serde_json::to_vec(value).unwrap();
-    let hard = accuracy::Record::new(Task { pairs: 0, seed: 1 }, &["somebody"]);
+    let hard = HardResults::new(Task { pairs: 0, seed: 1 }, &["somebody"]);
     vec![
         Kind {
             name: "manifest.json",
@@ -212,15 +218,26 @@ fn of_the_program() -> Vec<Kind> {
             seeds: vec![serde_json::to_vec(&hard).unwrap()],
             read: |path| {
                 let task = Task { pairs: 0, seed: 1 };
-                let mut record = accuracy::Record::new(task, &[]);
-                accuracy::fill(&mut record, &mut [], task, Some((path.parent().unwrap(), false)), |_, _| ()).is_ok()
+                let mut results = HardResults::new(task, &[]);
+                accuracy::fill(&mut results, &mut [], task, Some((path.parent().unwrap(), false)), |_, _| ()).is_ok()
             },
         },
         Kind {
             name: "sweep/manifest.json",
             form: Form::Json,
             seeds: vec![serde_json::to_vec(&swept()).unwrap()],
-            read: |path| swept().earlier(path.parent().unwrap(), false).is_ok(),
+            read: |path| swept().check(path.parent().unwrap(), false).is_ok(),
+        },
+        Kind {
+            name: "store/measurement.json",
+            form: Form::Json,
+            seeds: vec![text(&json!({ "key": measured(), "value": area }))],
+            read: |path| {
+                // A store looks for it under the hash of its key.
+                let store = Store::open(path.parent().unwrap());
+                fs::rename(path, store.file(&measured(), "json")).unwrap();
+                store.get::<Area>(&measured()).unwrap().is_some() && store.list().unwrap() == [measured()]
+            },
         },
         Kind {
             name: "synth.json",
@@ -246,7 +263,7 @@ fn of_the_program() -> Vec<Kind> {
 
 /// All kinds. `room` has a folder for each that has one in its name.
 pub fn kinds(room: &Path) -> Vec<Kind> {
-    for folder in ["hard", "sweep"] {
+    for folder in ["hard", "store", "sweep"] {
         fs::create_dir(room.join(folder)).unwrap();
     }
     [of_pairs(room), of_users(room), of_the_program()].into_iter().flatten().collect()

@@ -4,6 +4,7 @@ use contact_afu::accuracy::trade::{Named, Plan, Size, Study, Work, run};
 use contact_afu::accuracy::{Contenders, Profiled, measure};
 use contact_afu::config::{Config, Profile, RecordFormat, Shell};
 use contact_afu::pairs::Set;
+use contact_afu::store::Store;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
@@ -63,21 +64,24 @@ fn an_interrupted_study_goes_on_and_comes_to_the_same() {
     let undisturbed = figures(undisturbed.expect("nothing stopped it"));
     assert_eq!(begun, 2);
 
-    // After both sets and the first configuration: its cycles are kept.
+    // After both sets and the first configuration: its cycles are kept. A worker may have gone on to the second.
     let (stopped, _) = study(&parts, 2);
     assert!(stopped.is_none(), "it was stopped");
-    let store = parts.join("manifest.json");
-    let mut kept: serde_json::Value = serde_json::from_slice(&std::fs::read(&store).expect("a store")).expect("JSON");
-    let count = |what: &str| kept[what].as_array().map(Vec::len);
-    assert_eq!((count("rows"), count("cycles")), (Some(4), Some(1)));
+    let store = Store::open(&parts.join("measurements"));
+    let of = |kind: &str| store.list().expect("read").into_iter().filter(|key| key.kind() == kind).collect::<Vec<_>>();
+    let kept = of("cycles/1").len();
+    assert!(of("errors/1").len() == 4 && kept > 0, "{kept}");
 
     let (resumed, begun) = study(&parts, usize::MAX);
-    assert_eq!(begun, 1, "what is kept is not simulated again");
+    assert_eq!(begun, 2 - kept, "what is kept is not simulated again");
     assert_eq!(figures(resumed.expect("nothing stopped it")), undisturbed);
 
     // What is kept is believed: no row is measured again either.
-    kept["rows"][0]["tally"]["missed"] = 4711.into();
-    std::fs::write(&store, serde_json::to_vec(&kept).expect("JSON")).expect("written");
+    for key in of("errors/1") {
+        let mut judged: serde_json::Value = store.get(&key).expect("read").expect("there");
+        judged["tally"]["missed"] = 4711.into();
+        store.put(&key, &judged).expect("kept");
+    }
     let (resumed, _) = study(&parts, usize::MAX);
     assert_eq!(resumed.expect("nothing stopped it").points[0].rows[0].tally.missed, 4711);
 
@@ -96,7 +100,8 @@ fn a_record_s_rounding_is_part_of_the_error() {
         contenders.push(Box::new(Profiled::over(&profile.parse().expect("a profile"), record)));
     }
     let dense = Set::Dense(500).pairs(1);
-    let (rows, _) = measure("dense", &dense, &mut contenders, &[], |_| {}).expect("answers");
+    let (rows, _) = measure("dense", &dense, &mut contenders, &Store::temporary().expect("a temporary folder"), |_| {})
+        .expect("answers");
     let [wide, rounded, half] = [0, 1, 2].map(|i| rows[i].errors.contact.mean);
     assert!(rounded > 1000.0 * wide, "f16 costs what it costs: {rounded:e} {wide:e}");
     assert!(half > rounded, "and computing in it costs more: {half:e} {rounded:e}");

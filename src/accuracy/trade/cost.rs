@@ -1,14 +1,15 @@
 //! What a configuration takes: cycles by cosim, area and clock by synthesis.
 
 use super::plan::Plan;
+use crate::accuracy::measure::with_pairs;
 use crate::config::Config;
 use crate::kernel::PairRecord;
 use crate::link::LinkModel;
 use crate::report::tally::Tally;
+use crate::store::sha256;
 use crate::synth::{Area, Figures, Options, SynthError, Unit, synthesise};
 use crate::verify::{Bench, VerifyError};
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 
 /// Cycles of an AFU, each counted by simulating its Verilog.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -60,13 +61,10 @@ pub fn cycles(
 }
 
 /// The hash of what decides [`Cycles`].
-pub(super) fn cycles_key(rtl: &str, pairs: &[PairRecord], link: &LinkModel, seed: u64) -> String {
-    let mut hash = Sha256::new();
+pub(super) fn cycles_hash(rtl: &str, pairs: &[PairRecord], link: &LinkModel, seed: u64) -> String {
     // A link is plain values: it has JSON.
     let link = serde_json::to_string(link).unwrap_or_default();
-    hash.update(format!("cycles 1 {rtl} {link} {seed} "));
-    pairs.iter().flat_map(|pair| pair.0).for_each(|word| hash.update(word.to_le_bytes()));
-    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    with_pairs(format!("cycles 1 {rtl} {link} {seed} "), pairs)
 }
 
 /// An SCPU on an FPGA.
@@ -82,10 +80,8 @@ pub struct Hardware {
 }
 
 /// The hash of what decides [`Hardware`].
-pub(super) fn hardware_key(rtl: &str, plan: &Plan, seeds: &[u32]) -> String {
-    let mut hash = Sha256::new();
-    hash.update(format!("hardware 2 {rtl} {} {seeds:?}", plan.target));
-    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+pub(super) fn hardware_hash(rtl: &str, plan: &Plan, seeds: &[u32]) -> String {
+    sha256(format!("hardware 2 {rtl} {} {seeds:?}", plan.target).as_bytes())
 }
 
 /// Synthesises the SCPU of a configuration, and routes it where there are `seeds` for the placer.

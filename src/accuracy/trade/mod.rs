@@ -19,6 +19,7 @@ mod run;
 mod scene;
 mod software;
 mod table;
+mod workers;
 
 pub use axes::name;
 pub use choose::{Bound, Bounds, Instead, choose, to_build};
@@ -29,7 +30,7 @@ pub use page::{page, steps};
 pub use picture::picture;
 pub use plan::{Named, Plan, Size};
 pub use point::{Counted, Point};
-pub use results::{ResultsError, SCHEMA, SetFigures, Study, committed};
+pub use results::{SCHEMA, SetFigures, Study, committed};
 pub use run::{TradeError, Work, run};
 pub use scene::{Drift, GAP, LAYERS, STEPS};
 pub use table::table;

@@ -1,8 +1,8 @@
-//! What a study leaves in its folder beside its store.
+//! What a study leaves in its folder beside its measurements.
 
 use super::columns::COLUMNS;
-use super::{ResultsError, Study, Time, page, picture};
-use crate::report::folder::replace_file;
+use super::{Study, Time, page, picture};
+use crate::report::folder::{self, replace_csv, replace_file, replace_json};
 use std::path::Path;
 use std::{fs, io};
 
@@ -11,37 +11,35 @@ use std::{fs, io};
 ///
 /// # Errors
 /// When the file system refuses.
-pub fn write(results: &Study, folder: &Path) -> Result<(), ResultsError> {
-    let file = |name: &str, text: &[u8]| replace_file(&folder.join(name), text);
-    let mut json = serde_json::to_vec_pretty(results).map_err(ResultsError::write)?;
-    json.push(b'\n');
-    file("results.json", &json)?;
-    file("results.csv", &csv(results)?)?;
+pub fn write(results: &Study, folder: &Path) -> Result<(), folder::Error> {
+    replace_json(&folder.join("results.json"), results)?;
+    replace_csv(&folder.join("results.csv"), |out| csv(results, out))?;
     for (name, time) in [("front.svg", Time::Lone), ("throughput.svg", Time::Device), ("link.svg", Time::Link)] {
         match results.times().contains(&time) {
-            true => file(name, picture(results, time).svg().as_bytes())?,
+            true => replace_file(&folder.join(name), picture(results, time).svg().as_bytes())?,
             false => remove(&folder.join(name))?,
         }
     }
-    Ok(file("report.html", page(results).as_bytes())?)
+    replace_file(&folder.join("report.html"), page(results).as_bytes())
 }
 
-fn remove(path: &Path) -> Result<(), ResultsError> {
+fn remove(path: &Path) -> Result<(), folder::Error> {
     match fs::remove_file(path) {
-        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(ResultsError::Io { path: path.to_owned(), error }),
+        Err(error) if error.kind() != io::ErrorKind::NotFound => {
+            Err(folder::Error::Io { path: path.to_owned(), error })
+        }
         _ => Ok(()),
     }
 }
 
-fn csv(results: &Study) -> Result<Vec<u8>, ResultsError> {
-    let mut out = csv::Writer::from_writer(Vec::new());
+fn csv(results: &Study, out: &mut csv::Writer<Vec<u8>>) -> Result<(), csv::Error> {
     let heading = ["configuration", "axis", "profile"].into_iter().chain(COLUMNS.iter().map(|column| column.key));
-    out.write_record(heading).map_err(ResultsError::write)?;
+    out.write_record(heading)?;
     for point in &results.points {
         let words = [point.name.clone(), point.axis.clone(), point.config.profile.to_string()];
         let figure = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
         let figures = COLUMNS.iter().map(|column| figure((column.value)(results, point)));
-        out.write_record(words.into_iter().chain(figures)).map_err(ResultsError::write)?;
+        out.write_record(words.into_iter().chain(figures))?;
     }
-    out.into_inner().map_err(ResultsError::write)
+    Ok(())
 }

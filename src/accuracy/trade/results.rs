@@ -1,87 +1,11 @@
-//! The store of a study's measurements, and its results.
+//! What a study came to.
 
-use super::cost::{Cycles, Hardware};
 use super::{Plan, Point, Time};
-use crate::accuracy::Row;
-use crate::report::folder::{self, replace_file};
 use crate::synth::Target;
 use serde::{Deserialize, Serialize};
-use std::fs;
-use std::io;
-use std::path::{Path, PathBuf};
 
 /// The schema of a study's results. Within a number keys are only added.
 pub const SCHEMA: &str = "contact-afu/accuracy/1";
-const STORE: &str = "contact-afu/accuracy-store/1";
-const MANIFEST: &str = "manifest.json";
-
-/// Why results could not be read or written.
-#[derive(Debug, thiserror::Error)]
-pub enum ResultsError {
-    /// The folder belongs to somebody else, or the file system refused.
-    #[error(transparent)]
-    Folder(#[from] folder::Error),
-    /// A file or folder could not be read or made.
-    #[error("{}: {error}", path.display())]
-    Io {
-        /// Which.
-        path: PathBuf,
-        /// Why.
-        error: io::Error,
-    },
-    /// Something could not be turned into text.
-    #[error("cannot write the results: {0}")]
-    Write(String),
-}
-
-impl ResultsError {
-    pub(super) fn write(error: impl std::fmt::Display) -> Self {
-        Self::Write(error.to_string())
-    }
-}
-
-/// Measurements by the hash of what went into them, in a folder's `manifest.json` as they come.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct Store {
-    schema: String,
-    version: String,
-    pub rows: Vec<Row>,
-    pub cycles: Vec<Cycles>,
-    pub hardware: Vec<Hardware>,
-    #[serde(skip)]
-    folder: Option<PathBuf>,
-}
-
-impl Store {
-    /// What `folder` holds already; nothing is kept without one.
-    pub fn open(folder: Option<(&Path, bool)>) -> Result<Self, ResultsError> {
-        let empty = Self { schema: STORE.to_owned(), version: env!("CARGO_PKG_VERSION").to_owned(), ..Self::default() };
-        let Some((folder, force)) = folder else { return Ok(empty) };
-        folder::check(folder, force)?;
-        let path = folder.join(MANIFEST);
-        let known = match fs::read(&path) {
-            // What cannot be read as a store, or is one of another version, is another one.
-            Ok(text) => serde_json::from_slice::<Self>(&text).ok().filter(|known| known.is_like(&empty)),
-            Err(error) if error.kind() == io::ErrorKind::NotFound => None,
-            Err(error) => return Err(ResultsError::Io { path, error }),
-        };
-        Ok(Self { folder: Some(folder.to_owned()), ..known.unwrap_or(empty) })
-    }
-
-    fn is_like(&self, other: &Self) -> bool {
-        (&self.schema, &self.version) == (&other.schema, &other.version)
-    }
-
-    /// Writes it where it was opened.
-    pub fn save(&self) -> Result<(), ResultsError> {
-        let Some(folder) = &self.folder else { return Ok(()) };
-        fs::create_dir_all(folder).map_err(|error| ResultsError::Io { path: folder.clone(), error })?;
-        let mut json = serde_json::to_vec(self).map_err(ResultsError::write)?;
-        json.push(b'\n');
-        Ok(replace_file(&folder.join(MANIFEST), &json)?)
-    }
-}
-
 /// A set of pairs, as results name it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -201,6 +125,6 @@ impl Study {
 ///
 /// # Errors
 /// When the file of the crate is not what this version reads; a test holds that it is.
-pub fn committed() -> Result<Study, ResultsError> {
-    serde_json::from_str(include_str!("committed.json")).map_err(ResultsError::write)
+pub fn committed() -> Result<Study, serde_json::Error> {
+    serde_json::from_str(include_str!("committed.json"))
 }

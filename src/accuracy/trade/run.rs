@@ -1,28 +1,29 @@
 //! A study, carried out.
 
 use super::axes::{Choice, is_same, name, neighbours};
-use super::cost::{Cycles, Hardware, cycles, cycles_key, hardware, hardware_key};
 use super::front::{on_fronts, worth_routing};
-use super::results::Store;
 use super::software;
-use super::{Counted, Plan, Point, ResultsError, Study};
-use crate::accuracy::{ContenderError, Contenders, Profiled, Row, measure};
+use super::workers::costs;
+use super::{Counted, Plan, Point, Study};
+use crate::accuracy::study::{self, StudyError};
+use crate::accuracy::{Contenders, Profiled, Row, measure};
 use crate::config::Config;
 use crate::link::LinkError;
-use crate::synth::{SynthError, Unit};
-use crate::verify::{Bench, VerifyError, rtl_sha256};
+use crate::report::{folder, manifest};
+use crate::store::{Store, StoreError};
+use crate::synth::SynthError;
+use crate::verify::VerifyError;
+use serde_json::json;
 use std::collections::VecDeque;
 use std::mem::{replace, take};
 use std::path::Path;
-use std::sync::{Mutex, PoisonError, mpsc};
-use std::thread;
 
 /// Why a study did not come to its end.
 #[derive(Debug, thiserror::Error)]
 pub enum TradeError {
-    /// A kernel failed.
+    /// A kernel failed, or the folder cannot be used.
     #[error(transparent)]
-    Engine(#[from] ContenderError),
+    Study(#[from] StudyError),
     /// No model, or no end of a job.
     #[error(transparent)]
     Verify(#[from] VerifyError),
@@ -32,10 +33,22 @@ pub enum TradeError {
     /// The link cannot be at a point's clock.
     #[error(transparent)]
     Link(#[from] LinkError),
-    /// The store of results.
-    #[error(transparent)]
-    Results(#[from] ResultsError),
 }
+
+impl From<StoreError> for TradeError {
+    fn from(error: StoreError) -> Self {
+        StudyError::from(error).into()
+    }
+}
+
+impl From<folder::Error> for TradeError {
+    fn from(error: folder::Error) -> Self {
+        StudyError::from(error).into()
+    }
+}
+
+/// The schema of the manifest in a study's folder.
+const FOLDER: &str = "contact-afu/accuracy-store/2";
 
 /// A piece of work done, for progress. How long a piece takes is guessed, in seconds of one processor where nothing is
 /// known yet: only the shares count.
@@ -55,7 +68,7 @@ pub enum Work {
 const PAIR_SECONDS: f64 = 5e-6;
 const MODEL_SECONDS: f64 = 25.0;
 const NETLIST_SECONDS: f64 = 45.0;
-const ROUTE_SECONDS: f64 = 600.0;
+pub(super) const ROUTE_SECONDS: f64 = 600.0;
 /// The diamond, and software on this machine: a configuration each.
 const DRIFT_SECONDS: f64 = 0.5;
 const SOFTWARE_SECONDS: f64 = 0.5;
@@ -71,7 +84,7 @@ fn seconds(plan: &Plan, configs: usize) -> f64 {
 }
 
 /// A guess at the seconds of a configuration without routes and errors.
-fn cost_seconds(plan: &Plan) -> f64 {
+pub(super) fn cost_seconds(plan: &Plan) -> f64 {
     MODEL_SECONDS + if plan.synthesis { NETLIST_SECONDS } else { 0.0 }
 }
 
@@ -82,20 +95,25 @@ fn cost_seconds(plan: &Plan) -> f64 {
 /// When a program refuses, a job does not end, or the folder is not ours or cannot be written. A missing synthesis
 /// program is no error: the results say so.
 pub fn run(plan: &Plan, folder: Option<(&Path, bool)>, mut progress: impl FnMut(Work)) -> Result<Study, TradeError> {
-    let mut store = Store::open(folder)?;
+    let store = &study::open(folder, FOLDER)?;
+    if let Some((folder, _)) = folder {
+        folder::create(folder)?;
+        let manifest = json!({ "schema": FOLDER, "version": env!("CARGO_PKG_VERSION") });
+        folder::replace_json(&folder.join(manifest::NAME), &manifest)?;
+    }
     let mut results = Study::new(plan);
     if !plan.synthesis {
         results.left_out.push("areas, and the throughput of a full device: nothing was synthesised".to_owned());
     }
     let routes = ON_FRONTS * ROUTE_SECONDS * plan.placer_seeds.len() as f64;
     progress(Work::Planned(seconds(plan, plan.choices.len() + plan.neighbours) + routes));
-    add(plan, &plan.choices, &mut results, &mut store, &mut progress)?;
+    add(plan, &plan.choices, &mut results, store, &mut progress)?;
     if plan.neighbours > 0 {
         let more = beside_the_front(plan, &results);
         progress(Work::Planned(seconds(plan, more.len()) - seconds(plan, plan.neighbours)));
-        add(plan, &more, &mut results, &mut store, &mut progress)?;
+        add(plan, &more, &mut results, store, &mut progress)?;
     }
-    route(plan, routes, &mut results, &mut store, &mut progress)?;
+    route(plan, routes, &mut results, store, &mut progress)?;
     let (drifts, timings) =
         (DRIFT_SECONDS * results.points.len() as f64, SOFTWARE_SECONDS * results.points.len() as f64);
     progress(Work::Planned(drifts + timings));
@@ -116,7 +134,9 @@ pub fn run(plan: &Plan, folder: Option<(&Path, bool)>, mut progress: impl FnMut(
 /// Where each arithmetic leads the diamond's spheres: an arithmetic once.
 #[cfg(feature = "ode")]
 fn drift(results: &mut Study) -> Result<(), TradeError> {
-    let fail = |error: crate::ode::Error| ContenderError { contender: "the diamond".to_owned(), error: error.into() };
+    let fail = |error: crate::ode::Error| {
+        StudyError::from(crate::accuracy::ContenderError { contender: "the diamond".to_owned(), error: error.into() })
+    };
     let scene = super::scene::Scene::new().map_err(fail)?;
     for index in 0..results.points.len() {
         let (known, rest) = results.points.split_at_mut(index);
@@ -159,7 +179,7 @@ fn route(
     plan: &Plan,
     mut guessed: f64,
     results: &mut Study,
-    store: &mut Store,
+    store: &Store,
     progress: &mut impl FnMut(Work),
 ) -> Result<(), TradeError> {
     let seeds = &plan.placer_seeds;
@@ -195,7 +215,7 @@ fn add(
     plan: &Plan,
     choices: &[Choice],
     results: &mut Study,
-    store: &mut Store,
+    store: &Store,
     progress: &mut impl FnMut(Work),
 ) -> Result<(), TradeError> {
     let configs: Vec<&Config> = choices.iter().map(|(_, config)| config).collect();
@@ -225,7 +245,7 @@ fn add(
 fn errors(
     plan: &Plan,
     configs: &[&Config],
-    store: &mut Store,
+    store: &Store,
     progress: &mut impl FnMut(Work),
 ) -> Result<Vec<Vec<Row>>, TradeError> {
     let contender = |config: &Config| Profiled::over(&config.profile, config.record);
@@ -244,12 +264,7 @@ fn errors(
         progress(Work::Begun(format!("errors on {}", set.name)));
         let mut rows = Vec::new();
         for some in contenders.chunks_mut(AT_ONCE) {
-            let (of_some, _) = measure(&set.name, &set.pairs, some, &store.rows, |_| {})?;
-            let is_new = |row: &&Row| !store.rows.iter().any(|known| known.key == row.key);
-            let new: Vec<Row> = of_some.iter().filter(is_new).cloned().collect();
-            store.rows.extend(new);
-            store.save()?;
-            rows.extend(of_some);
+            rows.extend(measure(&set.name, &set.pairs, some, store, |_| {})?.0);
         }
         for (config, found) in configs.iter().zip(&mut found) {
             let name = contender(config).title();
@@ -258,144 +273,4 @@ fn errors(
         progress(Work::Done(PAIR_SECONDS * (set.pairs.len() * configs.len()) as f64));
     }
     Ok(found)
-}
-
-/// What was measured of a configuration's hardware.
-struct Cost {
-    rtl_sha256: String,
-    scpu_cycles: u32,
-    modelled_mhz: f64,
-    cycles: Cycles,
-    hardware: Option<Hardware>,
-    missing: Option<String>,
-}
-
-impl Cost {
-    fn line(&self, name: &str) -> String {
-        let mut line = format!("{name}: {} cycles, line in to line out", self.cycles.lone);
-        if let Some(hardware) = &self.hardware {
-            line += &format!(", {} LUTs", hardware.area.luts);
-            line += &hardware.routed_mhz.map_or_else(String::new, |clock| format!(", {clock:.0} MHz after routing"));
-        }
-        line
-    }
-}
-
-/// What workers tell.
-enum News {
-    Begun(String),
-    Cycles(Cycles),
-    Hardware(Hardware),
-    Ended(usize, Box<Result<Cost, TradeError>>),
-}
-
-/// The cost of each configuration, `plan.jobs` of them at a time.
-fn costs(
-    plan: &Plan,
-    configs: &[&Config],
-    seeds: &[u32],
-    store: &mut Store,
-    progress: &mut impl FnMut(Work),
-) -> Result<Vec<Cost>, TradeError> {
-    let open: Mutex<VecDeque<usize>> = Mutex::new((0..configs.len()).collect());
-    let next = || open.lock().unwrap_or_else(PoisonError::into_inner).pop_front();
-    let stop = || open.lock().unwrap_or_else(PoisonError::into_inner).clear();
-    let known = (store.cycles.clone(), store.hardware.clone());
-    let mut costs: Vec<Option<Cost>> = configs.iter().map(|_| None).collect();
-    thread::scope(|scope| {
-        let (sender, receiver) = mpsc::channel();
-        for _ in 0..plan.jobs.clamp(1, configs.len().max(1)) {
-            let (sender, known, next) = (sender.clone(), &known, &next);
-            scope.spawn(move || {
-                while let Some(index) = next() {
-                    let tell = |news| drop(sender.send(news)); // nobody listens any more: nothing to tell
-                    let cost = cost(plan, configs[index], seeds, known, &tell);
-                    tell(News::Ended(index, Box::new(cost)));
-                }
-            });
-        }
-        drop(sender);
-        for news in receiver {
-            match news {
-                News::Begun(what) => progress(Work::Begun(what)),
-                News::Cycles(cycles) => {
-                    store.cycles.push(cycles);
-                    store.save().inspect_err(|_| stop())?;
-                }
-                News::Hardware(hardware) => {
-                    store.hardware.push(hardware);
-                    store.save().inspect_err(|_| stop())?;
-                }
-                News::Ended(index, cost) => {
-                    let cost = (*cost).inspect_err(|_| stop())?;
-                    progress(Work::Configuration(cost.line(&name(configs[index]))));
-                    costs[index] = Some(cost);
-                    progress(Work::Done(if seeds.is_empty() {
-                        cost_seconds(plan)
-                    } else {
-                        ROUTE_SECONDS * seeds.len() as f64
-                    }));
-                }
-            }
-        }
-        Ok::<_, TradeError>(())
-    })?;
-    Ok(costs.into_iter().flatten().collect())
-}
-
-fn cost(
-    plan: &Plan,
-    config: &Config,
-    seeds: &[u32],
-    (known_cycles, known_hardware): &(Vec<Cycles>, Vec<Hardware>),
-    tell: &impl Fn(News),
-) -> Result<Cost, TradeError> {
-    let rtl_sha256 = rtl_sha256(config)?;
-    let unit = Unit::scpu(config)?;
-    let modelled_mhz = unit.modelled_mhz().unwrap_or(config.clock_mhz).min(config.clock_mhz);
-    let scpu_cycles = unit.latency.unwrap_or_default();
-
-    let key = hardware_key(&rtl_sha256, plan, seeds);
-    let mut missing = None;
-    let kept = known_hardware.iter().find(|hardware| hardware.key == key).cloned();
-    let hardware = match kept {
-        Some(kept) => Some(kept),
-        None if !plan.synthesis => None,
-        None => match hardware(config, plan, seeds, key, |what| tell(News::Begun(what.to_owned()))) {
-            Ok(made) => {
-                tell(News::Hardware(made.clone()));
-                Some(made)
-            }
-            Err(SynthError::MissingTool(tool)) if seeds.is_empty() => {
-                missing = Some(format!("area and clock: {tool}"));
-                None
-            }
-            Err(SynthError::MissingTool(tool)) if !plan.must_route => {
-                missing = Some(format!("place and route: {tool}"));
-                None
-            }
-            // One that a program refuses leaves the others their figures.
-            Err(error @ SynthError::Failed { .. }) => {
-                let what = if seeds.is_empty() { "area and clock" } else { "place and route" };
-                let text = error.to_string();
-                missing = Some(format!("{what} of {}: {}", name(config), text.lines().next().unwrap_or_default()));
-                None
-            }
-            Err(error) => return Err(error.into()),
-        },
-    };
-    let clock = hardware.as_ref().and_then(|hardware| hardware.routed_mhz).unwrap_or(modelled_mhz);
-    let link = plan.link.at(clock)?;
-    let pairs = plan.sets.first().map_or(&[][..], |set| &set.pairs);
-    let key = cycles_key(&rtl_sha256, pairs, &link, plan.seed);
-    let cycles = match known_cycles.iter().find(|cycles| cycles.key == key) {
-        Some(kept) => kept.clone(),
-        None => {
-            tell(News::Begun(format!("{}: cosim", name(config))));
-            let made = cycles(&Bench::new(config)?, pairs, &link, plan.seed, key)?;
-            tell(News::Cycles(made.clone()));
-            made
-        }
-    };
-    Ok(Cost { rtl_sha256, scpu_cycles, modelled_mhz, cycles, hardware, missing })
 }

@@ -11,8 +11,8 @@ mod least_squares;
 use serde::{Deserialize, Serialize};
 
 use self::graphs::{Sample, port, samples, together};
-use super::cache::Cache;
 use super::route::Run;
+use super::run::kept;
 use super::yosys::{Design, synthesise as cells};
 use super::{SynthError, Target, Unit, wrapper};
 use crate::config::Profile;
@@ -67,7 +67,7 @@ impl Point {
 /// As of [`super::synthesise`].
 pub fn fit(target: Target, seeds: &[u32], mut progress: impl FnMut(&str)) -> Result<Option<Fit>, SynthError> {
     let Some((architecture, device)) = target.router() else { return Ok(None) };
-    let (yosys, nextpnr, cache) = (Program::yosys()?, Program::nextpnr(architecture)?, Cache::open()?);
+    let (yosys, nextpnr, store) = (Program::yosys()?, Program::nextpnr(architecture)?, kept()?);
     let start = DelayModel::guess();
     let delay = |sample: Sample| Ok((start.longest(&*sample.module()?), sample));
     let mut sorted = samples().into_iter().map(delay).collect::<Result<Vec<_>, BuildErrors>>()?;
@@ -80,12 +80,12 @@ pub fn fit(target: Target, seeds: &[u32], mut progress: impl FnMut(&str)) -> Res
         let files = Unit::files(&unit.wrapped()?, target);
         let design = Design { unit: &unit.name, files: &files, top: wrapper::TOP };
         progress(&format!("{} graphs: Yosys", group.len()));
-        let netlist = cells(&yosys, &design, target, &cache)?;
+        let netlist = cells(&yosys, &design, target, &store)?;
         let mut runs = Vec::new();
         for &seed in seeds {
             progress(&format!("{} graphs: nextpnr, seed {seed}", group.len()));
             let run = Run { nextpnr: &nextpnr, netlist: &netlist, target, device, seed, unit: &unit.name };
-            runs.push(run.arrivals(&cache)?);
+            runs.push(run.arrivals(&store)?);
         }
         for sample in &group {
             // A register's cell is named by the port it drives, and what kind of cell it is.

@@ -1,16 +1,13 @@
-//! The store of results: a row for each category and contender, in a folder that is written as it grows.
+//! What contenders came to on the hard pairs: a row for each category and contender, in a folder that grows.
 
 use super::{ErrorStatistics, Tally, Task};
-use crate::report::folder::{self, replace_file};
 use crate::report::table::{grouped, table};
+use crate::report::{folder, manifest};
 use serde::{Deserialize, Serialize};
-use std::fs;
-use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// The schema of a study's `manifest.json`.
 pub const SCHEMA: &str = "contact-afu/hard/1";
-const MANIFEST: &str = "manifest.json";
 const CSV: &str = "hard.csv";
 
 /// One contender on one category.
@@ -40,7 +37,7 @@ impl Row {
 /// rows alone as `hard.csv`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Record {
+pub struct HardResults {
     schema: String,
     version: String,
     /// Pairs of all categories together.
@@ -53,26 +50,7 @@ pub struct Record {
     pub rows: Vec<Row>,
 }
 
-/// Why a study's folder could not be read or written.
-#[derive(Debug, thiserror::Error)]
-pub enum RecordError {
-    /// The folder belongs to somebody else, or the file system refused.
-    #[error(transparent)]
-    Folder(#[from] folder::Error),
-    /// The record could not be read, or its folder made.
-    #[error("{}: {error}", path.display())]
-    Io {
-        /// The file or folder.
-        path: PathBuf,
-        /// Why.
-        error: io::Error,
-    },
-    /// The record could not be turned into text.
-    #[error("cannot write the record: {0}")]
-    Write(String),
-}
-
-impl Record {
+impl HardResults {
     /// A study without rows.
     pub fn new(task: Task, absent: &[&str]) -> Self {
         Self {
@@ -85,42 +63,23 @@ impl Record {
         }
     }
 
-    /// The rows that an earlier run left in `folder`, whatever it was asked: a row is found again by its key.
-    ///
-    /// # Errors
-    /// When the folder is not ours (`force` takes it all the same) or cannot be read.
-    pub(super) fn earlier(&self, folder: &Path, force: bool) -> Result<Vec<Row>, RecordError> {
-        folder::check(folder, force)?;
-        let path = folder.join(MANIFEST);
-        match fs::read(&path) {
-            // What cannot be read as such a record is another one.
-            Ok(text) => Ok(serde_json::from_slice::<Self>(&text).map_or(Vec::new(), |record| record.rows)),
-            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Vec::new()),
-            Err(error) => Err(RecordError::Io { path, error }),
-        }
-    }
-
     /// Writes the folder as it is now; each file is replaced whole.
-    pub(super) fn save(&self, folder: &Path) -> Result<(), RecordError> {
-        fs::create_dir_all(folder).map_err(|error| RecordError::Io { path: folder.to_owned(), error })?;
-        let mut json = serde_json::to_vec_pretty(self).map_err(|error| RecordError::Write(error.to_string()))?;
-        json.push(b'\n');
-        replace_file(&folder.join(MANIFEST), &json)?;
-        Ok(replace_file(&folder.join(CSV), &self.csv()?)?)
+    pub(super) fn save(&self, folder: &Path) -> Result<(), folder::Error> {
+        folder::create(folder)?;
+        folder::replace_json(&folder.join(manifest::NAME), self)?;
+        folder::replace_csv(&folder.join(CSV), |out| self.csv(out))
     }
 
-    fn csv(&self) -> Result<Vec<u8>, RecordError> {
-        let fail = |error: &dyn std::fmt::Display| RecordError::Write(error.to_string());
-        let mut out = csv::Writer::from_writer(Vec::new());
+    fn csv(&self, out: &mut csv::Writer<Vec<u8>>) -> Result<(), csv::Error> {
         let heading = ["category", "contender", "pairs", "contacts"].into_iter().chain(Tally::HEADING);
-        out.write_record(heading.chain(["depth_ulps", "normal_ulps", "position_ulps"])).map_err(|e| fail(&e))?;
+        out.write_record(heading.chain(["depth_ulps", "normal_ulps", "position_ulps"]))?;
         for Row { category, contender, tally, .. } in &self.rows {
             let counts = [tally.pairs, tally.contacts].into_iter().chain(tally.counts()).map(|count| count.to_string());
             let ulps = [tally.depth_ulps, tally.normal_ulps, tally.position_ulps].map(|ulps| ulps.to_string());
             let names = [category.clone(), contender.clone()];
-            out.write_record(names.into_iter().chain(counts).chain(ulps)).map_err(|error| fail(&error))?;
+            out.write_record(names.into_iter().chain(counts).chain(ulps))?;
         }
-        out.into_inner().map_err(|error| fail(&error))
+        Ok(())
     }
 
     /// What a contender came to in all categories together.

@@ -1,27 +1,27 @@
-//! The file that a sweep grows in, and is resumed from.
+//! What a sweep came to, in the folder that it grows in.
 
 use std::fs;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Row, Task, fingerprint, sha256};
+use super::{Row, Task, fingerprint};
 use crate::config::Config;
-use crate::report::folder::{self, replace_file};
 use crate::report::table::table;
+use crate::report::{folder, manifest};
+use crate::store::sha256;
 
 /// The schema of a sweep's `manifest.json`.
 pub const SCHEMA: &str = "contact-afu/sweep/1";
-/// The files of a sweep's folder.
-const MANIFEST: &str = "manifest.json";
+/// The rows alone, in a sweep's folder.
 const CSV: &str = "sweep.csv";
 
 /// A sweep: what every AFU was given, and the rows so far. Its folder holds it twice: as `manifest.json`, which it is
-/// resumed from, and the rows alone as `sweep.csv`.
+/// known by, and the rows alone as `sweep.csv`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Record {
+pub struct SweepResults {
     schema: String,
     version: String,
     /// The pairs: a set's name, or a file.
@@ -30,7 +30,7 @@ pub struct Record {
     pub pairs_sha256: String,
     /// The link's name, or its file.
     pub link: String,
-    /// SHA-256 of what the link is like; empty in records of before it was kept.
+    /// SHA-256 of what the link is like; empty in results of before it was kept.
     #[serde(default)]
     pub link_sha256: String,
     /// Seed of pairs and link.
@@ -54,37 +54,7 @@ pub struct Swept {
     pub interval: Vec<u32>,
 }
 
-/// Why a sweep's folder could not be read or written.
-#[derive(Debug, thiserror::Error)]
-pub enum RecordError {
-    /// The folder belongs to somebody else, or the file system refused.
-    #[error(transparent)]
-    Folder(#[from] folder::Error),
-    /// The folder holds results of something else.
-    #[error(
-        "{}: it holds {}; choose another folder, or give --force to replace what is there",
-        folder.display(), differences.join(", and ")
-    )]
-    Other {
-        /// The folder.
-        folder: PathBuf,
-        /// What is other there.
-        differences: Vec<String>,
-    },
-    /// The record could not be read.
-    #[error("{}: {error}", path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        error: io::Error,
-    },
-    /// The record could not be turned into text.
-    #[error("cannot write the record: {0}")]
-    Write(String),
-}
-
-impl Record {
+impl SweepResults {
     /// A sweep of `task` without rows. `pairs` and `link` are the names of what the task has.
     pub fn new(pairs: &str, link: &str, task: &Task, config: &Config, swept: Swept) -> Self {
         Self {
@@ -102,28 +72,28 @@ impl Record {
         }
     }
 
-    /// The rows that an earlier run of the same sweep left in `folder`; none if there is no such folder, or if `force`
+    /// Whether `folder` may hold this sweep: it is not there, holds an earlier run of the same sweep, or `force`
     /// replaces what is there.
     ///
     /// # Errors
     /// If the folder is not ours, or holds another sweep or rows that this one does not ask for, without `force`; if it
     /// cannot be read.
-    pub fn earlier(&self, folder: &Path, force: bool) -> Result<Vec<Row>, RecordError> {
+    pub fn check(&self, folder: &Path, force: bool) -> Result<(), folder::Error> {
         folder::check(folder, force)?;
-        let path = folder.join(MANIFEST);
+        let path = folder.join(manifest::NAME);
         let text = match fs::read(&path) {
             Ok(text) => text,
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
-            Err(error) => return Err(RecordError::Read { path, error }),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
+            Err(error) => return Err(folder::Error::Io { path, error }),
         };
         let differences = match serde_json::from_slice::<Self>(&text) {
-            Ok(there) => match self.differences(&there) {
-                none if none.is_empty() => return Ok(there.rows),
-                differences => differences,
-            },
+            Ok(there) => self.differences(&there),
             Err(_) => vec![format!("results that are no sweep of version {}", self.version)],
         };
-        if force { Ok(Vec::new()) } else { Err(RecordError::Other { folder: folder.to_owned(), differences }) }
+        if force || differences.is_empty() {
+            return Ok(());
+        }
+        Err(folder::Error::Other { folder: folder.to_owned(), differences })
     }
 
     /// What `there` is of, where that is not what this sweep is of.
@@ -169,20 +139,10 @@ impl Record {
     ///
     /// # Errors
     /// When the file system refuses.
-    pub fn save(&self, folder: &Path) -> Result<(), RecordError> {
-        fs::create_dir_all(folder).map_err(|error| RecordError::Read { path: folder.to_owned(), error })?;
-        let mut json = serde_json::to_vec_pretty(self).map_err(|error| RecordError::Write(error.to_string()))?;
-        json.push(b'\n');
-        replace_file(&folder.join(MANIFEST), &json)?;
-        replace_file(&folder.join(CSV), &self.csv()?)?;
-        Ok(())
-    }
-
-    fn csv(&self) -> Result<Vec<u8>, RecordError> {
-        let fail = |error: &dyn std::fmt::Display| RecordError::Write(error.to_string());
-        let mut out = csv::Writer::from_writer(Vec::new());
-        self.rows.iter().try_for_each(|row| out.serialize(row)).map_err(|error| fail(&error))?;
-        out.into_inner().map_err(|error| fail(&error))
+    pub fn save(&self, folder: &Path) -> Result<(), folder::Error> {
+        folder::create(folder)?;
+        folder::replace_json(&folder.join(manifest::NAME), self)?;
+        folder::replace_csv(&folder.join(CSV), |out| self.rows.iter().try_for_each(|row| out.serialize(row)))
     }
 
     /// The table for people.
@@ -233,41 +193,45 @@ mod tests {
         let pairs = [PairRecord::default()];
         let task = Task { pairs: &pairs, link: &LinkModel::ideal(), seed: 1, counts: false };
         let swept = Swept { scpus: vec![1, 2], interval: vec![1] };
-        let mut record = Record::new("diamond:3", "ideal", &task, &Config::default(), swept);
-        assert_eq!(record.earlier(&folder, false).expect("nothing there"), []);
-        record.rows = vec![row(1), row(2)];
-        record.save(&folder).expect("written");
-        assert_eq!(record.earlier(&folder, false).expect("ours"), record.rows);
+        let mut results = SweepResults::new("diamond:3", "ideal", &task, &Config::default(), swept);
+        results.check(&folder, false).expect("nothing there");
+        results.rows = vec![row(1), row(2)];
+        results.save(&folder).expect("written");
+        results.check(&folder, false).expect("ours");
         let csv = fs::read_to_string(folder.join(CSV)).expect("written");
         assert!(csv.starts_with("scpus,interval,pairs,contacts,mismatches,") && csv.lines().count() == 3, "{csv}");
 
-        let manifest = fs::read(folder.join(MANIFEST)).expect("written");
+        let manifest = fs::read(folder.join(manifest::NAME)).expect("written");
         let swept = |scpus: &[u32]| Swept { scpus: scpus.to_vec(), interval: vec![1, 2] };
-        let more = Record { swept: swept(&[4, 2, 1]), ..record.clone() };
-        assert_eq!(more.earlier(&folder, false).expect("the same and more"), record.rows);
+        let more = SweepResults { swept: swept(&[4, 2, 1]), ..results.clone() };
+        more.check(&folder, false).expect("the same and more");
         let paper = Config { profile: "paper".parse().expect("a profile"), ..Config::default() };
-        let base = record.clone();
+        let base = results.clone();
         for (other, words) in [
-            (Record { pairs: "diamond:4".to_owned(), ..base.clone() }, "a sweep of diamond:3, not diamond:4;"),
-            (Record { pairs_sha256: "ab".to_owned(), ..base.clone() }, "diamond:3 as it was before it changed;"),
-            (Record { link: "late".to_owned(), ..base.clone() }, "a sweep over ideal, not late;"),
-            (Record { link_sha256: "ab".to_owned(), ..base.clone() }, "over ideal as it was before it changed;"),
-            (Record { seed: 2, ..base.clone() }, "a sweep with seed 1, not 2;"),
-            (Record { version: "9".to_owned(), ..base.clone() }, "a sweep by version 0.1.0, not 9;"),
-            (Record { config: paper, ..base.clone() }, "not --profile paper;"),
-            (Record { swept: swept(&[1, 4]), ..base.clone() }, "not asked for now (SCPUs: 2 at interval 1);"),
+            (SweepResults { pairs: "diamond:4".to_owned(), ..base.clone() }, "a sweep of diamond:3, not diamond:4;"),
+            (SweepResults { pairs_sha256: "ab".to_owned(), ..base.clone() }, "diamond:3 as it was before it changed;"),
+            (SweepResults { link: "late".to_owned(), ..base.clone() }, "a sweep over ideal, not late;"),
+            (SweepResults { link_sha256: "ab".to_owned(), ..base.clone() }, "over ideal as it was before it changed;"),
+            (SweepResults { seed: 2, ..base.clone() }, "a sweep with seed 1, not 2;"),
+            (SweepResults { version: "9".to_owned(), ..base.clone() }, "a sweep by version 0.1.0, not 9;"),
+            (SweepResults { config: paper, ..base.clone() }, "not --profile paper;"),
+            (SweepResults { swept: swept(&[1, 4]), ..base.clone() }, "not asked for now (SCPUs: 2 at interval 1);"),
         ] {
-            let refused = other.earlier(&folder, false).expect_err("another").to_string();
+            let refused = other.check(&folder, false).expect_err("another").to_string();
             assert!(refused.contains(words) && refused.contains("--force"), "{words}: {refused}");
-            assert_eq!(other.earlier(&folder, true).expect("forced"), []);
-            assert_eq!(fs::read(folder.join(MANIFEST)).expect("written"), manifest, "nothing is replaced by asking");
+            other.check(&folder, true).expect("forced");
+            assert_eq!(
+                fs::read(folder.join(manifest::NAME)).expect("written"),
+                manifest,
+                "nothing is replaced by asking"
+            );
         }
 
-        fs::write(folder.join(MANIFEST), r#"{"schema": "contact-afu/manifest/1"}"#).expect("written");
-        let refused = record.earlier(&folder, false).expect_err("Verilog").to_string();
+        fs::write(folder.join(manifest::NAME), r#"{"schema": "contact-afu/manifest/1"}"#).expect("written");
+        let refused = results.check(&folder, false).expect_err("Verilog").to_string();
         assert!(refused.contains("results that are no sweep"), "{refused}");
-        fs::write(folder.join(MANIFEST), "{}").expect("written");
-        assert!(matches!(record.earlier(&folder, false), Err(RecordError::Folder(_))));
-        assert_eq!(record.earlier(&folder, true).expect("forced"), []);
+        fs::write(folder.join(manifest::NAME), "{}").expect("written");
+        assert!(matches!(results.check(&folder, false), Err(folder::Error::Foreign(_))));
+        results.check(&folder, true).expect("forced");
     }
 }
