@@ -121,6 +121,11 @@ impl Afu {
         &self.core
     }
 
+    /// Whether there is a shell around it.
+    pub fn has_shell(&self) -> bool {
+        !Arc::ptr_eq(&self.top, &self.core)
+    }
+
     /// The kernel inside each SCPU.
     pub fn kernel(&self) -> &Arc<Module> {
         &self.kernel

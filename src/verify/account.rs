@@ -1,7 +1,7 @@
 //! A small job's cycles, one by one: which part of the AFU and of the link takes how many.
 
 use crate::afu::Afu;
-use crate::config::{Results, Shell};
+use crate::config::Results;
 use crate::link::{LinkModel, Order};
 
 /// A part of a job's way, and the cycles it takes.
@@ -20,7 +20,7 @@ pub struct Part {
 /// reads in any order that wait for one another), fewer SCPUs than pairs in a line, an interval above 1, contacts alone
 /// as results, more lines than may be in flight or than the AFU takes in before its first write.
 pub fn account(afu: &Afu, link: &LinkModel, pairs: u32) -> Option<Vec<Part>> {
-    if afu.spec().config.shell != Shell::Line {
+    if afu.has_shell() {
         return None;
     }
     let (timing, layout, config) = (afu.timing(), afu.layout(), &afu.spec().config);

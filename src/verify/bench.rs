@@ -6,15 +6,13 @@ use std::time::Instant;
 use super::check::{Verdict, check};
 use super::error::VerifyError;
 use super::replay::Setup;
+use super::run::Run;
 use crate::afu::{Afu, Spec, file_list, top_name};
-use crate::config::{self, Config, Results, Shell};
-use crate::cosim::spl2::Machine;
-use crate::cosim::{CosimError, Driver, File, Instance, Job, Model, Outcome, Source, Trace};
-use crate::host::{Expected, HostError, PROGRESS_CYCLES, Session, Workspace};
+use crate::config::{self, Config, Results};
+use crate::cosim::{CosimError, File, Model, Source, Trace};
+use crate::host::Expected;
 use crate::kernel::{PairRecord, Reference};
-use crate::link::spl2::{Spl2, Spl2Model};
 use crate::link::{Link, LinkModel, Traffic};
-use crate::record::pack;
 
 /// Its parameter that says how many SCPUs.
 const SCPUS: &str = "SCPUS";
@@ -169,10 +167,8 @@ impl Bench {
             };
             progress(Progress::Simulated(pairs.min(count.into())));
         };
-        let outcome = match self.config.shell {
-            Shell::Spl2 => self.below_spl2(&instance, link, seed, pairs, &mut tell),
-            _ => self.at_the_line_port(&instance, link, pairs, &mut tell),
-        };
+        let run = Run { config: &self.config, expected: self.expected, pairs, seed, progress: &mut tell };
+        let outcome = run.on(&instance, link);
         // Of a job that failed the waveform is wanted most.
         let closed = if waveform.is_some() { instance.trace_close() } else { Ok(()) };
         let outcome = outcome?;
@@ -180,47 +176,6 @@ impl Bench {
         let seconds = begun.elapsed().as_secs_f64();
         progress(Progress::Comparing);
         Ok(check(&layout, setup, pairs, &self.reference.run_all(pairs), outcome, seconds))
-    }
-
-    /// Runs a job through SPL2.
-    fn below_spl2(
-        &self,
-        afu: &Instance,
-        link: Link,
-        seed: u64,
-        pairs: &[PairRecord],
-        progress: &mut dyn FnMut(Traffic),
-    ) -> Result<Outcome, VerifyError> {
-        let spl = Spl2::new(Spl2Model::default(), link, seed);
-        let machine = Machine::new(afu, spl).map_err(HostError::from)?;
-        let workspace = Workspace::for_pairs(self.expected.layout, pairs.len() as u64, seed)?;
-        let mut session = Session::new(machine, workspace, self.expected);
-        let running = session.transaction().send(pairs)?.start()?.confirm()?;
-        Ok(running.wait_with(progress)?.outcome())
-    }
-
-    /// Runs a job at the line port, which has no registers and needs no host.
-    fn at_the_line_port(
-        &self,
-        afu: &Instance,
-        link: Link,
-        pairs: &[PairRecord],
-        progress: &mut dyn FnMut(Traffic),
-    ) -> Result<Outcome, VerifyError> {
-        let layout = &self.expected.layout;
-        let source = pack(layout, pairs);
-        let mut job = Job::new(&source, pairs.len() as u32, layout.destination_lines(pairs.len() as u64));
-        job.scpus = Some(self.config.scpus);
-        let only_hits = self.config.results == Results::Hits;
-        job.hits_per_line = only_hits.then(|| layout.contacts_per_line());
-        let mut driver = Driver::new(afu, link)?;
-        driver.start(&job)?;
-        while !driver.step()? {
-            if driver.cycle().is_multiple_of(PROGRESS_CYCLES) {
-                progress(driver.link().traffic());
-            }
-        }
-        Ok(driver.finish()?)
     }
 }
 
