@@ -20,14 +20,21 @@ pub const PAIR_WORDS: usize = {
 pub struct PairRecord(pub [u32; PAIR_WORDS]);
 
 impl PairRecord {
+    /// The pair of these numbers, in order; words beyond them are zero.
+    pub fn of_values(values: impl IntoIterator<Item = f32>) -> Self {
+        let mut pair = Self::default();
+        pair.0.iter_mut().zip(values).for_each(|(word, value)| *word = value.to_bits());
+        pair
+    }
+
     /// Two spheres, each x y z and radius.
-    pub fn from_spheres([x1, y1, z1, r1]: [f32; 4], [x2, y2, z2, r2]: [f32; 4]) -> Self {
-        Self([x1, y1, z1, r1, x2, y2, z2, r2].map(f32::to_bits))
+    pub fn from_spheres(first: [f32; 4], second: [f32; 4]) -> Self {
+        Self::of_values(first.into_iter().chain(second))
     }
 
     /// A sphere (x y z and radius), and the plane of all points p with n · p = d (the normal n, of length 1, and d).
-    pub fn from_sphere_and_plane([x, y, z, r]: [f32; 4], [nx, ny, nz, d]: [f32; 4]) -> Self {
-        Self([x, y, z, r, nx, ny, nz, d].map(f32::to_bits))
+    pub fn from_sphere_and_plane(sphere: [f32; 4], plane: [f32; 4]) -> Self {
+        Self::of_values(sphere.into_iter().chain(plane))
     }
 
     /// Whether every word keeps its [rule](super::Rule).

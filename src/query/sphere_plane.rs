@@ -23,4 +23,17 @@ pub(super) const SHAPE: Shape = Shape {
     flows: &[Flow::Fake, Flow::Real],
     computes: "The plane is all points p with n · p = d. With c the sphere's centre, depth = (d − n · c) + r: contact if \
                depth ≥ 0; then normal n, position c − n · r. That n has length 1 is not checked.",
+    // Before the plane, through it, touching it, behind it; a point; and what is no such pair.
+    examples: &[
+        &[0.0, 0.0, 3.0, 1.0, 0.0, 0.0, 1.0, 0.0],
+        &[0.0, 0.0, 0.5, 1.0, 0.0, 0.0, 1.0, 0.0],
+        &[5.0, -7.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0],
+        &[0.0, 0.0, -9.0, 1.0, 0.0, 0.0, 1.0, 0.0],
+        &[0.1, 0.2, 0.3, 0.4, 0.6, -0.8, 0.0, -0.25],
+        &[1.0, 2.0, 3.0, 0.5, 0.0, -1.0, 0.0, -2.0],
+        &[1.0, f32::NAN, 3.0, 0.5, 0.0, -1.0, 0.0, -2.0],
+        &[0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0],
+        &[1.0, 2.0, 3.0, -0.5, 1.0, 0.0, 0.0, 0.0],
+        &[-4.0, 0.25, 0.5, 0.125, 0.48, 0.64, 0.6, -1.5],
+    ],
 };

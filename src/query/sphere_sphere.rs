@@ -23,4 +23,20 @@ pub(super) const SHAPE: Shape = Shape {
     flows: &[Flow::Fake, Flow::Coincident, Flow::Real],
     computes: "With d the distance of the centres p1 and p2: contact if d ≤ r1 + r2; then normal n = (p1 − p2) / d, position \
                p1 + n · ((r2 − r1) − d) / 2, depth (r1 + r2) − d. If d = 0: position p1, normal (1, 0, 0), depth r1 + r2.",
+    // One in the other, beside each other, touching, far apart, coincident; and what is no pair of spheres.
+    examples: &[
+        &[0.0, 0.0, 0.0, 1.0, 1.5, 0.0, 0.0, 1.0],
+        &[0.0, 0.0, 0.0, 1.0, 3.0, 0.0, 0.0, 1.0],
+        &[1.0, 2.0, 3.0, 0.5, 1.0, 2.0, 3.0, 0.25],
+        &[0.0, 0.0, 0.0, 1.0, 0.0, 2.0, 0.0, 1.0],
+        &[0.1, 0.2, 0.3, 0.4, 0.5, -0.6, 0.7, 0.8],
+        &[-3.0, 1.25, 0.75, 2.5, -1.0, 0.0, 2.0, 0.125],
+        &[f32::NAN, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
+        &[7.0, -7.0, 7.0, 1.0, -7.0, 7.0, -7.0, 1.0],
+        &[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        &[0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 1.0, 1.0],
+        &[0.3, 0.3, 0.3, 0.1, 0.35, 0.35, 0.35, 0.1],
+        &[100.0, 0.01, 0.0, 60.0, 0.0, 0.0, 0.02, 40.5],
+        &[1.0, 1.0, 1.0, 1.0, 2.0, 2.0, 2.0, 1.0],
+    ],
 };

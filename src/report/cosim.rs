@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::table::{figure, grouped, table};
 use super::tally::{Flows, Tally};
 use crate::config::{Config, Results};
-use crate::query::ContactRecord;
+use crate::query::{ContactRecord, Flow};
 use crate::verify::Mismatch;
 
 /// The JSON's schema. Within a number keys are only added: `CHANGELOG.md` has the rule.
@@ -257,13 +257,17 @@ impl Run {
         if self.config.profile.is_exact() {
             rows.insert(6, ("unsettled, settled by the host", Box::new(|t| grouped(t.unsettled))));
         }
+        if !self.config.query.shape().flows.contains(&Flow::Coincident) {
+            rows.retain(|(title, _)| *title != "  coincident centres");
+        }
         let row = |(title, show): (&str, Show<'_>)| {
             [title.to_owned()].into_iter().chain(self.jobs.iter().map(|job| show(&job.tally))).collect::<Vec<_>>()
         };
         let c = &self.config;
         let only_hits = if c.results == Results::Hits { " of hits" } else { "" };
+        let query = if c.query.is_default() { String::new() } else { format!("{}, ", c.query) };
         let title = format!(
-            "{} SCPUs, {} arithmetic, {}{only_hits}, {} MHz; link {}, seed {}",
+            "{} SCPUs, {query}{} arithmetic, {}{only_hits}, {} MHz; link {}, seed {}",
             c.scpus, c.profile, c.contact, c.clock_mhz, self.link, self.seed
         );
         format!("{title}\n{}", table(&heading, rows.into_iter().map(row)))

@@ -3,10 +3,8 @@
 //!
 //! Below no shell the hardware is run by the crate's own evaluator, which needs no model; below SPL2 it is Verilated.
 
-use contact_afu::afu::{Afu, Spec};
+use crate::evaluated::at_the_line_port;
 use contact_afu::config::{Config, Shell};
-use contact_afu::hdl::Evaluator;
-use contact_afu::kernel::narrow;
 use contact_afu::link::{Line, LinkModel};
 use contact_afu::pairs::Set;
 use contact_afu::verify::Bench;
@@ -90,74 +88,10 @@ fn pairs(config: &Config) -> Vec<[u32; 8]> {
     pairs
 }
 
-/// Pairs in lines, by the words of the design and not by the crate's layout.
-fn source(config: &Config, pairs: &[[u32; 8]]) -> Vec<Line> {
-    let format = config.record.format();
-    let mut bytes = Vec::new();
-    for pair in pairs {
-        let words = (0..8).filter(|word| config.radius.is_none() || word % 4 != 3);
-        let mut pair: Vec<u8> = words
-            .flat_map(|word| narrow(pair[word], format).to_le_bytes()[..format.width() as usize / 8].to_vec())
-            .collect();
-        pair.resize(format.width() as usize, 0);
-        bytes.extend(pair);
-    }
-    bytes.resize(bytes.len().next_multiple_of(64), 0);
-    let word = |bytes: &[u8]| u32::from_le_bytes(bytes.try_into().unwrap());
-    bytes.chunks(64).map(|line| std::array::from_fn(|i| word(&line[4 * i..4 * i + 4]))).collect()
-}
-
 fn hash(lines: &[Line]) -> String {
     let mut hash = Sha256::new();
     lines.iter().flatten().for_each(|word| hash.update(word.to_le_bytes()));
     hash.finalize().iter().take(8).map(|byte| format!("{byte:02x}")).collect()
-}
-
-/// The destination of a job at the line port: each request is answered in the next cycle.
-fn at_the_line_port(config: &Config) -> Vec<Line> {
-    let source = source(config, &pairs(config));
-    let afu = Afu::generate(Spec::from(config.clone())).unwrap();
-    let mut run = Evaluator::new(afu.top(), &[("SCPUS", config.scpus)]).unwrap();
-    run.reset();
-    let pin = |run: &Evaluator, name: &str| run.pin(name).unwrap();
-    let set = |run: &mut Evaluator, name: &str, value: u64| run.write(pin(run, name), value);
-    let get = |run: &mut Evaluator, name: &str| run.read(pin(run, name));
-    if config.results == "hits".parse().unwrap() {
-        set(&mut run, "destination_lines", 100);
-    }
-    for (name, value) in [("count", PAIRS), ("start", 1), ("rd_req_ready", 1), ("wr_req_ready", 1)] {
-        set(&mut run, name, value);
-    }
-    let mut written = vec![];
-    for _ in 0..20_000 {
-        if get(&mut run, "done") == 1 {
-            assert_eq!(get(&mut run, "error"), 0, "{config:?}");
-            return written;
-        }
-        let reads = get(&mut run, "rd_req_valid") == 1;
-        let (line, read_tag) = (get(&mut run, "rd_req_address"), get(&mut run, "rd_req_tag"));
-        let writes = get(&mut run, "wr_req_valid") == 1;
-        let (at, write_tag) = (get(&mut run, "wr_req_address"), get(&mut run, "wr_req_tag"));
-        if writes {
-            assert_eq!(at, written.len() as u64, "lines are written in order");
-            let (mut data, from) = ([0; 8], pin(&run, "wr_req_data"));
-            run.read_words(from, &mut data);
-            written.push(std::array::from_fn(|i| (data[i / 2] >> (i % 2 * 32)) as u32));
-        }
-        run.step();
-        set(&mut run, "start", 0);
-        set(&mut run, "rd_rsp_valid", reads.into());
-        set(&mut run, "wr_rsp_valid", writes.into());
-        if reads {
-            let data: Vec<u64> =
-                source[line as usize].chunks(2).map(|two| u64::from(two[0]) | u64::from(two[1]) << 32).collect();
-            set(&mut run, "rd_rsp_tag", read_tag);
-            let to = pin(&run, "rd_rsp_data");
-            run.write_words(to, &data);
-        }
-        set(&mut run, "wr_rsp_tag", write_tag);
-    }
-    panic!("{config:?}: the job does not end");
 }
 
 /// The destination of a job below SPL2.
@@ -179,7 +113,7 @@ fn compare(images: &[Image], shell: Shell, run: fn(&Config) -> Vec<Line>) {
 
 #[test]
 fn images_at_the_line_port_are_what_they_were() {
-    compare(&LINE, Shell::Line, at_the_line_port);
+    compare(&LINE, Shell::Line, |config| at_the_line_port(config, &pairs(config)));
 }
 
 #[test]

@@ -7,6 +7,8 @@ mod accuracy_study;
 #[cfg(feature = "cosim")]
 mod drive;
 #[cfg(feature = "cosim")]
+mod evaluated;
+#[cfg(feature = "cosim")]
 mod exact_afu;
 #[cfg(feature = "cosim")]
 mod host;
@@ -17,6 +19,8 @@ mod link;
 mod link_models;
 #[cfg(feature = "cosim")]
 mod models;
+#[cfg(feature = "cosim")]
+mod planes;
 #[cfg(feature = "cosim")]
 mod profiles;
 #[cfg(feature = "cosim")]

@@ -1,28 +1,11 @@
 //! The test bench beside the Verilog: a job with its pairs and the lines that the reference kernel gives for them, for
 //! simulators that know nothing of this crate. A shell has its bench, whose parts that all share are in `shared.v`.
 
-use crate::kernel::{Flow, PairRecord};
+use crate::query::{Flow, PairRecord};
 
 use super::shell::BenchText;
 use super::{Afu, COUNT_BITS};
 use crate::record::{Line, pack, pack_contacts, unpack_pairs};
-
-/// Spheres one in the other, beside each other, touching, far apart, equal; and what is no pair of spheres.
-const SPHERES: [([f32; 4], [f32; 4]); 13] = [
-    ([0.0, 0.0, 0.0, 1.0], [1.5, 0.0, 0.0, 1.0]),
-    ([0.0, 0.0, 0.0, 1.0], [3.0, 0.0, 0.0, 1.0]),
-    ([1.0, 2.0, 3.0, 0.5], [1.0, 2.0, 3.0, 0.25]),
-    ([0.0, 0.0, 0.0, 1.0], [0.0, 2.0, 0.0, 1.0]),
-    ([0.1, 0.2, 0.3, 0.4], [0.5, -0.6, 0.7, 0.8]),
-    ([-3.0, 1.25, 0.75, 2.5], [-1.0, 0.0, 2.0, 0.125]),
-    ([f32::NAN, 0.0, 0.0, 1.0], [0.0, 0.0, 0.0, 1.0]),
-    ([7.0, -7.0, 7.0, 1.0], [-7.0, 7.0, -7.0, 1.0]),
-    ([0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0]),
-    ([0.0, 0.0, 0.0, -1.0], [0.0, 0.0, 1.0, 1.0]),
-    ([0.3, 0.3, 0.3, 0.1], [0.35, 0.35, 0.35, 0.1]),
-    ([100.0, 0.01, 0.0, 60.0], [0.0, 0.0, 0.02, 40.5]),
-    ([1.0, 1.0, 1.0, 1.0], [2.0, 2.0, 2.0, 1.0]),
-];
 
 impl Afu {
     /// The name of the test bench's module.
@@ -33,7 +16,8 @@ impl Afu {
     /// The text of the test bench.
     pub(super) fn bench(&self) -> String {
         let (config, layout) = (&self.spec().config, self.layout());
-        let pairs = SPHERES.map(|(first, second)| PairRecord::from_spheres(first, second));
+        let examples = config.query.shape().examples.iter();
+        let pairs: Vec<_> = examples.map(|values| PairRecord::of_values(values.iter().copied())).collect();
         let source = pack(&layout, &pairs);
         // As the AFU reads them: rounded to the record's numbers, with the hardware's radius.
         let records = config.reference().run_all(&unpack_pairs(&layout, &source, pairs.len()));
