@@ -57,7 +57,10 @@ const HOUSE: &[(&str, &[&str])] = &[
     ),
     (
         "paper",
-        &["report", "plot", "verify", "host", "cosim", "config", "ode", "afu", "link", "pairs", "kernel", "number"],
+        &[
+            "store", "report", "plot", "verify", "host", "cosim", "config", "ode", "afu", "link", "pairs", "kernel",
+            "number",
+        ],
     ),
     (
         "scene",

@@ -8,8 +8,6 @@ mod completions;
 #[cfg(feature = "cosim")]
 mod cosim;
 mod doctor;
-#[cfg(all(feature = "cosim", feature = "ode"))]
-mod experiment;
 mod failure;
 mod hard;
 mod link;

@@ -244,16 +244,6 @@ impl Experiment {
         let wins = self.points.iter().rev().take_while(|point| point.afu_total_ns < other(point));
         wins.last().map(|point| point.collisions)
     }
-
-    /// Points as CSV.
-    ///
-    /// # Errors
-    /// When a writer into memory refuses, which it does not.
-    pub fn csv(points: &[&Joined]) -> Result<Vec<u8>, csv::Error> {
-        let mut out = csv::Writer::from_writer(Vec::new());
-        points.iter().try_for_each(|point| out.serialize(point))?;
-        out.into_inner().map_err(|error| error.into_error().into())
-    }
 }
 
 #[cfg(test)]
@@ -312,14 +302,5 @@ pub(super) mod tests {
         // At 100 they are equal, which is no win.
         assert_eq!((summary.crossover_over_loop, summary.crossover_over_rule), (Some(200), Some(100)));
         assert_eq!(summary.crossover_over_batch, None);
-    }
-
-    #[test]
-    fn a_csv_has_a_line_a_point() {
-        let results = example();
-        let csv = String::from_utf8(Experiment::csv(&results.figure7()).expect("memory")).expect("text");
-        assert_eq!(csv.lines().count(), 5);
-        assert!(csv.starts_with("collisions,ode_rule_ns,ode_loop_ns,"), "{csv}");
-        assert!(csv.contains("\n90000,5400000.0,4500000.0,"), "{csv}");
     }
 }

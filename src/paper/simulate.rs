@@ -2,16 +2,15 @@
 //!
 //! No point is modelled: a link whose latency varies leaves no formula that is right to the cycle.
 
+use std::cmp::Reverse;
 use std::collections::VecDeque;
 use std::sync::{Mutex, PoisonError, mpsc};
 use std::thread;
 
-use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
-
 use super::AfuPoint;
 use crate::kernel::PairRecord;
 use crate::link::LinkModel;
+use crate::store::{Key, Store, StoreError, sha256};
 use crate::verify::{Bench, VerifyError};
 
 /// Above so many collisions a point is one transaction: their scatter is a few cycles of thousands.
@@ -32,20 +31,15 @@ pub struct Task<'a> {
     pub transactions: u32,
 }
 
-/// Points, and what they are of: a later run of the same task takes them over.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Simulated {
-    task: String,
-    /// In the order they were done.
-    pub points: Vec<AfuPoint>,
-}
-
 /// Why a point could not be simulated.
 #[derive(Debug, thiserror::Error)]
 pub enum SimulateError {
     /// The AFU's job did not come to its end.
     #[error(transparent)]
     Verify(#[from] VerifyError),
+    /// A point could not be read or kept.
+    #[error(transparent)]
+    Store(#[from] StoreError),
     /// What the AFU wrote is not what the reference kernel gives.
     #[error("{mismatches} of {collisions} contacts of the simulated AFU differ from the reference kernel{}", failed_checks.iter().map(|text| format!("; {text}")).collect::<String>())]
     Wrong {
@@ -59,13 +53,17 @@ pub enum SimulateError {
 }
 
 impl Task<'_> {
-    /// What decides every cycle of it, in hex.
-    fn fingerprint(&self) -> String {
-        let mut hash = Sha256::new();
-        hash.update(self.bench.rtl_sha256());
-        hash.update(format!("{:?} {:?} {} {}", self.bench.config(), self.link, self.seed, self.transactions));
-        self.pairs.iter().flat_map(|pair| pair.0).for_each(|word| hash.update(word.to_le_bytes()));
-        hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    /// What decides a point.
+    fn key(&self, collisions: usize) -> Result<Key, StoreError> {
+        let (rtl, config) = (self.bench.rtl_sha256(), self.bench.config());
+        let words = self.first(collisions).iter().flat_map(|pair| pair.0);
+        let pairs = sha256(&words.flat_map(u32::to_le_bytes).collect::<Vec<_>>());
+        let transactions = self.transactions_of(collisions);
+        Key::new("paper/1", &(env!("CARGO_PKG_VERSION"), rtl, config, self.link, self.seed, transactions, pairs))
+    }
+
+    fn first(&self, collisions: usize) -> &[PairRecord] {
+        &self.pairs[..collisions.min(self.pairs.len())]
     }
 
     /// Pairs that a point of so many collisions costs.
@@ -78,7 +76,7 @@ impl Task<'_> {
     }
 
     fn point(&self, collisions: usize) -> Result<AfuPoint, SimulateError> {
-        let pairs = &self.pairs[..collisions.min(self.pairs.len())];
+        let pairs = self.first(collisions);
         let transactions = self.transactions_of(collisions);
         let (mut all, mut limit_cycles, mut contacts) = (Vec::new(), 0.0, 0);
         for number in 0..u64::from(transactions) {
@@ -108,35 +106,40 @@ fn thousandths(cycles: f64) -> f64 {
     (cycles * 1000.0).round() / 1000.0
 }
 
-/// Simulates a point for each of `counts` that `earlier`, of the same task, does not have; on every processor. After
-/// each, `done` gets all points so far and the pairs that are done, of how many.
+/// A point for each of `counts`: one that `store` holds, or simulated now, on every processor, and kept there.
+/// `progress` is called at the beginning and after each, with the pairs that are done, of how many.
 ///
 /// # Errors
-/// When a job does not end, or a contact is not the reference kernel's.
-pub fn simulate<E: From<SimulateError>>(
+/// If a job does not end, if a contact is not the reference kernel's, or if a point cannot be read or kept.
+pub fn simulate(
     task: &Task,
     counts: &[usize],
-    earlier: Option<Simulated>,
-    mut done: impl FnMut(&Simulated, usize, usize) -> Result<(), E>,
-) -> Result<Simulated, E> {
-    let name = task.fingerprint();
-    let mut simulated = earlier.filter(|earlier| earlier.task == name).unwrap_or_default();
-    simulated.task = name;
-    let known = |count: &usize| simulated.points.iter().any(|point| point.collisions == *count);
+    store: &Store,
+    mut progress: impl FnMut(usize, usize),
+) -> Result<Vec<AfuPoint>, SimulateError> {
+    let mut points: Vec<AfuPoint> = Vec::new();
+    let mut open = Vec::new();
+    for &count in counts {
+        let key = task.key(count)?;
+        match store.get(&key)? {
+            Some(point) => points.push(point),
+            None => open.push((count, key)),
+        }
+    }
     // The largest first, so that no processor is left with one at the end.
-    let mut open: Vec<usize> = counts.iter().copied().filter(|count| !known(count)).collect();
-    open.sort_unstable_by(|a, b| b.cmp(a));
-    let whole: usize = open.iter().map(|&count| task.cost(count)).sum();
+    open.sort_unstable_by_key(|(count, _)| Reverse(*count));
+    let whole: usize = open.iter().map(|(count, _)| task.cost(*count)).sum();
     let open = Mutex::new(VecDeque::from(open));
     let next = || open.lock().unwrap_or_else(PoisonError::into_inner).pop_front();
     let mut finished = 0;
+    progress(finished, whole);
     thread::scope(|scope| {
         let (sender, receiver) = mpsc::channel();
         for _ in 0..thread::available_parallelism().map_or(1, usize::from) {
             let sender = sender.clone();
             scope.spawn(move || {
-                while let Some(count) = next() {
-                    if sender.send(task.point(count)).is_err() {
+                while let Some((count, key)) = next() {
+                    if sender.send(store.get_or_make(&key, || task.point(count))).is_err() {
                         break; // nobody waits any more
                     }
                 }
@@ -146,9 +149,9 @@ pub fn simulate<E: From<SimulateError>>(
         for point in receiver {
             let point = point?;
             finished += task.cost(point.collisions);
-            simulated.points.push(point);
-            done(&simulated, finished, whole)?;
+            points.push(point);
+            progress(finished, whole);
         }
-        Ok(simulated)
+        Ok(points)
     })
 }

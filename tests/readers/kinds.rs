@@ -248,16 +248,6 @@ fn of_the_program() -> Vec<Kind> {
                 figures.is_ok_and(|figures| report::operators::page(&[figures]).is_ok())
             },
         },
-        Kind {
-            name: "simulated.json",
-            form: Form::Json,
-            seeds: vec![text(&json!({ "task": "0", "points": [{ "collisions": 3, "transactions": 2, "cycles": 7.5,
-                "least_cycles": 7, "most_cycles": 8, "limit_cycles": 5.0, "contacts": 1 }] }))],
-            read: |path| {
-                serde_json::from_slice::<contact_afu::paper::Simulated>(&fs::read(path).unwrap())
-                    .is_ok_and(|simulated| simulated.points.len() < 100)
-            },
-        },
     ]
 }
 
