@@ -16,9 +16,8 @@ use super::link;
 #[derive(Args, Debug)]
 #[command(next_help_heading = "The AFU")]
 pub struct Machine {
-    /// What a pair is: sphere-sphere, or sphere-plane (a sphere, and a plane by its normal of length 1 and its distance
-    /// from the origin) [default: sphere-sphere]
-    #[arg(long, value_name = "QUERY")]
+    /// Which two bodies a pair is of [default: sphere-sphere]
+    #[arg(long, value_name = "QUERY", value_parser = super::usage::query())]
     pub query: Option<Query>,
     /// Arithmetic: paper (IEEE binary32), wide, exact, half, bfloat or eXfY (exponent and fraction bits) [default:
     /// wide]

@@ -20,8 +20,8 @@ pub struct Pairs {
     /// dense:N (N candidate pairs of crowded scenes) or hard:N (N seeded pairs where floating-point engines fail)
     #[arg(value_name = "SET")]
     set: Set,
-    /// What a pair is: sphere-sphere or sphere-plane; of spheres and planes there are random:N and hard:N
-    #[arg(long, value_name = "QUERY", default_value_t)]
+    /// Which two bodies a pair is of; diamond and dense are of two spheres alone
+    #[arg(long, value_name = "QUERY", default_value_t, value_parser = usage::query())]
     query: Query,
     /// Seed of all but the diamond
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = usage::seed)]

@@ -4,8 +4,10 @@ use std::ffi::OsString;
 use std::process::ExitCode;
 use std::sync::LazyLock;
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::error::ErrorKind;
 use clap::{ArgAction, CommandFactory, FromArgMatches};
+use contact_afu::query::Query;
 
 use super::Program;
 
@@ -28,6 +30,11 @@ pub fn version() -> &'static str {
     static VERSION: LazyLock<String> =
         LazyLock::new(|| format!("{} ({})", env!("CARGO_PKG_VERSION"), contact_afu::tools::summary()));
     &VERSION
+}
+
+/// Reads the name of a query, and lists them in the help.
+pub fn query() -> impl TypedValueParser<Value = Query> {
+    PossibleValuesParser::new(Query::ALL.map(|query| query.shape().name)).try_map(|name| name.parse::<Query>())
 }
 
 /// The program that a command line asks for.

@@ -54,7 +54,7 @@ pub enum HostError {
     },
     /// The device is another AFU of ours.
     #[error(
-        "the FPGA's AFU says {found} of its {what}, this session expects {expected}: load the AFU that was asked for, or make the \
+        "the FPGA's AFU differs in {what}: it has {found}, this session expects {expected}: load the AFU that was asked for, or make the \
          session for the configuration that is there"
     )]
     Capability {

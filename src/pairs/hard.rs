@@ -1,6 +1,6 @@
 //! Pairs that are hard: where floating-point engines miss contacts, invent them, or lose their direction.
 
-use super::planes;
+use super::makers::categories;
 use super::source::{LARGEST, Source, UNIT};
 use crate::query::{PairRecord, Query};
 
@@ -12,14 +12,6 @@ pub struct Category {
     pub(super) about: &'static str,
     pub(super) number: u64,
     pub(super) make: fn(&mut Source) -> PairRecord,
-}
-
-/// The hard categories of a query, each in turn.
-pub fn categories(query: Query) -> &'static [Category] {
-    match query {
-        Query::SphereSphere => &CATEGORIES,
-        Query::SpherePlane => &planes::CATEGORIES,
-    }
 }
 
 /// Every category of two spheres. Pair i of `hard:N` is of the (i mod 17)th.

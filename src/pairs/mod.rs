@@ -8,13 +8,14 @@ mod diamond;
 mod error;
 mod file;
 mod hard;
+mod makers;
 mod npy;
 mod npy_header;
 mod pairs_csv;
-mod planes;
 mod random;
 mod set;
 mod source;
+mod sphere_plane;
 mod table;
 
 pub use diamond::octahedron;
@@ -23,6 +24,7 @@ pub use file::{
     LoadError, Loaded, Rounded, check_name, load, load_with_notes, read_contacts, read_hits, read_pairs,
     read_with_notes, write_contacts, write_hits, write_pairs, write_pairs_csv,
 };
-pub use hard::{CATEGORIES, Category, categories};
+pub use hard::{CATEGORIES, Category};
+pub use makers::categories;
 pub use npy::numbers as npy_of_numbers;
 pub use set::{Set, SetError};

@@ -1,11 +1,11 @@
 //! Random pairs that reach every flow and every corner of the format.
 
-use super::planes;
+use super::makers;
 use super::source::{LARGEST, Source, UNIT};
 use crate::query::{PAIR_WORDS, PairRecord, Query, Rule};
 
 /// How a pair of spheres is made; pair i is made the (i mod 10)th way, so that ten pairs have every flow in them.
-const KINDS: [fn(&mut Source) -> PairRecord; 10] = [
+pub(super) const KINDS: [fn(&mut Source) -> PairRecord; 10] = [
     Source::ordinary,
     Source::one_scale,
     Source::near_tangent,
@@ -22,10 +22,7 @@ const KINDS: [fn(&mut Source) -> PairRecord; 10] = [
 ///
 /// Nothing but integers and correctly rounded operations is used, so every machine makes the same pairs.
 pub fn pairs(query: Query, count: u64, seed: u64) -> Vec<PairRecord> {
-    let kinds: &[fn(&mut Source) -> PairRecord] = match query {
-        Query::SphereSphere => &KINDS,
-        Query::SpherePlane => &planes::KINDS,
-    };
+    let kinds = makers::of(query).random;
     let mut source = Source::new(seed);
     (0..count).map(|i| kinds[i as usize % kinds.len()](&mut source)).collect()
 }

@@ -25,7 +25,7 @@ impl Rule {
 }
 
 /// A word of a pair.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Input {
     /// Its name in files, messages and hardware.
     pub name: &'static str,
@@ -38,7 +38,7 @@ pub struct Input {
 }
 
 impl Input {
-    pub(super) const fn new(name: &'static str, meaning: &'static str, rule: Rule) -> Self {
+    pub(crate) const fn new(name: &'static str, meaning: &'static str, rule: Rule) -> Self {
         Self { name, meaning, rule, is_radius: false }
     }
 

@@ -27,7 +27,7 @@ const FIELDS: Part = part(16, 4, "fields (hit, depth, normal, position from the 
 const HITS: Part = part(24, 1, "results (1: contacts alone)", false);
 const ONE_RADIUS: Part = part(25, 1, "one radius for all spheres (1: yes)", false);
 const RECORD: Part = part(26, 2, "words of records (0: f32, 1: f16, 2: bf16)", false);
-const QUERY: Part = part(28, 4, "query (0: sphere-sphere, 1: sphere-plane)", false);
+const QUERY: Part = part(28, 4, "query", false);
 const LATENCY: Part = part(32, 12, "SCPU latency (of profile and clock), in cycles", true);
 
 /// Cycles that a pair spends outside its SCPU, from the line port and back: far above those of any configuration.
@@ -137,7 +137,9 @@ impl Capability {
             bits => format!("{}:{}", part.low + bits - 1, part.low),
         };
         let parts = Part::ALL.iter().filter(|part| told(part));
-        parts.map(|part| format!("{} {}", place(part), part.meaning)).collect::<Vec<_>>().join(", ")
+        let known = Self::from_bits(word).query.filter(|query| !query.is_default());
+        let query = known.map(|query| format!(" ({}: {query})", query.shape().code)).unwrap_or_default();
+        parts.map(|part| format!("{} {}", place(part), part.meaning)).collect::<Vec<_>>().join(", ") + &query
     }
 
     /// Pairs in a source line.

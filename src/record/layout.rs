@@ -12,6 +12,8 @@ use super::COUNT_BITS;
 pub struct Layout {
     line_bits: u32,
     query: Query,
+    /// The words of a pair: those of the query.
+    inputs: &'static [Input],
     record: RecordFormat,
     word_bits: u32,
     fields: Fields,
@@ -37,20 +39,17 @@ pub struct OtherRadius {
 }
 
 impl Layout {
-    /// The layout of full pairs of spheres and of a contact with `fields` for each, in lines of `line_bits` (a power
-    /// of two) bits.
+    /// The layout of full pairs of spheres and of a contact with `fields` for each, in lines of `line_bits` (a power of
+    /// two) bits.
     pub fn new(line_bits: u32, fields: Fields) -> Self {
-        let record = RecordFormat::F32;
-        let word_bits = record.format().width();
-        let query = Query::default();
-        Self { line_bits, query, record, word_bits, fields, results: Results::All, radius: None }
+        Self::of(line_bits, &Config { contact: fields, ..Config::default() })
     }
 
     /// The layout of a configuration, in lines of `line_bits` (a power of two) bits.
     pub fn of(line_bits: u32, config: &Config) -> Self {
-        let radius = config.radius.map(f32::to_bits);
-        let Config { query, record, results, contact, .. } = *config;
-        Self { query, record, word_bits: record.format().width(), results, radius, ..Self::new(line_bits, contact) }
+        let Config { query, record, results, contact: fields, .. } = *config;
+        let (inputs, radius) = (query.shape().inputs, config.radius.map(f32::to_bits));
+        Self { line_bits, query, inputs, record, word_bits: record.format().width(), fields, results, radius }
     }
 
     /// What is asked of a pair.
@@ -87,7 +86,7 @@ impl Layout {
     /// that are the hardware's.
     pub fn inputs(&self) -> impl Iterator<Item = (usize, &'static Input)> + Clone {
         let fixed = self.radius.is_some();
-        self.query.shape().inputs.iter().enumerate().filter(move |(_, input)| !(fixed && input.is_radius))
+        self.inputs.iter().enumerate().filter(move |(_, input)| !(fixed && input.is_radius))
     }
 
     /// The pair whose words of the record are these; a radius that is the hardware's is put in its place.
@@ -107,7 +106,7 @@ impl Layout {
     /// The first pair with another radius than the hardware's.
     pub fn check(&self, pairs: &[PairRecord]) -> Result<(), OtherRadius> {
         let Some(radius) = self.radius else { return Ok(()) };
-        let radii = || self.query.shape().inputs.iter().enumerate().filter(|(_, input)| input.is_radius);
+        let radii = || self.inputs.iter().enumerate().filter(|(_, input)| input.is_radius);
         for (pair, record) in pairs.iter().enumerate() {
             if let Some((place, input)) = radii().find(|(place, _)| record.0[*place] != radius) {
                 let [found, radius] = [record.0[place], radius].map(f32::from_bits);
@@ -175,6 +174,7 @@ impl Layout {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::query::Rule;
 
     #[test]
     fn a_hit_begins_with_its_number() {
@@ -192,6 +192,20 @@ mod tests {
         }
         for (contact, bits) in hits {
             assert_eq!(per_line(contact, Results::Hits), (bits, 512 / bits), "{contact}");
+        }
+    }
+
+    /// Queries to come have up to sixteen words: then a pair fills a line, or half of one.
+    #[test]
+    fn a_pair_of_sixteen_words_fills_a_line() {
+        static INPUTS: [Input; 16] = [Input::new("word", "any", Rule::Finite); 16];
+        for (record, bits, per_line) in [(RecordFormat::F32, 512, 1), (RecordFormat::F16, 256, 2)] {
+            let layout = Layout::of(512, &Config { record, ..Config::default() });
+            for words in [9, 13, 16] {
+                let layout = Layout { inputs: &INPUTS[..words], ..layout };
+                assert_eq!((layout.pair_bits(), layout.pairs_per_line()), (bits, per_line));
+                assert_eq!(layout.source_lines(7), 7_u64.div_ceil(per_line.into()));
+            }
         }
     }
 

@@ -117,7 +117,7 @@ fn what_is_no_job_ends_with_an_error_and_the_next_is_right() {
     }
     drop(loaded);
     let mut other = crate::bench::session(machine(&afu, quick(), "shuffled", 4), 3, case.workspace(1));
-    let what = "a number of SCPUs of";
+    let what = "SCPUs";
     assert_eq!(run(&mut other, &case).unwrap_err(), HostError::Capability { what, expected: 3, found: 2 });
 }
 

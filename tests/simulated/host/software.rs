@@ -67,7 +67,7 @@ fn another_afu_is_refused_by_what_differs() {
         refused(&mut session, &pairs(3)).to_string()
     };
     let scpus = other(Config { scpus: 3, ..config() });
-    assert!(scpus.starts_with("the FPGA's AFU has a number of SCPUs of 3, this session expects 10: load"), "{scpus}");
+    assert!(scpus.starts_with("the FPGA's AFU differs in SCPUs: it has 3, this session expects 10: load"), "{scpus}");
     let fields = other(Config { contact: "depth".parse().unwrap(), ..config() });
     assert!(fields.contains("contact fields (a mask) 3, this session expects 15"), "{fields}");
     let profile = other(Config { profile: "paper".parse().unwrap(), ..config() });
@@ -203,7 +203,7 @@ fn records_of_16_bits_are_agreed_on() {
         assert_eq!(contacts, config.reference().run_all(&pairs));
         assert_ne!(contacts, super::contacts(&pairs));
         let error = Session::new(software(), workspace(), expected).run(&pairs).unwrap_err();
-        assert!(error.to_string().contains("records (0: f32, 1: f16, 2: bf16) of"), "{error}");
+        assert!(error.to_string().contains("words of records (0: f32, 1: f16, 2: bf16)"), "{error}");
     }
     // A number beyond f16 makes a pair invalid there, and the host says so.
     let config = Config { record: RecordFormat::F16, ..config() };
