@@ -152,6 +152,24 @@ fn strays(module: &str, source: &str) -> Vec<String> {
     wrong
 }
 
+/// What a new query takes is what the last one took.
+#[test]
+fn the_way_of_a_new_query_is_written_down() {
+    let page = text(&Path::new(env!("CARGO_MANIFEST_DIR")).join("ARCHITECTURE.md"));
+    let (_, section) = page.split_once("## A new query").expect("the section");
+    let section = section.split("\n## ").next().unwrap_or_default();
+    let steps = section.split_once("1. ").map_or("", |(_, steps)| steps).split("\n\n").next().unwrap_or_default();
+    let mut listed: Vec<&str> = steps.split('`').filter(|word| word.starts_with("src/")).collect();
+    listed.sort_unstable();
+    let names_it = |path: &PathBuf| {
+        let code = text(path);
+        let code = code.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
+        path.ends_with("sphere_plane.rs") || code.contains("sphere_plane") || code.contains("SpherePlane")
+    };
+    let touched: Vec<String> = files("src", &["rs"]).iter().filter(|path| names_it(path)).map(|p| short(p)).collect();
+    assert_eq!(touched, listed, "ARCHITECTURE.md lists what a new query takes");
+}
+
 #[test]
 fn imports_go_down_only() {
     let mut wrong = Vec::new();
