@@ -5,7 +5,7 @@ use crate::kernel::ContactRecord;
 /// An engine's answer to a pair. Without a hit its numbers mean nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Answer {
-    /// Whether the spheres touch.
+    /// Whether the bodies touch.
     pub hit: bool,
     /// Where.
     pub position: [f64; 3],

@@ -2,8 +2,9 @@
 
 use super::measure::in_parallel;
 use super::{Answer, Formula};
-use crate::config::{Profile, RecordFormat};
+use crate::config::{Config, Profile, RecordFormat};
 use crate::kernel::{ContactRecord, EngineError, Fields, PairRecord, Reference, settle};
+use crate::query::Query;
 
 /// Something that answers pairs: a profile's reference kernel, or another engine.
 pub trait Contender {
@@ -21,35 +22,30 @@ pub trait Contender {
 /// was rounded to them, and is judged by the one that was given: that rounding is part of what they cost.
 #[derive(Clone, Debug)]
 pub struct Profiled {
-    profile: Profile,
-    record: RecordFormat,
+    name: String,
     reference: Reference,
 }
 
 impl Profiled {
-    /// The kernel of a profile.
+    /// The kernel of two spheres, in a profile.
     pub fn new(profile: &Profile) -> Self {
-        Self::over(profile, RecordFormat::F32)
+        Self::of(&Config { profile: profile.clone(), ..Config::default() })
     }
 
-    /// The kernel of a profile over such records in memory.
-    pub fn over(profile: &Profile, record: RecordFormat) -> Self {
-        let reference = profile.reference(Fields::ALL).with_record(record.format());
-        Self { profile: profile.clone(), record, reference }
-    }
-
-    /// Its name as a contender.
-    pub fn title(&self) -> String {
-        match self.record {
-            RecordFormat::F32 => self.profile.to_string(),
-            record => format!("{} record {record}", self.profile),
-        }
+    /// The kernel of a configuration's query and profile, over its records in memory, with every field.
+    pub fn of(config: &Config) -> Self {
+        let Config { profile, record, .. } = config;
+        let name = match record {
+            RecordFormat::F32 => profile.to_string(),
+            record => format!("{profile} record {record}"),
+        };
+        Self { name, reference: Config { contact: Fields::ALL, ..config.clone() }.reference() }
     }
 }
 
 impl Contender for Profiled {
     fn name(&self) -> String {
-        self.title()
+        self.name.clone()
     }
 
     fn answers(&mut self, pairs: &[PairRecord]) -> Result<Vec<Answer>, EngineError> {
@@ -69,24 +65,28 @@ impl Contender for Profiled {
 /// Contenders, in the order of a report.
 pub type Contenders = Vec<Box<dyn Contender>>;
 
-/// The profiles asked for, then the peers that this build has. The names of the other peers are given apart, each
-/// with the feature that brings it.
+/// The profiles asked for, then the peers that this build has and that answer the query. Returns what is missing too,
+/// each with what would bring it.
 ///
 /// # Errors
-/// When a peer does not start.
-pub fn contenders(profiles: &[Profile]) -> Result<(Contenders, Vec<&'static str>), EngineError> {
+/// If a peer does not start.
+pub fn contenders(query: Query, profiles: &[Profile]) -> Result<(Contenders, Vec<&'static str>), EngineError> {
     let mut all = Contenders::new();
     for profile in profiles {
-        all.push(Box::new(Profiled::new(profile)));
+        all.push(Box::new(Profiled::of(&Config { query, profile: profile.clone(), ..Config::default() })));
     }
-    all.push(Box::new(Formula));
+    all.push(Box::new(Formula(query)));
     #[cfg(feature = "ode")]
-    all.push(Box::new(super::OdeDouble::new()?));
+    all.push(Box::new(super::OdeDouble::new(query)?));
+    let of_spheres = query == Query::SphereSphere;
     #[cfg(feature = "parry")]
-    all.push(Box::new(super::Parry));
+    if of_spheres {
+        all.push(Box::new(super::Parry));
+    }
     let missing = [
         (cfg!(feature = "ode"), "ODE f64 is not in this program: build it with --features ode"),
-        (cfg!(feature = "parry"), "parry3d is not in this program: build it with --features parry"),
+        (of_spheres, "parry3d is compared for sphere-sphere alone"),
+        (cfg!(feature = "parry") || !of_spheres, "parry3d is not in this program: build it with --features parry"),
     ];
     let absent = missing.into_iter().filter(|(there, _)| !there).map(|(_, said)| said).collect();
     Ok((all, absent))

@@ -2,11 +2,12 @@
 
 use super::{Answer, Contender};
 use crate::kernel::{EngineError, PairRecord};
+use crate::query::Query;
 
-/// ODE's formula for two spheres in the machine's binary32: subtractions, a root, a branch, a division. No input is
-/// refused and no NaN made canonical.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Formula;
+/// ODE's formula in the machine's binary32, branches and all, written apart from the kernel. No input is refused and no
+/// NaN made canonical.
+#[derive(Clone, Copy, Debug)]
+pub struct Formula(pub Query);
 
 impl Contender for Formula {
     fn name(&self) -> String {
@@ -14,11 +15,15 @@ impl Contender for Formula {
     }
 
     fn answers(&mut self, pairs: &[PairRecord]) -> Result<Vec<Answer>, EngineError> {
+        let contact = match self.0 {
+            Query::SphereSphere => spheres,
+            Query::SpherePlane => plane,
+        };
         Ok(pairs.iter().map(|pair| contact(pair.values())).collect())
     }
 }
 
-fn contact([x1, y1, z1, r1, x2, y2, z2, r2]: [f32; 8]) -> Answer {
+fn spheres([x1, y1, z1, r1, x2, y2, z2, r2]: [f32; 8]) -> Answer {
     let (dx, dy, dz) = (x1 - x2, y1 - y2, z1 - z2);
     let d = (dx * dx + dy * dy + dz * dz).sqrt();
     if d > r1 + r2 {
@@ -32,6 +37,15 @@ fn contact([x1, y1, z1, r1, x2, y2, z2, r2]: [f32; 8]) -> Answer {
         let k = 0.5 * (r2 - r1 - d);
         ([x1 + nx * k, y1 + ny * k, z1 + nz * k], [nx, ny, nz], r1 + r2 - d)
     };
+    touching(position, normal, depth)
+}
+
+fn plane([x, y, z, r, nx, ny, nz, d]: [f32; 8]) -> Answer {
+    let depth = d - (x * nx + y * ny + z * nz) + r;
+    if depth >= 0.0 { touching([x - nx * r, y - ny * r, z - nz * r], [nx, ny, nz], depth) } else { Answer::default() }
+}
+
+fn touching(position: [f32; 3], normal: [f32; 3], depth: f32) -> Answer {
     let wide = |v: [f32; 3]| v.map(f64::from);
     Answer { hit: true, position: wide(position), normal: wide(normal), depth: depth.into(), unsettled: false }
 }

@@ -2,6 +2,7 @@
 
 use super::Answer;
 use crate::kernel::{ContactRecord, Flow, PairRecord, Truth, ulp};
+use crate::query::Query;
 
 /// Half a unit in the last place of binary32, relative.
 const HALF_ULP: f64 = 1.0 / (1 << 24) as f64;
@@ -11,7 +12,6 @@ const SMALLEST: f64 = f32::from_bits(1) as f64;
 /// The truth about a pair, in numbers that answers are compared with: `f64` is 2^29 times finer than what is judged.
 #[derive(Clone, Copy, Debug)]
 pub struct Standard {
-    pair: PairRecord,
     truth: Truth,
     rounded: ContactRecord,
     exact: Answer,
@@ -19,8 +19,8 @@ pub struct Standard {
 
 impl Standard {
     /// The standard for a pair, which must be valid.
-    pub fn of(pair: &PairRecord) -> Self {
-        let truth = Truth::of(pair);
+    pub fn of(query: Query, pair: &PairRecord) -> Self {
+        let truth = Truth::of_query(query, pair);
         let rounded = truth.record();
         let mut exact = Answer { hit: truth.is_contact(), ..Answer::default() };
         if let (Some(position), Some(normal), Some(depth)) = (truth.position(), truth.normal(), truth.depth()) {
@@ -28,10 +28,10 @@ impl Standard {
             exact.normal = normal.map(|number| number.to_f64());
             exact.depth = depth.to_f64();
         }
-        Self { pair: *pair, truth, rounded, exact }
+        Self { truth, rounded, exact }
     }
 
-    /// Whether the spheres truly touch.
+    /// Whether the bodies truly touch.
     pub fn is_contact(&self) -> bool {
         self.exact.hit
     }
@@ -39,13 +39,12 @@ impl Standard {
 
 /// What is wrong with an answer: which limits of gross failure (BAD) it breaks, and its errors.
 ///
-/// The limits: a wrong decision is gross where the distance is more than 2^−20 of its size from the sum of the radii
-/// (and wrong, but not gross, nearer by); a number that is none; a normal whose length differs from 1 by more than
-/// 10^−6, or whose direction by more than 10^−5; a depth wrong by more than 16·2^−24 of the sum of the radii; a
-/// position wrong by more than 16·2^−24 of the largest coordinate or radius. Each tolerance has 2^−149 added. A true
-/// value beyond the largest binary32 number that is given as infinity is right. Where the centres coincide any
-/// direction parts the spheres, and the place depends on it: of an engine that takes another than ODE's, neither is
-/// judged.
+/// The limits: a wrong decision is gross if its [`margin`](Truth::margin) is more than 2^−20 (below that it is wrong, but
+/// not gross); an infinity or a NaN; a normal whose length differs from 1 by more than 10^−6, or whose direction by more
+/// than 10^−5; a depth wrong by more than 16·2^−24 of its [`scale`](Truth::scale), a position wrong by more than
+/// 16·2^−24 of its own. Each tolerance has 2^−149 added. A true value beyond the largest binary32 number that is given
+/// as infinity is right. If the centres coincide, any direction parts the spheres, and the position depends on it: of
+/// an engine that takes another direction than ODE's, neither is judged.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Judgement {
     /// A contact that was not found.
@@ -67,11 +66,11 @@ pub struct Judgement {
     /// The engine's own arithmetic did not settle it.
     pub unsettled: bool,
     /// Errors of depth, normal (the largest of its components) and position, in units in the last place of binary32:
-    /// of the depth; of 1; of the largest of the component, the first centre's and the radii. Zero where there is
-    /// nothing to compare, infinite for a number that is none.
+    /// of the depth; of 1; of the largest of the component and the numbers that it is made of. Zero where there is
+    /// nothing to compare, infinite for an infinity or a NaN.
     pub ulps: [f64; 3],
-    /// The same errors relative to what makes them: of the depth, to the sum of the radii; of the normal, to 1; of the
-    /// position, to the largest coordinate or radius.
+    /// The same errors relative to what makes them: of the depth and the position, to their
+    /// [`scale`](Truth::scale); of the normal, to 1.
     pub relative: [f64; 3],
 }
 
@@ -97,25 +96,20 @@ pub fn judge(standard: &Standard, answer: &Answer) -> Judgement {
     let largest = |from: usize| differences[from..from + 3].iter().copied().fold(0.0, f64::max);
     let (position, normal, depth) = (largest(0), largest(3), differences[6]);
 
-    let values = standard.pair.values();
-    let radii = f64::from(values[3]) + f64::from(values[7]);
-    let size = values.into_iter().map(|v| f64::from(v).abs()).fold(0.0, f64::max);
+    let scale = standard.truth.scale();
     let length = length(answer.normal);
     found.non_finite = differences.iter().any(|difference| !difference.is_finite());
     found.normal = (length - 1.0).abs() > 1e-6 + SMALLEST;
     let other_way = standard.truth.flow() == Flow::Coincident && answer.normal != exact.normal;
     found.direction = !other_way && apart(answer.normal.map(|v| v / length), exact.normal) > 1e-5 + SMALLEST;
-    found.depth = depth > 16.0 * HALF_ULP * radii + SMALLEST;
-    found.position = !other_way && position > 16.0 * HALF_ULP * size + SMALLEST;
+    found.depth = depth > 16.0 * HALF_ULP * scale.depth + SMALLEST;
+    found.position = !other_way && position > 16.0 * HALF_ULP * scale.position + SMALLEST;
     found.bad = found.non_finite || found.normal || found.direction || found.depth || found.position;
 
-    let in_units = |axis: usize| {
-        let [p1, r1, r2] = [axis, 3, 7].map(|i| values[i].abs());
-        differences[axis] / ulp((exact.position[axis].abs() as f32).max(p1).max(r1).max(r2))
-    };
+    let in_units = |axis: usize| differences[axis] / ulp((exact.position[axis].abs() as f32).max(scale.axes[axis]));
     let positions = (0..3).map(in_units).fold(0.0, f64::max);
     found.ulps = [depth / ulp(exact.depth.abs() as f32), normal / ulp(1.0), positions];
-    found.relative = [share(depth, radii), normal, share(position, size)];
+    found.relative = [share(depth, scale.depth), normal, share(position, scale.position)];
     found
 }
 

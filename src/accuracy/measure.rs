@@ -3,6 +3,7 @@
 use super::spread::Gathered;
 use super::{Answer, Contender, ErrorStatistics, Row, Standard, StudyError, Tally, judge};
 use crate::kernel::{EngineError, PairRecord};
+use crate::query::Query;
 use crate::store::{Key, Store, sha256};
 use serde::{Deserialize, Serialize};
 use std::thread;
@@ -20,12 +21,13 @@ pub struct ContenderError {
     pub error: EngineError,
 }
 
-/// A row for each contender on `pairs`, all valid, which are called `set`: one that `store` holds, or measured now and
+/// A row for each contender on `pairs` of a query, all valid, which are called `set`: one that `store` holds, or measured now and
 /// kept there. `progress` is called with the pairs done. Returns the rows, and how many of them the store held.
 ///
 /// # Errors
 /// If a contender fails, or a row cannot be read or kept.
 pub fn measure(
+    query: Query,
     set: &str,
     pairs: &[PairRecord],
     contenders: &mut [Box<dyn Contender>],
@@ -36,7 +38,7 @@ pub fn measure(
     let mut open = Vec::new();
     for (index, contender) in contenders.iter().enumerate() {
         let name = contender.name();
-        let mut row = Row::new(set, &name, hash(&name, pairs));
+        let mut row = Row::new(set, &name, hash(query, &name, pairs));
         let key = Key::new("errors/1", &(&name, &row.key))?;
         match store.get(&key)? {
             Some(Judged { tally, errors }) => {
@@ -51,7 +53,7 @@ pub fn measure(
     // No contender is left to answer: no need of the truth either.
     let anyone = !open.is_empty();
     for batch in pairs.chunks(BATCH).take_while(|_| anyone) {
-        let standards = standards(batch);
+        let standards = standards(query, batch);
         for (index, _, errors) in &mut open {
             let contender = &mut contenders[*index];
             let answers =
@@ -79,8 +81,8 @@ struct Judged {
 }
 
 /// The truth about each pair, found on all processors.
-fn standards(pairs: &[PairRecord]) -> Vec<Standard> {
-    in_parallel(pairs, |part| part.iter().map(Standard::of).collect())
+fn standards(query: Query, pairs: &[PairRecord]) -> Vec<Standard> {
+    in_parallel(pairs, |part| part.iter().map(|pair| Standard::of(query, pair)).collect())
 }
 
 /// What `work` makes of parts of `pairs`, one after the other.
@@ -108,14 +110,16 @@ fn count_up(standards: &[Standard], answers: &[Answer]) -> (Tally, Gathered) {
 }
 
 /// The tally and the errors of answers to valid pairs, whoever gave them.
-pub fn assess(pairs: &[PairRecord], answers: &[Answer]) -> (Tally, ErrorStatistics) {
-    let (tally, errors) = count_up(&standards(pairs), answers);
+pub fn assess(query: Query, pairs: &[PairRecord], answers: &[Answer]) -> (Tally, ErrorStatistics) {
+    let (tally, errors) = count_up(&standards(query, pairs), answers);
     (tally, errors.errors())
 }
 
-/// SHA-256 of everything that decides a row: this program's version, the contender, the pairs.
-fn hash(contender: &str, pairs: &[PairRecord]) -> String {
-    with_pairs(format!("{} {contender} ", env!("CARGO_PKG_VERSION")), pairs)
+/// SHA-256 of everything that decides a row: this program's version, the contender, the query unless it is the default,
+/// the pairs.
+fn hash(query: Query, contender: &str, pairs: &[PairRecord]) -> String {
+    let query = if query.is_default() { String::new() } else { format!("{query} ") };
+    with_pairs(format!("{} {contender} {query}", env!("CARGO_PKG_VERSION")), pairs)
 }
 
 /// SHA-256 of a text and pairs.

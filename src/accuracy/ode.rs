@@ -3,11 +3,12 @@
 use super::{Answer, Contender};
 use crate::kernel::{EngineError, PairRecord};
 use crate::ode::{Collider, Ode, SpherePair};
+use crate::query::Query;
 
 /// ODE's own collider, on the pairs' exact values.
 #[derive(Debug)]
 pub struct OdeDouble {
-    spheres: SpherePair,
+    pair: SpherePair,
 }
 
 impl OdeDouble {
@@ -15,9 +16,9 @@ impl OdeDouble {
     ///
     /// # Errors
     /// When it cannot be started.
-    pub fn new() -> Result<Self, EngineError> {
+    pub fn new(query: Query) -> Result<Self, EngineError> {
         let ode = Ode::start(Collider::Own)?;
-        Ok(Self { spheres: SpherePair::new(&ode)? })
+        Ok(Self { pair: SpherePair::of_query(query, &ode)? })
     }
 }
 
@@ -30,8 +31,8 @@ impl Contender for OdeDouble {
         let mut answers = Vec::with_capacity(pairs.len());
         for pair in pairs {
             let [x1, y1, z1, r1, x2, y2, z2, r2] = pair.values().map(f64::from);
-            self.spheres.set([x1, y1, z1, r1], [x2, y2, z2, r2])?;
-            let answer = self.spheres.collide().map(|contact| Answer {
+            self.pair.set([x1, y1, z1, r1], [x2, y2, z2, r2])?;
+            let answer = self.pair.collide().map(|contact| Answer {
                 hit: true,
                 position: contact.position,
                 normal: contact.normal,

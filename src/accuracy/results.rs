@@ -1,6 +1,7 @@
 //! What contenders came to on the hard pairs: a row for each category and contender, in a folder that grows.
 
 use super::{ErrorStatistics, Tally, Task};
+use crate::query::Query;
 use crate::report::table::{grouped, table};
 use crate::report::{folder, manifest};
 use serde::{Deserialize, Serialize};
@@ -40,6 +41,9 @@ impl Row {
 pub struct HardResults {
     schema: String,
     version: String,
+    /// What is asked of the pairs.
+    #[serde(default, skip_serializing_if = "Query::is_default")]
+    pub query: Query,
     /// Pairs of all categories together.
     pub pairs: u64,
     /// Their seed.
@@ -56,6 +60,7 @@ impl HardResults {
         Self {
             schema: SCHEMA.to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
+            query: task.query,
             pairs: task.pairs,
             seed: task.seed,
             absent: absent.iter().map(|&what| what.to_owned()).collect(),
@@ -107,7 +112,8 @@ impl HardResults {
             let heading: Vec<&str> = [contender, "pairs", "contacts"].into_iter().chain(Tally::HEADING).collect();
             text += &format!("{}\n\n", table(&heading, lines));
         }
-        text += &format!("gross failures (BAD), hard:{} with seed {}\n{}", self.pairs, self.seed, self.summary());
+        let of = if self.query.is_default() { String::new() } else { format!(" of {}", self.query) };
+        text += &format!("gross failures (BAD), hard:{}{of} with seed {}\n{}", self.pairs, self.seed, self.summary());
         self.absent.iter().fold(text, |text, what| format!("{text}\n{what}"))
     }
 

@@ -43,11 +43,11 @@ pub struct ErrorStatistics {
     pub normal_ulps: Spread,
     /// Of the position, in units of what makes it.
     pub position_ulps: Spread,
-    /// Of the depth, relative to the sum of the radii.
+    /// Of the depth, relative to the sizes that it is made of.
     pub depth: Spread,
     /// Of the normal, relative to 1.
     pub normal: Spread,
-    /// Of the position, relative to the largest coordinate or radius.
+    /// Of the position, relative to the largest number that it is made of.
     pub position: Spread,
     /// The largest of the three relative errors of a contact.
     pub contact: Spread,

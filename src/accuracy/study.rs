@@ -2,7 +2,8 @@
 
 use super::{Contender, ContenderError, HardResults, SCHEMA, measure};
 use crate::kernel::PairRecord;
-use crate::pairs::CATEGORIES;
+use crate::pairs::categories;
+use crate::query::Query;
 use crate::report::folder;
 use crate::store::{self, Store, StoreError};
 use std::path::Path;
@@ -10,6 +11,8 @@ use std::path::Path;
 /// What contenders are given.
 #[derive(Clone, Copy, Debug)]
 pub struct Task {
+    /// What is asked of them.
+    pub query: Query,
     /// Pairs of all categories together: those of the set `hard:N`.
     pub pairs: u64,
     /// Their seed.
@@ -46,12 +49,13 @@ pub fn fill(
 ) -> Result<usize, StudyError> {
     let store = open(folder, SCHEMA)?;
     let mut all = 0;
-    let categories = CATEGORIES.len() as u64;
-    for (number, category) in (0..).zip(CATEGORIES) {
-        let count = (task.pairs + categories - 1 - number) / categories;
+    let categories = categories(task.query);
+    let of = categories.len() as u64;
+    for (number, category) in (0..).zip(categories) {
+        let count = (task.pairs + of - 1 - number) / of;
         let pairs: Vec<PairRecord> = category.pairs(count, task.seed).collect();
         let name = category.name();
-        let (rows, resumed) = measure(name, &pairs, contenders, &store, |pairs| progress(name, pairs))?;
+        let (rows, resumed) = measure(task.query, name, &pairs, contenders, &store, |pairs| progress(name, pairs))?;
         all += resumed;
         results.rows.extend(rows);
         if let Some((folder, _)) = folder {

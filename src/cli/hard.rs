@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 use contact_afu::accuracy::{self, HardResults, StudyError, Task};
-use contact_afu::config::Profile;
+use contact_afu::config::{Config, Profile};
+use contact_afu::query::Query;
 
 use super::failure::{Failure, Kind};
 use super::{output, progress};
@@ -15,14 +16,17 @@ use super::{output, progress};
 /// that are wrong, gross failures (BAD), and pairs left unsettled. The same command again resumes.
 #[derive(Args, Debug)]
 pub struct Hard {
+    /// What is asked of a pair: sphere-sphere, or sphere-plane
+    #[arg(long, value_name = "NAME", default_value_t)]
+    query: Query,
     /// Pairs of all categories together
     #[arg(long, value_name = "N", default_value_t = 170_000)]
     pairs: u64,
     /// Their seed
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = super::usage::seed)]
     seed: u64,
-    /// Profiles to judge, beside the other engines
-    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "paper,wide,exact")]
+    /// Profiles to judge, beside the other engines [default: paper,wide, and of sphere-sphere exact]
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
     profile: Vec<Profile>,
     /// Folder to write: manifest.json (JSON of all), hard.csv, and measurements/, from which the same command resumes
     #[arg(long, value_name = "DIR")]
@@ -36,9 +40,11 @@ pub struct Hard {
 }
 
 pub fn run(options: &Hard) -> Result<(), Failure> {
-    let task = Task { pairs: options.pairs, seed: options.seed };
+    let Hard { query, pairs, seed, .. } = *options;
+    let task = Task { query, pairs, seed };
+    let profiles = options.profiles()?;
     let (mut contenders, absent) =
-        accuracy::contenders(&options.profile).map_err(|error| Failure::new(Kind::Other, error))?;
+        accuracy::contenders(query, &profiles).map_err(|error| Failure::new(Kind::Other, error))?;
     let mut results = HardResults::new(task, &absent);
     let bar = progress::bar("hard", "pairs", task.pairs * contenders.len() as u64);
     let folder = options.out.as_deref().map(|folder| (folder, options.force));
@@ -56,6 +62,19 @@ pub fn run(options: &Hard) -> Result<(), Failure> {
     match &options.json {
         Some(path) => output::json(path, &results),
         None => Ok(()),
+    }
+}
+
+impl Hard {
+    /// The profiles to judge, each known to be one that the query has.
+    fn profiles(&self) -> Result<Vec<Profile>, Failure> {
+        let config = |profile| Config { query: self.query, profile, ..Config::default() };
+        if self.profile.is_empty() {
+            let all = ["paper", "wide", "exact"].into_iter().filter_map(|name| name.parse().ok());
+            return Ok(all.filter(|profile: &Profile| config(profile.clone()).check().is_ok()).collect());
+        }
+        self.profile.iter().try_for_each(|profile| config(profile.clone()).check())?;
+        Ok(self.profile.clone())
     }
 }
 

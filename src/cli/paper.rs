@@ -5,9 +5,11 @@ use std::path::PathBuf;
 use clap::Args;
 #[cfg(feature = "ode")]
 use contact_afu::{
+    config,
     kernel::Flow,
     ode,
     paper::{self, PaperError, SimulateError, Size, Work},
+    query::Query,
 };
 
 use super::failure::{Failure, Kind};
@@ -72,6 +74,9 @@ pub struct Paper {
 #[cfg(feature = "ode")]
 pub fn run(options: &Paper) -> Result<(), Failure> {
     let config = options.machine.at_full_rate(options.machine.machine.config()?, &options.link)?;
+    if config.query != Query::SphereSphere {
+        return Err(config::Error::SpheresAlone(config.query, "the paper's experiment").into());
+    }
     let plan = paper::Plan {
         size: if options.quick { Size::Quick } else { Size::Full },
         h_max: options.h_max,

@@ -34,6 +34,7 @@ const FUNCTIONS: &[&str] = &[
     "dCreateSphere",
     "dGeomDestroy",
     "dGeomGetData",
+    "dGeomPlaneSetParams",
     "dGeomSetBody",
     "dGeomSetData",
     "dGeomSetPosition",

@@ -1,10 +1,10 @@
-//! ODE's `dCollide`, for two spheres.
+//! ODE's `dCollide`, for two spheres, or a sphere and a plane.
 
 use super::{Contact, sys};
 use std::ffi::c_int;
 use std::mem::MaybeUninit;
 
-/// Room for the one contact that two spheres can have.
+/// Room for the one contact that such bodies can have.
 pub(super) struct Room(MaybeUninit<sys::dContactGeom>);
 
 impl Room {
@@ -15,7 +15,7 @@ impl Room {
     /// Calls `dCollide` and leaves the contact where ODE put it: what a benchmark times is the call and nothing else.
     ///
     /// # Safety
-    /// Both geoms live, and both are spheres.
+    /// Both geoms live; the first is a sphere, the second a sphere or a plane.
     #[inline(always)]
     pub(super) unsafe fn ask(&mut self, first: sys::dGeomID, second: sys::dGeomID) -> bool {
         // SAFETY: both geoms live (the caller's), and there is room for the one contact that is asked for.
@@ -32,10 +32,10 @@ impl Room {
     }
 }
 
-/// The contact of two spheres, if they touch.
+/// The contact of two bodies, if they touch.
 ///
 /// # Safety
-/// Both geoms live, and both are spheres.
+/// Both geoms live; the first is a sphere, the second a sphere or a plane.
 #[inline]
 pub(super) unsafe fn dcollide(first: sys::dGeomID, second: sys::dGeomID) -> Option<Contact> {
     let mut room = Room::new();

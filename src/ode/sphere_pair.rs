@@ -1,12 +1,15 @@
-//! ODE's own collision of two spheres, as a function.
+//! ODE's own collision of two bodies, as a function.
 
 use super::dcollide::dcollide;
 use super::numbers::within;
 use super::{Collider, Contact, Error, Ode, sys};
+use crate::query::Query;
+use std::ptr::null_mut;
 
-/// Two spheres without bodies, in no world, that stay where they are until moved.
+/// A sphere and the other body of a query, in no world, that stay where they are until moved.
 #[derive(Debug)]
 pub struct SpherePair {
+    query: Query,
     geoms: [sys::dGeomID; 2],
     _ode: Ode,
 }
@@ -17,31 +20,51 @@ impl SpherePair {
     /// # Errors
     /// When ODE runs without its own collider, or has no memory.
     pub fn new(ode: &Ode) -> Result<Self, Error> {
+        Self::of_query(Query::SphereSphere, ode)
+    }
+
+    /// The bodies of a query: spheres of radius 0, and planes, at the origin.
+    ///
+    /// # Errors
+    /// As [`SpherePair::new`].
+    pub fn of_query(query: Query, ode: &Ode) -> Result<Self, Error> {
         ode.needs(Collider::Own)?;
-        // SAFETY: ODE is started; no space is a place for a geom, and 0 a radius.
-        let geoms = [(); 2].map(|()| unsafe { sys::dCreateSphere(std::ptr::null_mut(), 0.0) });
+        // SAFETY: ODE is started; no space is a place for a geom, 0 a radius, and (1, 0, 0) a normal.
+        let geoms = unsafe {
+            let second = match query {
+                Query::SphereSphere => sys::dCreateSphere(null_mut(), 0.0),
+                Query::SpherePlane => sys::dCreatePlane(null_mut(), 1.0, 0.0, 0.0, 0.0),
+            };
+            [sys::dCreateSphere(null_mut(), 0.0), second]
+        };
         if geoms.iter().any(|geom| geom.is_null()) {
             return Err(Error::Memory);
         }
-        Ok(Self { geoms, _ode: ode.clone() })
+        Ok(Self { query, geoms, _ode: ode.clone() })
     }
 
-    /// Moves both: x y z and radius each.
+    /// Moves both: a sphere's x y z and radius; a plane's normal, which ODE scales to length 1, and distance.
     ///
     /// # Errors
-    /// When a number is not finite or a radius is negative; the spheres stay as they were.
+    /// When a number is not finite or a radius is negative; both stay as they were.
     pub fn set(&mut self, first: [f64; 4], second: [f64; 4]) -> Result<(), Error> {
-        for [x, y, z, radius] in [first, second] {
+        let is_plane = self.query == Query::SpherePlane;
+        for ([x, y, z, last], is_plane) in [(first, false), (second, is_plane)] {
             for coordinate in [x, y, z] {
                 within("a coordinate", coordinate, f64::MIN..=f64::MAX)?;
             }
-            within("a radius", radius, 0.0..=f64::MAX)?;
+            let (what, least) = if is_plane { ("a distance", f64::MIN) } else { ("a radius", 0.0) };
+            within(what, last, least..=f64::MAX)?;
         }
-        for (geom, [x, y, z, radius]) in self.geoms.into_iter().zip([first, second]) {
-            // SAFETY: the geom lives as long as `self`, and is a sphere without a body.
+        for (geom, [x, y, z, last], is_plane) in [(self.geoms[0], first, false), (self.geoms[1], second, is_plane)] {
+            // SAFETY: the geom lives as long as `self`, and is a plane, or a sphere without a body.
             unsafe {
-                sys::dGeomSetPosition(geom, x, y, z);
-                sys::dGeomSphereSetRadius(geom, radius);
+                if is_plane {
+                    sys::dGeomPlaneSetParams(geom, x, y, z, last);
+                } else {
+                    sys::dGeomSetPosition(geom, x, y, z);
+                    sys::dGeomSphereSetRadius(geom, last);
+                }
             }
         }
         Ok(())

@@ -3,6 +3,7 @@
 use contact_afu::accuracy::{Answer, Contender, Contenders, Formula, Profiled, Row, assess, measure};
 use contact_afu::kernel::{EngineError, PairRecord};
 use contact_afu::pairs::Set;
+use contact_afu::query::Query::SphereSphere;
 use contact_afu::store::Store;
 
 fn profiled(name: &str) -> Box<dyn Contender> {
@@ -11,7 +12,7 @@ fn profiled(name: &str) -> Box<dyn Contender> {
 
 fn rows(pairs: &[PairRecord], mut contenders: Contenders) -> Vec<Row> {
     let store = Store::temporary().expect("a temporary folder");
-    measure("dense", pairs, &mut contenders, &store, |_| {}).expect("no contender fails").0
+    measure(SphereSphere, "dense", pairs, &mut contenders, &store, |_| {}).expect("no contender fails").0
 }
 
 fn dense() -> Vec<PairRecord> {
@@ -23,7 +24,7 @@ fn dense() -> Vec<PairRecord> {
 #[test]
 fn errors_of_paper_are_those_of_f32() {
     let pairs = dense();
-    let rows = rows(&pairs, vec![profiled("paper"), Box::new(Formula)]);
+    let rows = rows(&pairs, vec![profiled("paper"), Box::new(Formula(SphereSphere))]);
     assert_eq!((rows[0].tally, rows[0].errors), (rows[1].tally, rows[1].errors));
 
     let (mut sum, mut largest, mut count) = (0.0, 0.0_f64, 0_u64);
@@ -78,7 +79,7 @@ impl Contender for Broken {
     }
 
     fn answers(&mut self, pairs: &[PairRecord]) -> Result<Vec<Answer>, EngineError> {
-        let mut answers = Formula.answers(pairs)?;
+        let mut answers = Formula(SphereSphere).answers(pairs)?;
         for answer in &mut answers {
             // Toward zero, where the nearest is further from it.
             answer.depth = f64::from((answer.depth as f32).next_down());
@@ -107,7 +108,7 @@ impl Contender for Once {
 
     fn answers(&mut self, pairs: &[PairRecord]) -> Result<Vec<Answer>, EngineError> {
         match std::mem::replace(&mut self.0, false) {
-            true => Formula.answers(pairs),
+            true => Formula(SphereSphere).answers(pairs),
             false => Err("asked again".into()),
         }
     }
@@ -119,11 +120,11 @@ fn a_known_row_is_not_measured_again() {
     let store = Store::temporary().expect("a temporary folder");
     let measured = |pairs: &[PairRecord], contenders: Contenders| {
         let mut contenders = contenders;
-        measure("dense", pairs, &mut contenders, &store, |_| {}).map_err(|error| error.to_string())
+        measure(SphereSphere, "dense", pairs, &mut contenders, &store, |_| {}).map_err(|error| error.to_string())
     };
     let (rows, known) = measured(pairs, vec![Box::new(Once(true))]).expect("answers");
     assert_eq!(known, 0);
-    let (tally, errors) = assess(pairs, &Formula.answers(pairs).expect("answers"));
+    let (tally, errors) = assess(SphereSphere, pairs, &Formula(SphereSphere).answers(pairs).expect("answers"));
     assert_eq!((rows[0].tally, rows[0].errors), (tally, errors));
 
     let (again, known) = measured(pairs, vec![Box::new(Once(false)), profiled("bfloat")]).expect("not asked again");

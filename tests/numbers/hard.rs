@@ -26,7 +26,7 @@ fn corpus() -> Vec<(String, PairRecord)> {
 }
 
 fn judged(pair: &PairRecord, record: ContactRecord) -> Judgement {
-    judge(&Standard::of(pair), &Answer::from(record))
+    judge(&Standard::of(Query::SphereSphere, pair), &Answer::from(record))
 }
 
 /// The other sphere first.
@@ -79,7 +79,7 @@ fn the_truth_is_what_more_bits_tend_to() {
         if let Some(UlpErrors { depth, normal, position }) = truth.errors(record) {
             assert!(depth <= 0.5 && normal <= 0.5 && position <= 0.5, "{pair:?}");
         }
-        let judgement = judge(&Standard::of(&pair), &Answer::from(record));
+        let judgement = judge(&Standard::of(Query::SphereSphere, &pair), &Answer::from(record));
         assert!(!judgement.bad && judgement.ulps.iter().all(|&ulps| ulps <= 0.5000001), "{pair:?}");
         // A zero of either sign is a zero.
         let differ = |(a, b): (u32, u32)| a != b && (a | b) & 0x7FFF_FFFF != 0;
@@ -94,7 +94,7 @@ fn the_truth_is_what_more_bits_tend_to() {
 fn wide_never_fails_grossly() {
     let mut failures_of_paper = 0;
     let check = |what: &str, pair: &PairRecord, failures_of_paper: &mut u32| {
-        let standard = Standard::of(pair);
+        let standard = Standard::of(Query::SphereSphere, pair);
         let (wide, paper) = (WIDE.run(pair), PAPER.run(pair));
         let found = judge(&standard, &Answer::from(wide));
         assert!(!found.bad, "{what}: {pair:?}: {wide:?}: {found:?}");

@@ -8,6 +8,7 @@ mod hard;
 mod hard_properties;
 mod kernel;
 mod pair_files;
+mod planes;
 mod soft_formats;
 mod soft_native;
 #[path = "../support/mod.rs"]

@@ -9,35 +9,62 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 const BINARY64: &str = "e11f52";
 
-/// The kernel's order of operations is ODE's: read in binary64 it gives the bits of ODE's own collider.
-#[test]
-fn the_kernel_read_in_binary64_is_odes_collider() {
+/// Compares ODE's collider with the kernel read in binary64: every bit. Returns how many touch, how many of them with
+/// coincident centres, and how many are apart.
+fn compare(query: Query, ode: &Ode, pairs: impl Iterator<Item = [f64; 8]>) -> [usize; 3] {
     let format: Format = BINARY64.parse().unwrap();
-    let ode = Ode::start(Collider::Own).unwrap();
-    let mut pair = SpherePair::new(&ode).unwrap();
+    let mut bodies = SpherePair::of_query(query, ode).unwrap();
     let (mut touching, mut coincident, mut apart) = (0, 0, 0);
-    for record in Set::Random(30_000).pairs(5).into_iter().filter(|record| record.is_valid(Query::SphereSphere)) {
-        // A factor with a full significand: binary32 values would leave half of binary64 untried.
-        let factor = 1.0 + 1.0 / 3.0;
-        let [x1, y1, z1, r1, x2, y2, z2, r2] = record.values().map(|v| f64::from(v) * factor);
-        pair.set([x1, y1, z1, r1], [x2, y2, z2, r2]).unwrap();
-        let words = [x1, y1, z1, r1, x2, y2, z2, r2].map(|v: f64| Soft::from_bits(format, v.to_bits().into()));
-        let expected = contact(Query::SphereSphere, |word| words[word], true, format, format, Fields::ALL);
-        match pair.collide() {
+    for pair in pairs {
+        let [a, b, c, d, e, f, g, h] = pair;
+        bodies.set([a, b, c, d], [e, f, g, h]).unwrap();
+        let word = |word: usize| Soft::from_bits(format, pair[word].to_bits().into());
+        let expected = contact(query, word, true, format, format, Fields::ALL);
+        match bodies.collide() {
             None => {
-                assert!(!expected.hit, "{record:?}");
+                assert!(!expected.hit, "{pair:?}");
                 apart += 1;
             }
             Some(Contact { position: [a, b, c], normal: [d, e, f], depth }) => {
-                assert!(expected.hit, "{record:?}");
+                assert!(expected.hit, "{pair:?}");
                 let expected_bits = expected.numbers().map(|v| v.bits() as u64);
-                assert_eq!([a, b, c, d, e, f, depth].map(f64::to_bits), expected_bits, "{record:?}");
+                assert_eq!([a, b, c, d, e, f, depth].map(f64::to_bits), expected_bits, "{pair:?}");
                 touching += 1;
                 coincident += usize::from(expected.coincident);
             }
         }
     }
-    assert!(touching > 5_000 && coincident > 500 && apart > 5_000, "{touching} {coincident} {apart}");
+    [touching, coincident, apart]
+}
+
+/// Valid random pairs, in binary64: a factor with a full significand, since binary32 values would leave half of
+/// binary64 untried.
+fn in_binary64(query: Query) -> impl Iterator<Item = [f64; 8]> {
+    let factor = 1.0 + 1.0 / 3.0;
+    let pairs = Set::Random(30_000).pairs_of(query, 5).unwrap().into_iter();
+    pairs.filter(move |pair| pair.is_valid(query)).map(move |pair| pair.values().map(|v| f64::from(v) * factor))
+}
+
+/// The kernel's order of operations is ODE's: read in binary64 it gives the bits of ODE's own collider.
+#[test]
+fn the_kernel_read_in_binary64_is_odes_collider() {
+    let ode = Ode::start(Collider::Own).unwrap();
+    let found = compare(Query::SphereSphere, &ode, in_binary64(Query::SphereSphere));
+    assert!(found[0] > 5_000 && found[1] > 500 && found[2] > 5_000, "{found:?}");
+}
+
+/// ODE scales a plane's normal and distance by 1/|n|, which does nothing if |n|² rounds to 1.
+#[test]
+fn the_kernel_of_a_plane_read_in_binary64_is_odes_collider() {
+    let ode = Ode::start(Collider::Own).unwrap();
+    let planes = in_binary64(Query::SpherePlane).filter_map(|[x, y, z, r, nx, ny, nz, d]| {
+        let square = |[x, y, z]: [f64; 3]| (x * x + y * y) + z * z;
+        let length = square([nx, ny, nz]).sqrt();
+        let [nx, ny, nz] = [nx, ny, nz].map(|component| component / length);
+        (square([nx, ny, nz]) == 1.0).then_some([x, y, z, r, nx, ny, nz, d])
+    });
+    let found = compare(Query::SpherePlane, &ode, planes);
+    assert!(found[0] > 3_000 && found[2] > 3_000, "{found:?}");
 }
 
 #[test]

@@ -147,3 +147,43 @@ fn wrong_words_are_exit_2_and_a_foreign_folder_is_left_alone() {
     assert_eq!(fs::read(&manifest).expect("there"), before);
     hard(room.path(), &["--pairs", "17", "--force"]).success();
 }
+
+#[test]
+fn planes_are_judged_too_and_exact_is_for_spheres_alone() {
+    let room = tempfile::tempdir().expect("a temporary folder");
+    let planes = ["--query", "sphere-plane", "--pairs", "12000"];
+    let first = hard(room.path(), &planes).success();
+    let read = |name: &str| fs::read_to_string(room.path().join("out").join(name)).expect("written");
+    let record: Value = serde_json::from_str(&read("manifest.json")).expect("JSON");
+    assert_eq!(record["query"], "sphere-plane");
+    let rows = record["rows"].as_array().expect("rows");
+    let total = |contender: &str, what: &str| -> u64 {
+        let of = rows.iter().filter(|row| row["contender"] == contender);
+        of.map(|row| row["tally"][what].as_u64().expect("a count")).sum()
+    };
+    assert!(total("wide", "BAD") == 0 && total("wide", "contacts") > 3_000 && total("formula f32", "BAD") > 0);
+    for what in ["pairs", "missed", "false", "non_finite", "normal", "direction", "depth", "position", "BAD"] {
+        assert_eq!(total("paper", what), total("formula f32", what), "{what}");
+    }
+    assert_eq!((total("wide", "pairs"), total("exact", "pairs")), (12_000, 0));
+    if cfg!(feature = "ode") {
+        assert!(total("ODE f64", "pairs") == 12_000 && total("ODE f64", "BAD") == 0);
+    }
+    let shown = String::from_utf8(first.get_output().stdout.clone()).expect("UTF-8");
+    assert!(shown.contains("hard:12000 of sphere-plane with seed 3") && shown.contains("parry3d"), "{shown}");
+
+    let refused = hard(room.path(), &[&planes[..], &["--profile", "wide,exact"]].concat()).code(2);
+    let said = String::from_utf8(refused.get_output().stderr.clone()).expect("UTF-8");
+    assert_eq!(
+        said,
+        "afu: query sphere-plane with profile exact: profile exact is for sphere-sphere alone; leave it out\n"
+    );
+
+    // Another query in the same folder is another study's table; what was measured is kept.
+    let csv = read("hard.csv");
+    hard(room.path(), &["--pairs", "17", "--profile", "wide"]).success();
+    let again = hard(room.path(), &planes).success();
+    let said = String::from_utf8(again.get_output().stderr.clone()).expect("UTF-8");
+    assert!(said.contains(&format!("{0} of {0} rows are of an earlier run", rows.len())), "{said}");
+    assert_eq!(read("hard.csv"), csv);
+}

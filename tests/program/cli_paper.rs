@@ -129,6 +129,7 @@ fn bad_parameters_are_bad_usage() {
         (["--n-col-max", "9"], "9 is not in 10..=1000000"),
         (["--executions", "0"], "0 is not in 1..=10000"),
         (["--link", "wire"], "unknown link `wire`"),
+        (["--query", "sphere-plane"], "the paper's experiment is for sphere-sphere alone"),
     ] {
         let told = afu(&[&["paper", "--quick", "--out", out][..], &options].concat()).code(2);
         let text = String::from_utf8_lossy(&told.get_output().stderr).into_owned();

@@ -191,7 +191,7 @@ fn of_the_program() -> Vec<Kind> {
     });
     figures.as_object_mut().unwrap().extend(area.as_object().unwrap().clone());
     let text = |value: &Value| serde_json::to_vec(value).unwrap();
-    let hard = HardResults::new(Task { pairs: 0, seed: 1 }, &["somebody"]);
+    let hard = HardResults::new(Task { query: Query::SphereSphere, pairs: 0, seed: 1 }, &["somebody"]);
     vec![
         Kind {
             name: "manifest.json",
@@ -217,7 +217,7 @@ fn of_the_program() -> Vec<Kind> {
             form: Form::Json,
             seeds: vec![serde_json::to_vec(&hard).unwrap()],
             read: |path| {
-                let task = Task { pairs: 0, seed: 1 };
+                let task = Task { query: Query::SphereSphere, pairs: 0, seed: 1 };
                 let mut results = HardResults::new(task, &[]);
                 accuracy::fill(&mut results, &mut [], task, Some((path.parent().unwrap(), false)), |_, _| ()).is_ok()
             },

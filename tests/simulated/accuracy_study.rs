@@ -4,6 +4,7 @@ use contact_afu::accuracy::trade::{Named, Plan, Size, Study, Work, run};
 use contact_afu::accuracy::{Contenders, Profiled, measure};
 use contact_afu::config::{Config, Profile, RecordFormat, Shell};
 use contact_afu::pairs::Set;
+use contact_afu::query::Query;
 use contact_afu::store::Store;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -97,11 +98,22 @@ fn a_record_s_rounding_is_part_of_the_error() {
     let configs = [("wide", RecordFormat::F32), ("wide", RecordFormat::F16), ("half", RecordFormat::F16)];
     let mut contenders = Contenders::new();
     for (profile, record) in configs {
-        contenders.push(Box::new(Profiled::over(&profile.parse().expect("a profile"), record)));
+        contenders.push(Box::new(Profiled::of(&Config {
+            profile: profile.parse().expect("a profile"),
+            record,
+            ..Config::default()
+        })));
     }
     let dense = Set::Dense(500).pairs(1);
-    let (rows, _) = measure("dense", &dense, &mut contenders, &Store::temporary().expect("a temporary folder"), |_| {})
-        .expect("answers");
+    let (rows, _) = measure(
+        Query::SphereSphere,
+        "dense",
+        &dense,
+        &mut contenders,
+        &Store::temporary().expect("a temporary folder"),
+        |_| {},
+    )
+    .expect("answers");
     let [wide, rounded, half] = [0, 1, 2].map(|i| rows[i].errors.contact.mean);
     assert!(rounded > 1000.0 * wide, "f16 costs what it costs: {rounded:e} {wide:e}");
     assert!(half > rounded, "and computing in it costs more: {half:e} {rounded:e}");

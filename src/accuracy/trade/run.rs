@@ -6,9 +6,10 @@ use super::software;
 use super::workers::costs;
 use super::{Counted, Plan, Point, Study};
 use crate::accuracy::study::{self, StudyError};
-use crate::accuracy::{Contenders, Profiled, Row, measure};
+use crate::accuracy::{Contender, Contenders, Profiled, Row, measure};
 use crate::config::Config;
 use crate::link::LinkError;
+use crate::query::Query;
 use crate::report::{folder, manifest};
 use crate::store::{Store, StoreError};
 use crate::synth::SynthError;
@@ -248,14 +249,14 @@ fn errors(
     store: &Store,
     progress: &mut impl FnMut(Work),
 ) -> Result<Vec<Vec<Row>>, TradeError> {
-    let contender = |config: &Config| Profiled::over(&config.profile, config.record);
+    let contender = |config: &Config| Profiled::of(config);
     // The clock changes no bit: an arithmetic answers once.
     let mut contenders = Contenders::new();
     let mut names: Vec<String> = Vec::new();
     for config in configs {
         let contender = contender(config);
-        if !names.contains(&contender.title()) {
-            names.push(contender.title());
+        if !names.contains(&contender.name()) {
+            names.push(contender.name());
             contenders.push(Box::new(contender));
         }
     }
@@ -264,10 +265,10 @@ fn errors(
         progress(Work::Begun(format!("errors on {}", set.name)));
         let mut rows = Vec::new();
         for some in contenders.chunks_mut(AT_ONCE) {
-            rows.extend(measure(&set.name, &set.pairs, some, store, |_| {})?.0);
+            rows.extend(measure(Query::SphereSphere, &set.name, &set.pairs, some, store, |_| {})?.0);
         }
         for (config, found) in configs.iter().zip(&mut found) {
-            let name = contender(config).title();
+            let name = contender(config).name();
             found.extend(rows.iter().find(|row| row.contender == name).cloned());
         }
         progress(Work::Done(PAIR_SECONDS * (set.pairs.len() * configs.len()) as f64));
