@@ -79,7 +79,7 @@ impl HardResults {
         let heading = ["category", "contender", "pairs", "contacts"].into_iter().chain(Tally::HEADING);
         out.write_record(heading.chain(["depth_ulps", "normal_ulps", "position_ulps"]))?;
         for Row { category, contender, tally, .. } in &self.rows {
-            let counts = [tally.pairs, tally.contacts].into_iter().chain(tally.counts()).map(|count| count.to_string());
+            let counts = tally.counts().map(|count| count.to_string());
             let ulps = [tally.depth_ulps, tally.normal_ulps, tally.position_ulps].map(|ulps| ulps.to_string());
             let names = [category.clone(), contender.clone()];
             out.write_record(names.into_iter().chain(counts).chain(ulps))?;
@@ -104,8 +104,7 @@ impl HardResults {
         for contender in self.contenders() {
             let rows = self.rows.iter().filter(|row| row.contender == contender);
             let line = |name: &str, tally: &Tally| {
-                let counts = [tally.pairs, tally.contacts].into_iter().chain(tally.counts()).map(grouped);
-                [name.to_owned()].into_iter().chain(counts).collect::<Vec<_>>()
+                [name.to_owned()].into_iter().chain(tally.counts().map(grouped)).collect::<Vec<_>>()
             };
             let total = line("all", &self.total(contender));
             let lines = rows.map(|row| line(&row.category, &row.tally)).chain([total]);

@@ -42,39 +42,21 @@ pub struct Tally {
 impl Tally {
     /// Counts one more judgement, of a pair that touches or not.
     pub fn add(&mut self, is_contact: bool, found: &Judgement) {
-        self.pairs += 1;
-        self.contacts += u64::from(is_contact);
-        for (count, counts) in [
-            (&mut self.missed, found.missed),
-            (&mut self.false_hits, found.false_hit),
-            (&mut self.non_finite, found.non_finite),
-            (&mut self.normal, found.normal),
-            (&mut self.direction, found.direction),
-            (&mut self.depth, found.depth),
-            (&mut self.position, found.position),
-            (&mut self.bad, found.bad),
-            (&mut self.unsettled, found.unsettled),
-        ] {
+        let Judgement { missed, false_hit, non_finite, normal, direction, depth, position, bad, unsettled, .. } =
+            *found;
+        let wrong = [missed, false_hit, non_finite, normal, direction, depth, position, bad, unsettled];
+        for (count, counts) in self.each().into_iter().zip([true, is_contact].into_iter().chain(wrong)) {
             *count += u64::from(counts);
         }
-        let [depth, normal, position] = found.ulps.map(|ulps| if ulps.is_finite() { ulps } else { 0.0 });
-        self.raise([depth, normal, position]);
+        self.raise(found.ulps.map(|ulps| if ulps.is_finite() { ulps } else { 0.0 }));
     }
 
     /// Both together. Counts end at the largest number: a file of results may say anything.
     #[must_use]
     pub fn plus(mut self, other: &Self) -> Self {
-        self.pairs = self.pairs.saturating_add(other.pairs);
-        self.contacts = self.contacts.saturating_add(other.contacts);
-        self.missed = self.missed.saturating_add(other.missed);
-        self.false_hits = self.false_hits.saturating_add(other.false_hits);
-        self.non_finite = self.non_finite.saturating_add(other.non_finite);
-        self.normal = self.normal.saturating_add(other.normal);
-        self.direction = self.direction.saturating_add(other.direction);
-        self.depth = self.depth.saturating_add(other.depth);
-        self.position = self.position.saturating_add(other.position);
-        self.bad = self.bad.saturating_add(other.bad);
-        self.unsettled = self.unsettled.saturating_add(other.unsettled);
+        for (count, more) in self.each().into_iter().zip(other.counts()) {
+            *count = count.saturating_add(more);
+        }
         self.raise([other.depth_ulps, other.normal_ulps, other.position_ulps]);
         self
     }
@@ -85,22 +67,18 @@ impl Tally {
         self.position_ulps = self.position_ulps.max(position);
     }
 
-    /// The counts, in the order of [`Tally::HEADING`].
-    pub fn counts(&self) -> [u64; 9] {
-        [
-            self.missed,
-            self.false_hits,
-            self.non_finite,
-            self.normal,
-            self.direction,
-            self.depth,
-            self.position,
-            self.bad,
-            self.unsettled,
-        ]
+    /// The pairs, the contacts, and the counts in the order of [`Tally::HEADING`].
+    pub fn counts(&self) -> [u64; 11] {
+        { *self }.each().map(|count| *count)
     }
 
-    /// What the counts are of.
+    fn each(&mut self) -> [&mut u64; 11] {
+        let Self { pairs, contacts, missed, false_hits, non_finite, normal, direction, depth, position, .. } = self;
+        let Self { bad, unsettled, .. } = self;
+        [pairs, contacts, missed, false_hits, non_finite, normal, direction, depth, position, bad, unsettled]
+    }
+
+    /// What the counts after those of pairs and contacts are of.
     pub const HEADING: [&'static str; 9] =
         ["missed", "false", "non-finite", "normal", "direction", "depth", "position", "BAD", "unsettled"];
 }
