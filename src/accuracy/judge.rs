@@ -39,9 +39,9 @@ impl Standard {
 
 /// What is wrong with an answer: which limits of gross failure (BAD) it breaks, and its errors.
 ///
-/// The limits: a wrong decision is gross if its [`margin`](Truth::margin) is more than 2^−20 (below that it is wrong, but
-/// not gross); an infinity or a NaN; a normal whose length differs from 1 by more than 10^−6, or whose direction by more
-/// than 10^−5; a depth wrong by more than 16·2^−24 of its [`scale`](Truth::scale), a position wrong by more than
+/// The limits: a wrong decision is gross if its [`margin`](Truth::margin) is more than 2^−20 (below that it is wrong,
+/// but not gross); an infinity or a NaN; a normal whose length differs from 1 by more than 10^−6, or whose direction by
+/// more than 10^−5; a depth wrong by more than 16·2^−24 of its [`scale`](Truth::scale), a position wrong by more than
 /// 16·2^−24 of its own. Each tolerance has 2^−149 added. A true value beyond the largest binary32 number that is given
 /// as infinity is right. If the centres coincide, any direction parts the spheres, and the position depends on it: of
 /// an engine that takes another direction than ODE's, neither is judged.

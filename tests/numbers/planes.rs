@@ -159,8 +159,8 @@ impl Worst {
         worst
     }
 
-    /// Five roundings on the way of a product into the depth, two on that of n·r into the position, none on that of the
-    /// normal.
+    /// A product goes through five roundings on its way into the depth, n·r through two on its way into the position,
+    /// and the normal through none.
     fn is_as_promised(&self) -> bool {
         self.other_normals == 0 && self.decision <= 5.000_001 && self.depth <= 5.000_001 && self.position <= 1.000_001
     }
