@@ -22,7 +22,8 @@ pub struct ContenderError {
 }
 
 /// A row for each contender on `pairs` of a query, all valid, which are called `set`: one that `store` holds, or
-/// measured now and kept there. `progress` is called with the pairs done. Returns the rows, and how many of them the store held.
+/// measured now and kept there. `progress` is called with the pairs done. Returns the rows, and how many of them the
+/// store held.
 ///
 /// # Errors
 /// If a contender fails, or a row cannot be read or kept.

@@ -16,8 +16,8 @@ use super::{output, progress};
 /// that are wrong, gross failures (BAD), and pairs left unsettled. The same command again resumes.
 #[derive(Args, Debug)]
 pub struct Hard {
-    /// What is asked of a pair: sphere-sphere, or sphere-plane
-    #[arg(long, value_name = "NAME", default_value_t)]
+    /// Which two bodies a pair is of
+    #[arg(long, value_name = "QUERY", default_value_t, value_parser = super::usage::query())]
     query: Query,
     /// Pairs of all categories together
     #[arg(long, value_name = "N", default_value_t = 170_000)]

@@ -183,8 +183,8 @@ fn the_figures_of_scenes_are_their_plans() {
     page.check();
 }
 
-/// The table of gross failures in a page is what `afu hard` finds with these arguments. Its columns are `contenders` and
-/// ODE, which is compared if it is built in.
+/// The table of gross failures in a page is what `afu hard` finds with these arguments. Its columns are `contenders`
+/// and ODE, which is compared if it is built in.
 fn compare_gross_failures(page: &str, arguments: &[&str], contenders: &[&str], sums: &[(&str, &str)]) {
     let room = tempfile::tempdir().unwrap();
     let out = room.path().join("hard");
