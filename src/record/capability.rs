@@ -136,10 +136,13 @@ impl Capability {
             1 => part.low.to_string(),
             bits => format!("{}:{}", part.low + bits - 1, part.low),
         };
+        let query = Self::from_bits(word).query.map_or("", |query| query.shape().name);
+        let meaning = |part: &Part| match part.low == QUERY.low {
+            true => format!("{} ({}: {query})", part.meaning, part.of(word)),
+            false => part.meaning.to_owned(),
+        };
         let parts = Part::ALL.iter().filter(|part| told(part));
-        let known = Self::from_bits(word).query.filter(|query| !query.is_default());
-        let query = known.map(|query| format!(" ({}: {query})", query.shape().code)).unwrap_or_default();
-        parts.map(|part| format!("{} {}", place(part), part.meaning)).collect::<Vec<_>>().join(", ") + &query
+        parts.map(|part| format!("{} {}", place(part), meaning(part))).collect::<Vec<_>>().join(", ")
     }
 
     /// Pairs in a source line.
@@ -184,6 +187,10 @@ mod tests {
         ] {
             let said = Capability::new(&config, 99);
             assert_eq!(Capability::from_bits(said.bits()), said);
+            assert_eq!(
+                Capability::describe(said.bits()).contains("28 query (1: sphere-plane), 43"),
+                said.query != Some(Query::SphereSphere)
+            );
             assert_eq!(said.pairs_per_line(), Layout::of(512, &config).pairs_per_line());
         }
         // Every part has bits of its own, and those between are zero.
