@@ -149,7 +149,10 @@ impl Cosim {
     /// What a pair is: of the AFU that is given, or asked for.
     fn query(&self) -> Result<Query, Failure> {
         match &self.rtl {
-            Some(folder) => Ok(config::read(folder).ends(Kind::Usage)?.query),
+            Some(folder) => {
+                self.one.only_scpus()?;
+                Ok(config::read(folder).ends(Kind::Usage)?.query)
+            }
             None => Ok(self.one.machine.config()?.query),
         }
     }

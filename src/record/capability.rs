@@ -25,7 +25,7 @@ const fn part(low: u32, bits: u32, meaning: &'static str, always: bool) -> Part 
 const INTERVAL: Part = part(8, 8, "interval", true);
 const FIELDS: Part = part(16, 4, "fields (hit, depth, normal, position from the lowest bit up)", true);
 const HITS: Part = part(24, 1, "results (1: contacts alone)", false);
-const ONE_RADIUS: Part = part(25, 1, "one radius for all spheres (1: yes)", false);
+const ONE_RADIUS: Part = part(25, 1, "one radius for all spheres", false);
 const RECORD: Part = part(26, 2, "words of records (0: f32, 1: f16, 2: bf16)", false);
 const QUERY: Part = part(28, 4, "query", false);
 const LATENCY: Part = part(32, 12, "SCPU latency (of profile and clock), in cycles", true);
@@ -129,20 +129,26 @@ impl Capability {
         }
     }
 
-    /// The parts of a word in prose, each with its bits.
+    /// The parts of a word in prose, each with its bits; of those that not every AFU has, the ones that are set.
     pub fn describe(word: u64) -> String {
-        let told = |part: &Part| part.always || part.of(word) > 0;
-        let place = |part: &Part| match part.bits {
-            1 => part.low.to_string(),
-            bits => format!("{}:{}", part.low + bits - 1, part.low),
+        let said = Self::from_bits(word);
+        let query = said.query.map_or("unknown", |query| query.shape().name);
+        let told = |part: &Part| {
+            let place = match part.bits {
+                1 => part.low.to_string(),
+                bits => format!("{}:{}", part.low + bits - 1, part.low),
+            };
+            let value = part.of(word);
+            match part.low {
+                _ if part.always => Some(format!("{place} {}", part.meaning)),
+                _ if value == 0 => None,
+                low if low == HITS.low => Some(format!("{place} set: only contacts come back")),
+                low if low == RECORD.low => Some(format!("{place} are {value}: words of records are {}", said.record)),
+                low if low == QUERY.low => Some(format!("{place} are {value}: pairs are {query}")),
+                _ => Some(format!("{place} set: {}", part.meaning)),
+            }
         };
-        let query = Self::from_bits(word).query.map_or("", |query| query.shape().name);
-        let meaning = |part: &Part| match part.low == QUERY.low {
-            true => format!("{} ({}: {query})", part.meaning, part.of(word)),
-            false => part.meaning.to_owned(),
-        };
-        let parts = Part::ALL.iter().filter(|part| told(part));
-        parts.map(|part| format!("{} {}", place(part), meaning(part))).collect::<Vec<_>>().join(", ")
+        Part::ALL.iter().filter_map(told).collect::<Vec<_>>().join(", ")
     }
 
     /// Pairs in a source line.
@@ -187,10 +193,8 @@ mod tests {
         ] {
             let said = Capability::new(&config, 99);
             assert_eq!(Capability::from_bits(said.bits()), said);
-            assert_eq!(
-                Capability::describe(said.bits()).contains("28 query (1: sphere-plane), 43"),
-                said.query != Some(Query::SphereSphere)
-            );
+            let is_told = Capability::describe(said.bits()).contains("31:28 are 1: pairs are sphere-plane, 43:32");
+            assert_eq!(is_told, said.query == Some(Query::SpherePlane));
             assert_eq!(said.pairs_per_line(), Layout::of(512, &config).pairs_per_line());
         }
         // Every part has bits of its own, and those between are zero.

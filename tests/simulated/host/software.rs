@@ -69,9 +69,9 @@ fn another_afu_is_refused_by_what_differs() {
     let scpus = other(Config { scpus: 3, ..config() });
     assert!(scpus.starts_with("the FPGA's AFU differs in SCPUs: it has 3, this session expects 10: load"), "{scpus}");
     let fields = other(Config { contact: "depth".parse().unwrap(), ..config() });
-    assert!(fields.contains("contact fields (a mask) 3, this session expects 15"), "{fields}");
+    assert!(fields.contains("the lowest bit up): it has 3, this session expects 15"), "{fields}");
     let profile = other(Config { profile: "paper".parse().unwrap(), ..config() });
-    assert!(profile.contains("an SCPU latency (another profile or clock)"), "{profile}");
+    assert!(profile.contains("SCPU latency (of profile and clock)"), "{profile}");
 }
 
 /// Changes what the AFU says in its DSM, as soon as it is there.
