@@ -106,7 +106,7 @@ impl Aside {
 }
 
 /// The same error without the name of a temporary file, which nobody knows.
-pub fn without_path(error: io::Error) -> io::Error {
+pub(crate) fn without_path(error: io::Error) -> io::Error {
     match error.to_string().split_once(" at path ") {
         Some((cause, _)) if error.raw_os_error().is_none() => io::Error::new(error.kind(), cause),
         _ => error,

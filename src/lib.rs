@@ -26,8 +26,8 @@
 //! | feature | default | what it adds | what it needs |
 //! |---|---|---|---|
 //! | `cli` | yes | the program `afu` | clap, clap_complete, indicatif, anyhow |
-//! | `cosim` | yes | simulation: `verify`, `cosim`, `sweep`, `paper` | Verilator, a C++ compiler, libclang |
-//! | `ode` | no | `ode`: the Open Dynamics Engine | libode in double precision, libclang |
+//! | `cosim` | yes | simulation: `verify`, `cosim`, `sweep` | Verilator, a C++ compiler, libclang |
+//! | `ode` | no | `ode`: the Open Dynamics Engine; with `cosim`, `paper` | libode in double precision, libclang |
 //! | `parry` | no | parry3d beside the other engines in `accuracy` | parry3d |
 //!
 //! A library's user takes `default-features = false, features = ["cosim"]`. Without any feature the crate is pure Rust
@@ -52,7 +52,7 @@ pub mod ode;
 pub mod operator;
 pub mod outcome;
 pub mod pairs;
-#[cfg(feature = "cosim")]
+#[cfg(all(feature = "cosim", feature = "ode"))]
 pub mod paper;
 pub mod patience;
 pub mod pipeline;

@@ -96,7 +96,7 @@ impl Store {
     ///
     /// # Errors
     /// If the environment names no such folder.
-    pub fn of_user(name: &str) -> Result<Self, StoreError> {
+    pub(crate) fn of_user(name: &str) -> Result<Self, StoreError> {
         Ok(Self::open(&user_folder().ok_or(StoreError::NoFolder)?.join(name)))
     }
 
@@ -147,7 +147,7 @@ impl Store {
     ///
     /// # Errors
     /// As [`Store::get`] and [`Store::put`], or if `make` fails.
-    pub fn get_or_make<T, E>(&self, key: &Key, make: impl FnOnce() -> Result<T, E>) -> Result<T, E>
+    pub(crate) fn get_or_make<T, E>(&self, key: &Key, make: impl FnOnce() -> Result<T, E>) -> Result<T, E>
     where
         T: Serialize + DeserializeOwned,
         E: From<StoreError>,
@@ -208,7 +208,7 @@ impl StoreError {
 }
 
 /// The folder of everything that this program keeps for a user: `AFU_CACHE`, else the XDG cache folder's `contact-afu`.
-pub fn user_folder() -> Option<PathBuf> {
+pub(crate) fn user_folder() -> Option<PathBuf> {
     let set = |name: &str| env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
     let xdg = || set("XDG_CACHE_HOME").filter(|path| path.is_absolute());
     let user = || xdg().or_else(|| Some(set("HOME")?.join(".cache"))).map(|path| path.join("contact-afu"));

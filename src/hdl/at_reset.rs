@@ -16,7 +16,7 @@ struct Scope<'a> {
 impl Module {
     /// The level of an output after some cycles of reset, at the parameters' defaults; `None` if nothing resets it.
     /// `held` is an input that is held at a level meanwhile, if the module resets itself.
-    pub fn at_reset(&self, output: &str, held: Option<(&str, u128)>) -> Option<u128> {
+    pub(crate) fn at_reset(&self, output: &str, held: Option<(&str, u128)>) -> Option<u128> {
         let (_, port) = self.port(output).filter(|(_, port)| port.output)?;
         Scope { module: self, outer: None, held }.value(port.node?, LONGEST)
     }

@@ -23,7 +23,7 @@ pub enum Ports {
 ///
 /// # Errors
 /// What the graph recorded.
-pub fn block_memory(
+pub(crate) fn block_memory(
     depth: u32,
     width: u32,
     ports: Ports,

@@ -154,7 +154,7 @@ impl DelayModel {
 
     /// The same target with other times, in the order of [`DelayModel::parameters`]; those not given stay.
     #[must_use]
-    pub fn with_parameters(&self, times: &[f64]) -> Self {
+    pub(crate) fn with_parameters(&self, times: &[f64]) -> Self {
         let mut model = self.clone();
         let DelayModel { register, lut, spread, gate, mux, fanout, carry, carry_bit, carry_out, multiplier, .. } =
             &mut model;
@@ -209,7 +209,7 @@ impl DelayModel {
 
     /// The same target with differences that may be sums written as `primitive`.
     #[must_use]
-    pub fn with_adders(self, primitive: Primitive) -> Self {
+    pub(crate) fn with_adders(self, primitive: Primitive) -> Self {
         Self { adder_primitive: Some(primitive), ..self }
     }
 

@@ -9,7 +9,7 @@ impl Signal<'_> {
     /// The word of a table that this value is the index of; each word has `width` bits. A case statement, and logic: a
     /// memory would have to be read a cycle ahead. Up to 12 bits of index.
     #[track_caller]
-    pub fn lookup(self, table: &[u128], width: u32) -> Self {
+    pub(crate) fn lookup(self, table: &[u128], width: u32) -> Self {
         let place = Location::caller();
         let Some(ids) = self.graph().own("lookup", &[self], place) else { return Self::poison(self.graph()) };
         let index = self.width();

@@ -24,7 +24,7 @@ mod state;
 pub mod verilog;
 mod wiring;
 
-pub use block_memory::{Ports, block_memory};
+pub(crate) use block_memory::{Ports, block_memory};
 pub use cut::{Timing, cut};
 pub use delay_block::delay_block;
 pub use delay_model::DelayModel;

@@ -304,7 +304,7 @@ impl Module {
     }
 
     /// Whether anything inside is clocked.
-    pub fn is_clocked(&self) -> bool {
+    pub(crate) fn is_clocked(&self) -> bool {
         !self.memories.is_empty()
             || self.nodes.iter().any(|n| matches!(n.op, Op::Delay { .. } | Op::Register { .. } | Op::MemoryRead { .. }))
             || self.instances.iter().any(|i| i.module.is_clocked())
@@ -316,7 +316,7 @@ impl Module {
     }
 
     /// Whether anything inside is reset.
-    pub fn is_reset(&self) -> bool {
+    pub(crate) fn is_reset(&self) -> bool {
         self.nodes.iter().any(|n| match n.op {
             Op::Delay { cycles } => is_memory_delay(cycles, n.width),
             Op::Register { reset } => reset.is_some(),

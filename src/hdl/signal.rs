@@ -184,7 +184,7 @@ impl<'g> Signal<'g> {
 
     /// Difference to a value as wide, or sum where `add` (1 bit) is set; modulo 2^width, on one carry chain.
     #[track_caller]
-    pub fn minus_or_plus(self, other: Self, add: Self) -> Self {
+    pub(crate) fn minus_or_plus(self, other: Self, add: Self) -> Self {
         let (what, place) = ("minus or plus", Location::caller());
         match add.as_constant() {
             Some(0) => return self.binary(other, what, Op::Sub, None, place),

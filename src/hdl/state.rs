@@ -117,7 +117,7 @@ impl<'g> MemoryHandle<'g> {
 
     /// As [`MemoryHandle::read`], at the clock edges at which `enable` is set; in between it stays.
     #[track_caller]
-    pub fn read_if(self, enable: Signal<'g>, address: Signal<'g>) -> Signal<'g> {
+    pub(crate) fn read_if(self, enable: Signal<'g>, address: Signal<'g>) -> Signal<'g> {
         self.read_at(&[address, enable], Location::caller())
     }
 
@@ -202,7 +202,7 @@ impl Graph {
     /// As [`Graph::instance`], of a module that may have a reset of its own: for a wrapper that is synthesised, which
     /// the evaluator does not take.
     #[track_caller]
-    pub fn instance_of_top<'g>(
+    pub(crate) fn instance_of_top<'g>(
         &'g self,
         name: &str,
         module: &Arc<Module>,

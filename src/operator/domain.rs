@@ -71,7 +71,7 @@ impl Domain {
     }
 
     /// Whether a subnormal may come that counts.
-    pub const fn keeps_subnormals(self) -> bool {
+    pub(crate) const fn keeps_subnormals(self) -> bool {
         self.format.keeps_subnormals() && !self.is_normal()
     }
 
@@ -84,7 +84,7 @@ impl Domain {
     }
 
     /// The same values, of results that are rounded to nearest.
-    pub const fn to_nearest(self) -> Self {
+    pub(crate) const fn to_nearest(self) -> Self {
         Self { format: self.format.with_rounding(number::Rounding::Nearest), ..self }
     }
 
@@ -99,7 +99,7 @@ impl Domain {
     }
 
     /// Bits of the significand, the leading bit included.
-    pub const fn significand_bits(self) -> u32 {
+    pub(crate) const fn significand_bits(self) -> u32 {
         self.format.significand_bits()
     }
 
@@ -109,12 +109,12 @@ impl Domain {
     }
 
     /// Exponent of the smallest normal number.
-    pub const fn min_exponent(self) -> i32 {
+    pub(crate) const fn min_exponent(self) -> i32 {
         self.format.min_exponent()
     }
 
     /// The biased exponent of infinities and NaN.
-    pub const fn special_exponent(self) -> u32 {
+    pub(crate) const fn special_exponent(self) -> u32 {
         self.format.special_exponent()
     }
 

@@ -4,7 +4,7 @@ use crate::kernel::PairRecord;
 
 /// The integer points with |x| + |y| + |z| ≤ `reach`, in lexicographic order: where the paper's diamond has its
 /// spheres.
-pub fn octahedron(reach: i32) -> impl Iterator<Item = [i32; 3]> {
+pub(crate) fn octahedron(reach: i32) -> impl Iterator<Item = [i32; 3]> {
     let side = |rest: i32| -rest..=rest;
     side(reach).flat_map(move |x| {
         let rest = reach - x.abs();

@@ -18,7 +18,7 @@ mod source;
 mod sphere_plane;
 mod table;
 
-pub use diamond::octahedron;
+pub(crate) use diamond::octahedron;
 pub use error::FileError;
 pub use file::{
     LoadError, Loaded, Rounded, check_name, load, load_with_notes, read_contacts, read_hits, read_pairs,

@@ -74,7 +74,7 @@ fn whole(text: &str) -> Option<String> {
 
 impl Set {
     /// Whether `text` can only be meant as the name of a set, right or wrong, and not as a file.
-    pub fn is_name(text: &str) -> bool {
+    pub(crate) fn is_name(text: &str) -> bool {
         text.split_once(':').is_some_and(|(kind, _)| KINDS.contains(&kind))
     }
 

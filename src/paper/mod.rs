@@ -1,13 +1,11 @@
 //! The paper's experiment, run again: collisions recorded in ODE's diamond, timed on this machine, and sent through the
 //! simulated AFU; its Figures 6 and 7, and its text checked by arithmetic.
 //!
-//! `run` carries out a `Plan`, for which it needs ODE (feature `ode`); everything else does not.
+//! [`run`] carries out a [`Plan`], and [`write`](write()) writes what it came to.
 
 mod claims;
-#[cfg(feature = "ode")]
 mod experiment;
 mod figures;
-#[cfg(feature = "ode")]
 mod measure;
 mod output;
 mod page;
@@ -16,13 +14,14 @@ mod results;
 mod simulate;
 mod size;
 
-pub use claims::{Claim, claims};
-#[cfg(feature = "ode")]
 pub use experiment::{PaperError, Plan, Work, run};
-pub use figures::{figure6, figure7, per_collision};
 pub use output::write;
-pub use page::page;
-pub use published::Published;
-pub use results::{AfuPoint, Experiment, Joined, OdePoint, SCHEMA, Settings, Summary};
-pub use simulate::{SimulateError, Task, simulate};
+pub use results::{Experiment, Joined, Settings, Summary};
+pub use simulate::SimulateError;
 pub use size::Size;
+
+use claims::{Claim, claims};
+use figures::{figure6, figure7, per_collision};
+use page::page;
+use published::Published;
+use results::{AfuPoint, OdePoint, SCHEMA};

@@ -36,17 +36,17 @@ impl Published {
     };
 
     /// ns that the AFU gains at each collision.
-    pub fn gain_ns(&self) -> f64 {
+    pub(crate) fn gain_ns(&self) -> f64 {
         self.ode_ns - self.afu_ns
     }
 
     /// The time around a transaction that makes the two equal at the crossover, in ns.
-    pub fn set_up_ns(&self) -> f64 {
+    pub(crate) fn set_up_ns(&self) -> f64 {
         self.crossover * self.gain_ns()
     }
 
     /// The paper's ODE for so many collisions, in ns.
-    pub fn ode_total_ns(&self, collisions: f64) -> f64 {
+    pub(crate) fn ode_total_ns(&self, collisions: f64) -> f64 {
         self.ode_ns * collisions
     }
 

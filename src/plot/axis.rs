@@ -31,7 +31,7 @@ impl Axis {
 
     /// The same, from `least` to `most`.
     #[must_use]
-    pub fn from_to(self, least: f64, most: f64) -> Self {
+    pub(crate) fn with_range(self, least: f64, most: f64) -> Self {
         Self { range: Some([least, most]), ..self }
     }
 
@@ -155,7 +155,7 @@ mod tests {
         assert_eq!(ticks(axis(), &[10.0, 1000.0]), ["0", "200", "400", "600", "800", "1000"]);
         assert_eq!(ticks(axis(), &[0.013, 0.09]), ["0.00", "0.02", "0.04", "0.06", "0.08", "0.10"]);
         assert_eq!(ticks(axis(), &[-3.0, 4.0]), ["−3", "−2", "−1", "0", "1", "2", "3", "4"]);
-        assert_eq!(ticks(axis().from_to(0.0, 90_000.0), &[]).last().map(String::as_str), Some("80\u{202f}000"));
+        assert_eq!(ticks(axis().with_range(0.0, 90_000.0), &[]).last().map(String::as_str), Some("80\u{202f}000"));
         assert_eq!(ticks(axis(), &[5.0, 5.0]).first().map(String::as_str), Some("0"));
     }
 

@@ -92,7 +92,7 @@ mod tests {
 
     #[test]
     fn names_in_the_legend_and_words_of_marks_do_not_overlap() {
-        let axis = || Axis::new("", Scale::Linear).from_to(0.0, 100.0);
+        let axis = || Axis::new("", Scale::Linear).with_range(0.0, 100.0);
         let mut plot = Plot::new("", axis(), axis());
         for i in 0..7 {
             plot = plot.with(Series::new(&"a name of some length".repeat(1 + i % 2), i, []));

@@ -102,7 +102,7 @@ mod tests {
 
     #[test]
     fn named_points_can_be_pointed_at() {
-        let axis = || Axis::new("", Scale::Linear).from_to(0.0, 10.0);
+        let axis = || Axis::new("", Scale::Linear).with_range(0.0, 10.0);
         let points = [(1.0, 1.0), (5.0, f64::NAN), (9.0, 9.0)];
         let series = Series::new("s", 0, points).hollow(Marker::Circle);
         let svg = Plot::new("", axis(), axis()).with(series.named(["a", "lost", "b"].map(str::to_owned))).svg();

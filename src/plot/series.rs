@@ -57,7 +57,7 @@ impl Series {
 
     /// With a filled sign at each point.
     #[must_use]
-    pub fn marker(self, marker: Marker) -> Self {
+    pub(crate) fn marker(self, marker: Marker) -> Self {
         Self { marker: Some((marker, false)), ..self }
     }
 

@@ -144,7 +144,7 @@ pub fn check(target: &Path, force: bool) -> Result<(), Error> {
 ///
 /// # Errors
 /// As [`check`], or [`Error::Other`].
-pub fn check_study(target: &Path, schema: &str, force: bool) -> Result<(), Error> {
+pub(crate) fn check_study(target: &Path, schema: &str, force: bool) -> Result<(), Error> {
     check(target, force)?;
     // Within a study the number alone differs.
     let study = |schema: &str| schema.trim_end_matches(|c: char| c.is_ascii_digit()).to_owned();
@@ -161,7 +161,7 @@ pub fn check_study(target: &Path, schema: &str, force: bool) -> Result<(), Error
 ///
 /// # Errors
 /// If the value has no JSON, or the file system refuses; the old file is then as it was.
-pub fn replace_json(path: &Path, value: &impl Serialize) -> Result<(), Error> {
+pub(crate) fn replace_json(path: &Path, value: &impl Serialize) -> Result<(), Error> {
     let mut text = serde_json::to_vec_pretty(value).map_err(as_text(path))?;
     text.push(b'\n');
     replace_file(path, &text)
@@ -171,7 +171,7 @@ pub fn replace_json(path: &Path, value: &impl Serialize) -> Result<(), Error> {
 ///
 /// # Errors
 /// As [`replace_json`].
-pub fn replace_csv(
+pub(crate) fn replace_csv(
     path: &Path,
     write: impl FnOnce(&mut csv::Writer<Vec<u8>>) -> Result<(), csv::Error>,
 ) -> Result<(), Error> {

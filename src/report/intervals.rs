@@ -108,7 +108,7 @@ pub fn picture(all: &[Figures]) -> Plot {
     Plot::new(
         "An SCPU's area by interval",
         Axis::new("interval, cycles", Scale::Log),
-        Axis::new("share of interval 1", Scale::Linear).from_to(0.0, 1.0),
+        Axis::new("share of interval 1", Scale::Linear).with_range(0.0, 1.0),
     )
     .with(series("LUTs", 0, points(|area| area.luts)))
     .with(series("flip-flops", 1, points(|area| area.ffs)))

@@ -8,7 +8,7 @@ use serde_json::Value;
 /// Its name in every folder that afu writes.
 pub const NAME: &str = "manifest.json";
 /// What its `schema` begins with.
-pub const FAMILY: &str = "contact-afu/";
+pub(crate) const FAMILY: &str = "contact-afu/";
 
 /// The schema of the manifest in `folder`; `None` if there is none of ours.
 pub fn schema(folder: &Path) -> Option<String> {

@@ -8,7 +8,7 @@ use sha2::{Digest, Sha256};
 use crate::plot;
 
 /// What a browser may load for a page: its own style, and nothing else from anywhere.
-pub const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:";
+pub(crate) const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:";
 
 const STYLE: &str = "\
 :root{color-scheme:light dark;--ground:#ffffff;--ink:#1c1f24;--soft:#5c6470;--grid:#dde1e6}
@@ -39,7 +39,7 @@ pub fn page(title: &str, body: &Markup) -> String {
 }
 
 /// A page with a script, which runs when everything is there. No other script does: the policy names it by its hash.
-pub fn scripted(title: &str, body: &Markup, script: &str) -> String {
+pub(crate) fn scripted(title: &str, body: &Markup, script: &str) -> String {
     whole(title, body, Some(script))
 }
 
@@ -67,7 +67,7 @@ fn whole(title: &str, body: &Markup, script: Option<&str>) -> String {
 }
 
 /// Bytes in base 64 (RFC 4648, section 4), as policies have hashes.
-pub fn base64(bytes: &[u8]) -> String {
+pub(crate) fn base64(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::new();
     for three in bytes.chunks(3) {

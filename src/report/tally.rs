@@ -105,17 +105,17 @@ impl Tally {
     }
 
     /// The least number of cycles a pair that the link allows.
-    pub fn limit_per_pair(&self) -> Option<f64> {
+    pub(crate) fn limit_per_pair(&self) -> Option<f64> {
         per(self.limit_cycles, self.pairs)
     }
 
     /// Bytes read a pair: of the lines, so what the last one has over counts.
-    pub fn read_per_pair(&self) -> Option<f64> {
+    pub(crate) fn read_per_pair(&self) -> Option<f64> {
         per(self.bytes_read as f64, self.pairs)
     }
 
     /// Bytes written a pair.
-    pub fn written_per_pair(&self) -> Option<f64> {
+    pub(crate) fn written_per_pair(&self) -> Option<f64> {
         per(self.bytes_written as f64, self.pairs)
     }
 

@@ -97,7 +97,7 @@ pub enum Part {
 /// What calls for what: physics, in one place. A part is on when something here calls for it; [`Part::Radii`],
 /// [`Part::Arithmetic`], [`Part::Misses`] and [`Part::Scpus`] have values rather, on which the lines that call for them
 /// have their say (see [`super::Plan`]).
-pub const RULES: &[(Part, &[Demand])] = &[
+pub(super) const RULES: &[(Part, &[Demand])] = &[
     // Something must move them; what they do when they meet does not.
     (Part::Motion, MOVING),
     (Part::Gravity, &[Demand::Gravity]),
@@ -204,7 +204,7 @@ impl Part {
     }
 
     /// What calls for it.
-    pub fn demands(self) -> &'static [Demand] {
+    pub(crate) fn demands(self) -> &'static [Demand] {
         RULES.iter().find(|(part, _)| *part == self).map_or(&[], |(_, demands)| demands)
     }
 }

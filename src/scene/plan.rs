@@ -163,7 +163,7 @@ impl Scene {
     }
 
     /// The effects that `--with` and `--without` can name.
-    pub const fn effect_names() -> &'static [&'static str] {
+    pub(crate) const fn effect_names() -> &'static [&'static str] {
         &EFFECTS
     }
 }

@@ -43,7 +43,7 @@ impl Still {
     }
 
     /// Pairs there are without asking who is in reach.
-    pub fn all_pairs(&self) -> u64 {
+    pub(crate) fn all_pairs(&self) -> u64 {
         let (bodies, queries) = (self.bodies as u64, (self.balls.len() - self.bodies) as u64);
         if queries > 0 { bodies * queries } else { bodies * bodies.saturating_sub(1) / 2 }
     }

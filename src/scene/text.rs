@@ -44,7 +44,7 @@ impl Cost {
 
 impl Row {
     /// The lines that call for it, or that there are none; of a group of bodies only which lines.
-    pub fn called_for_by(&self) -> Vec<String> {
+    pub(crate) fn called_for_by(&self) -> Vec<String> {
         match self.calls.as_slice() {
             [] if self.on => vec!["(usual)".to_owned()],
             [] => vec!["nothing".to_owned()],

@@ -11,12 +11,12 @@ use crate::hdl::{BuildErrors, Graph, Module, Signal};
 /// The wrapper's module.
 pub const TOP: &str = "bench";
 /// The unit's instance in it.
-pub const UNIT: &str = "unit";
+pub(crate) const UNIT: &str = "unit";
 
 /// Its registers that feed the unit.
-pub const OPERANDS: &str = "operand_register";
+pub(crate) const OPERANDS: &str = "operand_register";
 /// Its registers that take the unit's results.
-pub const RESULTS: &str = "result_register";
+pub(crate) const RESULTS: &str = "result_register";
 
 /// The wrapper around `unit`. Words stand in the chains in the order of the ports, the first one most significant; a
 /// chain takes and gives the most significant bit first.

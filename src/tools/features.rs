@@ -4,7 +4,7 @@ use serde::Serialize;
 
 /// A cargo feature.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct Feature {
+pub(crate) struct Feature {
     /// Its name.
     pub name: &'static str,
     /// Whether it is part of this program.
@@ -14,7 +14,7 @@ pub struct Feature {
 }
 
 /// All of them.
-pub const FEATURES: [Feature; 3] = [
+pub(crate) const FEATURES: [Feature; 3] = [
     Feature {
         name: "cosim",
         built_in: cfg!(feature = "cosim"),

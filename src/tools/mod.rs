@@ -5,7 +5,8 @@ mod install;
 mod probe;
 mod synthesis;
 
-pub use features::{FEATURES, Feature, summary};
+pub use features::summary;
+pub(crate) use features::{FEATURES, Feature};
 pub use install::ode as ode_install;
 pub use synthesis::{MissingTool, Program};
 

@@ -21,8 +21,8 @@ pub fn picture(results: &Study, time: Time) -> Plot {
     // Room at both ends for names; where the times are nearly one, from nothing.
     let room = 0.12 * (most - least);
     let x = match most - least > 0.1 * most {
-        true => x.from_to((least - room).max(0.0), most + room),
-        false if most > 0.0 => x.from_to(0.0, 2.0 * most),
+        true => x.with_range((least - room).max(0.0), most + room),
+        false if most > 0.0 => x.with_range(0.0, 2.0 * most),
         false => x,
     };
     let title = match time {

@@ -81,22 +81,22 @@ impl Point {
     }
 
     /// A pair through one SCPU, ns.
-    pub fn compute_ns(&self) -> f64 {
+    pub(crate) fn compute_ns(&self) -> f64 {
         self.ns(self.cycles.compute)
     }
 
     /// A pair over the link, ns.
-    pub fn link_ns(&self) -> f64 {
+    pub(crate) fn link_ns(&self) -> f64 {
         self.ns(self.cycles.link)
     }
 
     /// SCPUs that a device of the target holds.
-    pub fn on_device(&self, target: Target) -> Option<u64> {
+    pub(crate) fn on_device(&self, target: Target) -> Option<u64> {
         Some(target.capacity()?.fits(&self.area()?))
     }
 
     /// A pair through a device full of SCPUs, ns; none where not even one fits.
-    pub fn device_ns(&self, target: Target) -> Option<f64> {
+    pub(crate) fn device_ns(&self, target: Target) -> Option<f64> {
         self.on_device(target).filter(|&scpus| scpus > 0).map(|scpus| self.compute_ns() / scpus as f64)
     }
 

@@ -116,7 +116,7 @@ impl Study {
     }
 
     /// Its mean.
-    pub fn typical(&self, point: &Point) -> f64 {
+    pub(crate) fn typical(&self, point: &Point) -> f64 {
         point.errors(&self.scenes()).contact.mean
     }
 }

@@ -41,7 +41,7 @@ pub enum Memories {
 
 impl Style {
     /// The name of the reset port.
-    pub fn reset_port(&self) -> &'static str {
+    pub(crate) fn reset_port(&self) -> &'static str {
         if self.reset.active_low { "rst_n" } else { "rst" }
     }
 }

@@ -28,7 +28,7 @@ pub struct Job {
 
 impl Job {
     /// Everything that went wrong, in words.
-    pub fn all_failures(&self) -> Vec<String> {
+    pub(crate) fn all_failures(&self) -> Vec<String> {
         let Tally { pairs, mismatches, .. } = self.tally;
         let differ = format!("{mismatches} of {pairs} records differ from the reference");
         Some(differ).filter(|_| mismatches > 0).into_iter().chain(self.failures.iter().cloned()).collect()
