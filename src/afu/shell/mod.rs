@@ -1,4 +1,4 @@
-//! What stands around the core: a shell is a value behind [`ShellDesign`], and [`of`] alone knows which there are.
+//! What stands around the core: a shell is a value behind `ShellDesign`, and `of` alone knows which there are.
 
 mod line;
 pub mod spl2;
