@@ -12,6 +12,8 @@ pub(crate) mod received;
 mod report;
 mod results;
 mod session;
+#[cfg(feature = "cosim")]
+pub(crate) mod simulated;
 mod software;
 mod transaction;
 mod transport;
@@ -22,8 +24,6 @@ mod workspace;
 pub use error::{HitError, HostError};
 pub use report::Report;
 pub use results::JobResults;
-#[cfg(feature = "cosim")]
-pub(crate) use session::PROGRESS_CYCLES;
 pub use session::{Expected, Session};
 pub use software::Software;
 pub use transaction::{Done, Loaded, Pointed, Retrieved, Running, Started, Transaction};

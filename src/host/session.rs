@@ -16,7 +16,7 @@ use crate::patience::{self, Patience, Work};
 use crate::record::{Capability, LINE_BITS, Layout, Part, pack};
 
 /// Cycles between two calls for progress.
-pub(crate) const PROGRESS_CYCLES: u64 = 4096;
+pub(super) const PROGRESS_CYCLES: u64 = 4096;
 
 /// The AFU that a session expects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

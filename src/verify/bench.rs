@@ -6,11 +6,11 @@ use std::time::Instant;
 use super::check::{Verdict, check};
 use super::error::VerifyError;
 use super::replay::Setup;
-use super::run::Run;
 use crate::afu::{Afu, Spec, file_list, top_name};
 use crate::config::{self, Config, Results};
 use crate::cosim::{CosimError, File, Model, Source, Trace};
 use crate::host::Expected;
+use crate::host::simulated::Run;
 use crate::kernel::{PairRecord, Reference};
 use crate::link::{Link, LinkModel, Traffic};
 
@@ -168,7 +168,7 @@ impl Bench {
             progress(Progress::Simulated(pairs.min(count.into())));
         };
         let run = Run { config: &self.config, expected: self.expected, pairs, seed, progress: &mut tell };
-        let outcome = run.on(&instance, link);
+        let outcome: Result<_, VerifyError> = run.on(&instance, link);
         // Of a job that failed the waveform is wanted most.
         let closed = if waveform.is_some() { instance.trace_close() } else { Ok(()) };
         let outcome = outcome?;

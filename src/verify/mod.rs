@@ -8,7 +8,6 @@ mod engine;
 mod error;
 mod mismatch;
 mod replay;
-mod run;
 
 pub use account::{Part, account};
 pub use bench::{Bench, Origin, Progress, rtl_sha256};

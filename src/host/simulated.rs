@@ -1,45 +1,52 @@
 //! How a job reaches a simulated AFU and its results come back: through a host if the shell has registers, at the line
 //! port without one.
 
-use super::error::VerifyError;
+use super::session::PROGRESS_CYCLES;
+use super::{Expected, HostError, Session, Transport, Workspace};
 use crate::config::{Config, Results, Shell};
+use crate::cosim::drive::DriveError;
 use crate::cosim::spl2::Machine;
 use crate::cosim::{Driver, Instance, Job, Outcome};
-use crate::host::{Expected, HostError, PROGRESS_CYCLES, Session, Transport, Workspace};
 use crate::kernel::PairRecord;
 use crate::link::spl2::{Spl2, Spl2Model};
 use crate::link::{Link, Traffic};
 use crate::record::pack;
 
 /// A job that is to run.
-pub(super) struct Run<'a> {
-    pub(super) config: &'a Config,
-    pub(super) expected: Expected,
-    pub(super) pairs: &'a [PairRecord],
-    pub(super) seed: u64,
-    pub(super) progress: &'a mut dyn FnMut(Traffic),
+pub(crate) struct Run<'a> {
+    pub(crate) config: &'a Config,
+    pub(crate) expected: Expected,
+    pub(crate) pairs: &'a [PairRecord],
+    pub(crate) seed: u64,
+    pub(crate) progress: &'a mut dyn FnMut(Traffic),
 }
 
 impl Run<'_> {
     /// Runs the job on `afu` over `link`.
-    pub(super) fn on(self, afu: &Instance, link: Link) -> Result<Outcome, VerifyError> {
-        match self.config.shell {
+    ///
+    /// # Errors
+    /// What the host or, without one, the driver says.
+    pub(crate) fn on<E>(self, afu: &Instance, link: Link) -> Result<Outcome, E>
+    where
+        E: From<HostError> + From<DriveError>,
+    {
+        Ok(match self.config.shell {
             Shell::Spl2 => {
                 let spl = Spl2::new(Spl2Model::default(), link, self.seed);
-                self.through_a_host(Machine::new(afu, spl).map_err(HostError::from)?)
+                self.through_a_host(Machine::new(afu, spl).map_err(HostError::from)?)?
             }
-            Shell::Line | Shell::Axi => self.at_the_line_port(Driver::new(afu, link)?),
-        }
+            Shell::Line | Shell::Axi => self.at_the_line_port(Driver::new(afu, link)?)?,
+        })
     }
 
-    fn through_a_host(self, device: impl Transport) -> Result<Outcome, VerifyError> {
+    fn through_a_host(self, device: impl Transport) -> Result<Outcome, HostError> {
         let workspace = Workspace::for_pairs(self.expected.layout, self.pairs.len() as u64, self.seed)?;
         let mut session = Session::new(device, workspace, self.expected);
         let running = session.transaction().send(self.pairs)?.start()?.confirm()?;
         Ok(running.wait_with(self.progress)?.outcome())
     }
 
-    fn at_the_line_port(self, mut driver: Driver) -> Result<Outcome, VerifyError> {
+    fn at_the_line_port(self, mut driver: Driver) -> Result<Outcome, DriveError> {
         let layout = &self.expected.layout;
         let source = pack(layout, self.pairs);
         let mut job = Job::new(&source, self.pairs.len() as u32, layout.destination_lines(self.pairs.len() as u64));
@@ -52,6 +59,6 @@ impl Run<'_> {
                 (self.progress)(driver.link().traffic());
             }
         }
-        Ok(driver.finish()?)
+        driver.finish()
     }
 }
