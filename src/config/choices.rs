@@ -55,11 +55,7 @@ choice!(
     /// How pairs are given to the AFU.
     Input, "input", default Direct,
     /// Both spheres of every pair, whole.
-    Direct = "direct",
-    /// A table of spheres, then pairs of 16-bit indices.
-    Indexed = "indexed",
-    /// A table of spheres, of which every pair is tried.
-    All = "all"
+    Direct = "direct"
 );
 
 choice!(

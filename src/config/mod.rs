@@ -129,15 +129,8 @@ pub enum Error {
     )]
     ExactRecord(RecordFormat),
     /// Known to the design, not built yet.
-    #[error("{option} {value}: not built yet; {instead}")]
-    NotYet {
-        /// The option.
-        option: &'static str,
-        /// What was asked of it.
-        value: String,
-        /// What there is.
-        instead: &'static str,
-    },
+    #[error("shell axi: not built yet; there are the line port itself (line) and Intel HARP v1 (spl2)")]
+    Axi,
 }
 
 impl Config {
@@ -182,16 +175,8 @@ impl Config {
         if let Some(radius) = self.radius.filter(|&radius| self.record.round(radius).is_infinite()) {
             return Err(Error::RecordRadius(radius, self.record));
         }
-        let not_yet = |option, value: String, instead| Err(Error::NotYet { option, value, instead });
-        if self.input != Input::Direct {
-            return not_yet("input", self.input.to_string(), "pairs are given whole (direct)");
-        }
         if self.shell == Shell::Axi {
-            return not_yet(
-                "shell",
-                self.shell.to_string(),
-                "there are the line port itself (line) and Intel HARP v1 (spl2)",
-            );
+            return Err(Error::Axi);
         }
         Ok(())
     }
@@ -334,7 +319,6 @@ mod tests {
             (Config { prefix: Some("2x".into()), ..Config::default() }, "prefix `2x`"),
             (Config { prefix: Some("a-b".into()), ..Config::default() }, "prefix `a-b`"),
             (Config { prefix: Some(String::new()), ..Config::default() }, "prefix ``"),
-            (Config { input: Input::Indexed, ..Config::default() }, "input indexed"),
             (Config { shell: Shell::Axi, ..Config::default() }, "shell axi"),
         ];
         for (config, begins) in bad {

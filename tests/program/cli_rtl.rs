@@ -126,8 +126,7 @@ fn what_is_not_built_yet_or_out_of_range_is_one_line_and_exit_2() {
     for (arguments, word) in [
         (["--interval", "65"], "interval 65"),
         (["--interval", "fast"], "--interval fast"),
-        (["--input", "indexed"], "input indexed"),
-        (["--input", "all"], "input all"),
+        (["--input", "indexed"], "unknown input `indexed`: use direct"),
         (["--shell", "axi"], "shell axi"),
         (["--target", "tin"], "tin"),
         // There is no Verilog for these alone, and no other is written in its place.
