@@ -149,7 +149,7 @@ fn units(options: &Synth, config: &Config, target: Target) -> Result<Vec<Unit>, 
     }
     let names: Vec<&str> = match options.operator.as_slice() {
         [] => vec!["recip", "sqrt"],
-        [all] if all == "all" => OPERATORS.to_vec(),
+        [all] if all == "all" => names(),
         names => names.iter().map(String::as_str).collect(),
     };
     let model = target.delays().with_spared_multipliers(config.multipliers == Multipliers::Spare);
@@ -181,39 +181,31 @@ fn units(options: &Synth, config: &Config, target: Target) -> Result<Vec<Unit>, 
     Ok(units)
 }
 
-const OPERATORS: [&str; 14] = [
-    "square",
-    "add_magnitudes",
-    "add",
-    "sub",
-    "mul",
-    "div",
-    "recip",
-    "sqrt",
-    "halve",
-    "greater",
-    "at_most",
-    "root_exceeds",
-    "from_record",
-    "to_record",
+/// Those that are an operator of one format, in the order of `all`; after them come the conversions.
+const OPERATORS: [Operator; 12] = [
+    Operator::Square,
+    Operator::AddMagnitudes,
+    Operator::Add,
+    Operator::Sub,
+    Operator::Mul,
+    Operator::Div,
+    Operator::Recip,
+    Operator::Sqrt,
+    Operator::Halve,
+    Operator::Greater,
+    Operator::AtMost,
+    Operator::RootExceeds,
 ];
+
+/// The names of all.
+fn names() -> Vec<&'static str> {
+    OPERATORS.iter().map(|operator| operator.name()).chain(["from_record", "to_record"]).collect()
+}
 
 /// An operator by its name, and the profile of its operands.
 fn operator(name: &str, config: &Config) -> Result<(Operator, contact_afu::config::Profile), Failure> {
     let arithmetic = config.profile.clone();
     let operator = match name {
-        "add" => Operator::Add,
-        "sub" => Operator::Sub,
-        "mul" => Operator::Mul,
-        "square" => Operator::Square,
-        "add_magnitudes" => Operator::AddMagnitudes,
-        "div" => Operator::Div,
-        "recip" => Operator::Recip,
-        "sqrt" => Operator::Sqrt,
-        "halve" => Operator::Halve,
-        "greater" => Operator::Greater,
-        "at_most" => Operator::AtMost,
-        "root_exceeds" => Operator::RootExceeds,
         "to_record" => Operator::Convert { to: arithmetic.format().record(Format::BINARY32) },
         "from_record" => {
             let record = arithmetic.format().record(Format::BINARY32);
@@ -221,8 +213,9 @@ fn operator(name: &str, config: &Config) -> Result<(Operator, contact_afu::confi
             return Ok((Operator::Convert { to: arithmetic.format() }, record));
         }
         _ => {
-            let message = format!("unknown operator `{name}`: use {}", OPERATORS.join(", "));
-            return Err(Failure::new(Kind::Usage, message));
+            let unknown = || format!("unknown operator `{name}`: use {}", names().join(", "));
+            let known = OPERATORS.into_iter().find(|operator| operator.name() == name);
+            known.ok_or_else(|| Failure::new(Kind::Usage, unknown()))?
         }
     };
     Ok((operator, arithmetic))

@@ -284,7 +284,7 @@ pub(super) fn is_identifier(name: &str) -> bool {
     let mut bytes = name.bytes();
     bytes.next().is_some_and(|b| b.is_ascii_alphabetic() || b == b'_')
         && bytes.all(|b| b.is_ascii_alphanumeric() || b == b'_')
-        && !super::keywords::KEYWORDS.contains(&name)
+        && !super::keywords::keywords().any(|word| word == name)
 }
 
 /// Output-to-input paths without a register, for each port.

@@ -13,61 +13,18 @@ const INSTALL: &str =
     "install the Open Dynamics Engine with ./scripts/setup --ode (Debian: apt-get install libode-dev)";
 
 /// What src/ode calls.
-const FUNCTIONS: &[&str] = &[
-    "dAllocateODEDataForThread",
-    "dBodyAddForce",
-    "dBodyCreate",
-    "dBodyGetAngularVel",
-    "dBodyGetLinearVel",
-    "dBodyGetMass",
-    "dBodyGetPosition",
-    "dBodyIsEnabled",
-    "dBodySetAngularVel",
-    "dBodySetLinearVel",
-    "dBodySetMass",
-    "dBodySetMaxAngularSpeed",
-    "dBodySetPosition",
-    "dCheckConfiguration",
-    "dCloseODE",
-    "dCollide",
-    "dCreatePlane",
-    "dCreateSphere",
-    "dGeomDestroy",
-    "dGeomGetData",
-    "dGeomPlaneSetParams",
-    "dGeomSetBody",
-    "dGeomSetData",
-    "dGeomSetPosition",
-    "dGeomSphereSetRadius",
-    "dHashSpaceCreate",
-    "dInitODE2",
-    "dJointAttach",
-    "dJointCreateContact",
-    "dJointGroupCreate",
-    "dJointGroupDestroy",
-    "dJointGroupEmpty",
-    "dMassSetSphere",
-    "dRandGetSeed",
-    "dRandSetSeed",
-    "dSetColliderOverride",
-    "dSpaceCollide",
-    "dSpaceDestroy",
-    "dWorldCreate",
-    "dWorldDestroy",
-    "dWorldQuickStep",
-    "dWorldSetAngularDampingThreshold",
-    "dWorldSetAutoDisableAngularThreshold",
-    "dWorldSetAutoDisableFlag",
-    "dWorldSetAutoDisableLinearThreshold",
-    "dWorldSetAutoDisableSteps",
-    "dWorldSetAutoDisableTime",
-    "dWorldSetCFM",
-    "dWorldSetDamping",
-    "dWorldSetERP",
-    "dWorldSetGravity",
-    "dWorldSetLinearDampingThreshold",
-    "dWorldSetQuickStepNumIterations",
-];
+const FUNCTIONS: &str = "
+    dAllocateODEDataForThread dBodyAddForce dBodyCreate dBodyGetAngularVel dBodyGetLinearVel dBodyGetMass
+    dBodyGetPosition dBodyIsEnabled dBodySetAngularVel dBodySetLinearVel dBodySetMass dBodySetMaxAngularSpeed
+    dBodySetPosition dCheckConfiguration dCloseODE dCollide dCreatePlane dCreateSphere dGeomDestroy dGeomGetData
+    dGeomPlaneSetParams dGeomSetBody dGeomSetData dGeomSetPosition dGeomSphereSetRadius dHashSpaceCreate
+    dInitODE2 dJointAttach dJointCreateContact dJointGroupCreate dJointGroupDestroy dJointGroupEmpty
+    dMassSetSphere dRandGetSeed dRandSetSeed dSetColliderOverride dSpaceCollide dSpaceDestroy dWorldCreate
+    dWorldDestroy dWorldQuickStep dWorldSetAngularDampingThreshold dWorldSetAutoDisableAngularThreshold
+    dWorldSetAutoDisableFlag dWorldSetAutoDisableLinearThreshold dWorldSetAutoDisableSteps
+    dWorldSetAutoDisableTime dWorldSetCFM dWorldSetDamping dWorldSetERP dWorldSetGravity
+    dWorldSetLinearDampingThreshold dWorldSetQuickStepNumIterations
+";
 const CONSTANTS: &[&str] = &["dContactBounce", "dSphereClass"];
 /// The type of `dAllocateMaskAll`.
 const FLAGS: &str = "dAllocateODEDataFlags";
@@ -115,7 +72,7 @@ fn declare() -> Result<(), String> {
         builder = builder.clang_arg(format!("-I{}", prefix.join("include").display()));
     }
     builder = builder.allowlist_type(FLAGS);
-    for name in FUNCTIONS {
+    for name in FUNCTIONS.split_whitespace() {
         builder = builder.allowlist_function(name);
     }
     for name in CONSTANTS {
@@ -127,7 +84,7 @@ fn declare() -> Result<(), String> {
     let text = made.map_err(|e| format!("ODE's headers: {}; {INSTALL}", one_line(&e.to_string())))?.to_string();
     // A name that the headers lack is no error to bindgen.
     let mut missing = String::new();
-    for name in FUNCTIONS {
+    for name in FUNCTIONS.split_whitespace() {
         if !text.contains(&format!("fn {name}(")) {
             let _ = write!(missing, " {name}");
         }

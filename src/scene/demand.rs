@@ -94,118 +94,63 @@ pub enum Part {
     Energy,
 }
 
-/// What calls for what: physics, in one place. A part is on when something here calls for it; [`Part::Radii`],
-/// [`Part::Arithmetic`], [`Part::Misses`] and [`Part::Scpus`] have values rather, on which the lines that call for them
-/// have their say (see [`super::Plan`]).
-pub(super) const RULES: &[(Part, &[Demand])] = &[
+/// What calls for what: physics, in one place, a part with its name in tables. A part is on when something here calls
+/// for it; [`Part::Radii`], [`Part::Arithmetic`], [`Part::Misses`] and [`Part::Scpus`] have values rather, on which the
+/// lines that call for them have their say (see [`super::Plan`]).
+pub(super) const RULES: &[(Part, &str, &[Demand])] = &[
     // Something must move them; what they do when they meet does not.
-    (Part::Motion, MOVING),
-    (Part::Gravity, &[Demand::Gravity]),
-    (Part::Pull, &[Demand::Pull]),
+    (Part::Motion, "motion", MOVING),
+    (Part::Gravity, "gravity", &[Demand::Gravity]),
+    (Part::Pull, "pull", &[Demand::Pull]),
     // Either makes bodies that touch part.
-    (Part::Response, &[Demand::Bounce, Demand::Friction]),
-    (Part::Bounce, &[Demand::Bounce]),
-    (Part::Friction, &[Demand::Friction]),
-    (Part::Spin, &[Demand::Spin]),
-    (Part::Damping, &[Demand::Damping]),
-    (Part::Floor, &[Demand::Floor]),
-    (Part::Walls, &[Demand::Walls]),
-    (Part::Sleeping, &[Demand::Sleeping]),
-    (
-        Part::Hit,
-        &[
-            Demand::Wanted(Want::Touching),
-            Demand::Wanted(Want::Depth),
-            Demand::Wanted(Want::Normals),
-            Demand::Wanted(Want::ContactPoints),
-            Demand::Bounce,
-            Demand::Friction,
-            Demand::Spin,
-        ],
-    ),
+    (Part::Response, "contact joints", &[Demand::Bounce, Demand::Friction]),
+    (Part::Bounce, "bounce", &[Demand::Bounce]),
+    (Part::Friction, "friction", &[Demand::Friction]),
+    (Part::Spin, "spin", &[Demand::Spin]),
+    (Part::Damping, "damping", &[Demand::Damping]),
+    (Part::Floor, "floor", &[Demand::Floor]),
+    (Part::Walls, "walls", &[Demand::Walls]),
+    (Part::Sleeping, "sleeping", &[Demand::Sleeping]),
+    (Part::Hit, "hit", &[TOUCHING, DEPTH, NORMALS, POINTS, Demand::Bounce, Demand::Friction, Demand::Spin]),
     // Along the normal, and by how much.
-    (Part::Depth, &[Demand::Wanted(Want::Depth), Demand::Bounce, Demand::Friction]),
-    (Part::Normal, &[Demand::Wanted(Want::Normals), Demand::Bounce, Demand::Friction]),
+    (Part::Depth, "depth", &[DEPTH, Demand::Bounce, Demand::Friction]),
+    (Part::Normal, "normal", &[NORMALS, Demand::Bounce, Demand::Friction]),
     // A force along the normal of two spheres goes through both centres: without friction and spin it has no lever arm.
-    (Part::Position, LEVER),
+    (Part::Position, "position", LEVER),
     // The decision alone needs no root: RN(√q) > s exactly when q > (s + ½ulp(s))².
-    (
-        Part::Root,
-        &[
-            Demand::Wanted(Want::Depth),
-            Demand::Wanted(Want::Normals),
-            Demand::Wanted(Want::ContactPoints),
-            Demand::Bounce,
-            Demand::Friction,
-            Demand::Spin,
-        ],
-    ),
+    (Part::Root, "square root", &[DEPTH, NORMALS, POINTS, Demand::Bounce, Demand::Friction, Demand::Spin]),
     // The normal is divided by the distance, and the position lies along the normal.
-    (
-        Part::Division,
-        &[
-            Demand::Wanted(Want::Normals),
-            Demand::Wanted(Want::ContactPoints),
-            Demand::Bounce,
-            Demand::Friction,
-            Demand::Spin,
-        ],
-    ),
-    (Part::Radii, &[Demand::Radius]),
-    (Part::Arithmetic, &[Demand::Accuracy]),
-    (Part::Misses, &[Demand::Accuracy]),
-    (Part::Scpus, &[Demand::Scpus]),
-    (Part::Trajectories, &[Demand::Wanted(Want::Trajectories)]),
-    (
-        Part::Contacts,
-        &[
-            Demand::Wanted(Want::Touching),
-            Demand::Wanted(Want::Depth),
-            Demand::Wanted(Want::Normals),
-            Demand::Wanted(Want::ContactPoints),
-        ],
-    ),
-    (Part::Energy, &[Demand::Wanted(Want::Energy)]),
+    (Part::Division, "division", &[NORMALS, POINTS, Demand::Bounce, Demand::Friction, Demand::Spin]),
+    (Part::Radii, "radii in records", &[Demand::Radius]),
+    (Part::Arithmetic, "arithmetic", &[Demand::Accuracy]),
+    (Part::Misses, "records of misses", &[Demand::Accuracy]),
+    (Part::Scpus, "SCPUs", &[Demand::Scpus]),
+    (Part::Trajectories, "trajectories", &[Demand::Wanted(Want::Trajectories)]),
+    (Part::Contacts, "contacts", &[TOUCHING, DEPTH, NORMALS, POINTS]),
+    (Part::Energy, "energy", &[Demand::Wanted(Want::Energy)]),
 ];
 
 /// What sets bodies going.
 pub(super) const MOVING: &[Demand] = &[Demand::Gravity, Demand::Pull, Demand::Velocity, Demand::Turning];
-const LEVER: &[Demand] = &[Demand::Wanted(Want::ContactPoints), Demand::Friction, Demand::Spin];
+const LEVER: &[Demand] = &[POINTS, Demand::Friction, Demand::Spin];
+const TOUCHING: Demand = Demand::Wanted(Want::Touching);
+const DEPTH: Demand = Demand::Wanted(Want::Depth);
+const NORMALS: Demand = Demand::Wanted(Want::Normals);
+const POINTS: Demand = Demand::Wanted(Want::ContactPoints);
 
 impl Part {
+    fn rule(self) -> Option<&'static (Part, &'static str, &'static [Demand])> {
+        RULES.iter().find(|(part, ..)| *part == self)
+    }
+
     /// As tables have it.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Motion => "motion",
-            Self::Gravity => "gravity",
-            Self::Pull => "pull",
-            Self::Response => "contact joints",
-            Self::Bounce => "bounce",
-            Self::Friction => "friction",
-            Self::Spin => "spin",
-            Self::Damping => "damping",
-            Self::Floor => "floor",
-            Self::Walls => "walls",
-            Self::Sleeping => "sleeping",
-            Self::Hit => "hit",
-            Self::Depth => "depth",
-            Self::Normal => "normal",
-            Self::Position => "position",
-            Self::Root => "square root",
-            Self::Division => "division",
-            Self::Radii => "radii in records",
-            Self::Arithmetic => "arithmetic",
-            Self::Misses => "records of misses",
-            Self::Scpus => "SCPUs",
-            Self::Trajectories => "trajectories",
-            Self::Contacts => "contacts",
-            Self::Energy => "energy",
-        }
+    pub fn name(self) -> &'static str {
+        self.rule().map_or("", |(_, name, _)| name)
     }
 
     /// What calls for it.
-    pub(crate) fn demands(self) -> &'static [Demand] {
-        RULES.iter().find(|(part, _)| *part == self).map_or(&[], |(_, demands)| demands)
+    pub fn demands(self) -> &'static [Demand] {
+        self.rule().map_or(&[], |(.., demands)| demands)
     }
 }
 

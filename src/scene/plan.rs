@@ -79,7 +79,7 @@ impl Plan {
         let config = Config { interval, ..config };
         let mut rows: Vec<Row> = RULES
             .iter()
-            .map(|&(part, demands)| {
+            .map(|&(part, name, demands)| {
                 let calls = calls(demands);
                 let (is_on, value) = match part {
                     Part::Radii => match radius {
@@ -91,7 +91,7 @@ impl Plan {
                     Part::Scpus => (true, scene.scpus.value.to_string()),
                     _ => (!calls.is_empty(), value(scene, part)),
                 };
-                Row { name: part.name().to_owned(), on: is_on, value, calls }
+                Row { name: name.to_owned(), on: is_on, value, calls }
             })
             .collect();
         rows.push(run(scene, calls(&[MOVING, &[Demand::Steps, Demand::TimeStep]].concat())));

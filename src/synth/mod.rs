@@ -20,7 +20,7 @@ mod yosys;
 pub use cells::Area;
 pub use error::SynthError;
 pub use figures::{Figures, Hop, SCHEMA, Seed, Tools};
-pub use run::{Options, netlist, synthesise};
+pub use run::{Options, synthesise};
 pub use target::Target;
 pub use trimmed::Trimmed;
 pub use unit::Unit;

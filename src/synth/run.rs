@@ -1,12 +1,10 @@
 //! A unit through both programs.
 
-use std::path::PathBuf;
-
 use super::cells::{area, placed};
 use super::figures::{Figures, SCHEMA, Seed, Tools};
 use super::names::Source;
 use super::route::{Routed, Run};
-use super::yosys::{Design, Netlist, synthesise as cells};
+use super::yosys::{Design, synthesise as cells};
 use super::{Area, SynthError, Target, Trimmed, Unit, wrapper};
 use crate::store::{Store, sha256};
 use crate::tools::Program;
@@ -18,17 +16,6 @@ pub struct Options {
     pub target: Target,
     /// The placer's seeds; none: cells are counted, nothing is routed.
     pub seeds: Vec<u32>,
-}
-
-/// Where the netlist of a unit in its wrapper lies, in Yosys's JSON: the one that [`synthesise`] counts.
-///
-/// # Errors
-/// As of [`synthesise`].
-pub fn netlist(unit: &Unit, target: Target) -> Result<PathBuf, SynthError> {
-    let files = Unit::files(&unit.wrapped()?, target);
-    let design = Design { unit: &unit.title(), files: &files, top: wrapper::TOP };
-    let Netlist { path, .. } = cells(&Program::yosys()?, &design, target, &kept()?)?;
-    Ok(path)
 }
 
 /// Measures a unit; `progress` is told what is being done.

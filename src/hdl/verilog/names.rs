@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeSet, HashMap, HashSet};
 
-use super::super::keywords::KEYWORDS;
+use super::super::keywords::keywords;
 use super::super::module::{Module, Node, NodeId, Op};
 
 /// A derived name longer than this is cut back to its first part.
@@ -19,7 +19,7 @@ pub(super) struct Names {
 impl Names {
     pub fn of(module: &Module, reserved: &[&str]) -> Self {
         let mut taken: HashSet<String> = reserved.iter().map(|name| (*name).to_owned()).collect();
-        taken.extend(KEYWORDS.iter().map(|word| (*word).to_owned()));
+        taken.extend(keywords().map(str::to_owned));
         taken.extend(module.ports.iter().map(|port| port.name.clone()));
         taken.extend(module.parameters.iter().map(|parameter| parameter.name.clone()));
         taken.extend(module.memories.iter().map(|memory| memory.name.clone()));
