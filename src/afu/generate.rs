@@ -11,7 +11,7 @@ use super::scpu::scpu;
 use super::shell::{self, ShellDesign};
 use super::top::line_top;
 use super::{Spec, SpecError};
-use crate::config::Config;
+use crate::config::{Config, Shell};
 
 /// The name of the top module of a configuration's accelerator.
 pub fn top_name(config: &Config) -> String {
@@ -24,6 +24,7 @@ pub struct Afu {
     spec: Spec,
     shell: &'static dyn ShellDesign,
     top: Arc<Module>,
+    /// The module `contact_afu`, whatever shell is around it.
     core: Arc<Module>,
     kernel: Arc<Module>,
 }
@@ -88,7 +89,7 @@ impl Afu {
     pub fn around_scpu(spec: Spec, scpu: Arc<Module>) -> Result<Self, BuildError> {
         spec.check()?;
         let core = line_top(&spec, &scpu)?;
-        Ok(Self { spec, shell: shell::none(), top: core.clone(), core, kernel: scpu })
+        Ok(Self { spec, shell: shell::of(Shell::Line), top: core.clone(), core, kernel: scpu })
     }
 
     /// What it was generated from.
@@ -114,11 +115,6 @@ impl Afu {
     /// The top module's name in Verilog.
     pub fn top_name(&self) -> String {
         self.spec.config.prefixed(&self.top.name)
-    }
-
-    /// The module `contact_afu`, whatever shell is around it.
-    pub fn core(&self) -> &Arc<Module> {
-        &self.core
     }
 
     /// Whether there is a shell around it.

@@ -99,21 +99,31 @@ impl<'g> Emitter<'_, 'g> {
                 let instance = self.names.instance(id, operator);
                 self.graph.instance(&instance, module, &ports).output("result")
             }
-            (Source::Select, &[condition, yes, no]) => match (yes.as_constant(), no.as_constant()) {
-                (_, Some(0)) => yes.gate(condition),
-                (Some(0), _) => no.gate(!condition),
-                _ => condition.select(yes, no),
+            (source, operands) => match chosen(source, operands) {
+                Some(signal) => signal,
+                None => return Ok(None),
             },
-            (Source::And, &[a, b]) => a & b,
-            (Source::Or, &[a, b]) => a | b,
-            (Source::Not, &[a]) => !a,
-            _ => return Ok(None),
         };
         Ok(Some(match name {
             Some(name) => signal.named(&name),
             None => signal,
         }))
     }
+}
+
+/// A choice between values, or logic.
+pub(super) fn chosen<'g>(source: Source, operands: &[Signal<'g>]) -> Option<Signal<'g>> {
+    Some(match (source, operands) {
+        (Source::Select, &[condition, yes, no]) => match (yes.as_constant(), no.as_constant()) {
+            (_, Some(0)) => yes.gate(condition),
+            (Some(0), _) => no.gate(!condition),
+            _ => condition.select(yes, no),
+        },
+        (Source::And, &[a, b]) => a & b,
+        (Source::Or, &[a, b]) => a | b,
+        (Source::Not, &[a]) => !a,
+        _ => return None,
+    })
 }
 
 /// Writes down which cycle each node belongs to, for the names of delays.

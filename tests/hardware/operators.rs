@@ -1,6 +1,7 @@
 //! Every operator's graph against its exact twin: every pair of words of an 8-bit format, a million random words and
 //! corners of the formats in use, and fewer of the widest.
 
+use crate::support::made_for::is_made_for;
 use crate::support::{Words, corner};
 use contact_afu::hdl::{DelayModel, Evaluator, Module, Op, Pin};
 use contact_afu::number::{Format, Soft};
@@ -72,7 +73,7 @@ impl Bench {
     /// Tells whether the hardware is made for these operands; the comparison is made if so.
     #[track_caller]
     fn check(&mut self, a: u128, b: u128) -> bool {
-        if !self.operator.is_made_for(self.domain, a, b) {
+        if !is_made_for(self.operator, self.domain, a, b) {
             return false;
         }
         let (got, wanted) = self.both(a, b);

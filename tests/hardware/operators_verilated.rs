@@ -6,6 +6,7 @@
 
 use std::collections::VecDeque;
 
+use crate::support::made_for::is_made_for;
 use crate::support::{Words, corner};
 use contact_afu::cosim::{File, Model, Source, Trace};
 use contact_afu::hdl::DelayModel;
@@ -33,7 +34,7 @@ fn stream(model: &Model, operator: Operator, domain: Domain, latency: u32, words
     let result = instance.output("result", result_bits).unwrap();
     let mut pending: VecDeque<(u128, u128)> = VecDeque::new();
     let mut check = |(a, b): (u128, u128)| {
-        if !operator.is_made_for(domain, a, b) {
+        if !is_made_for(operator, domain, a, b) {
             return;
         }
         let (got, wanted) = (u128::from(result.get()), operator.twin(format, a, b));

@@ -1,6 +1,7 @@
 //! What several tests share: words that reach the corners, and work split over two threads.
 #![allow(dead_code)] // each test uses its own part
 
+pub mod made_for;
 pub mod swap;
 pub mod watched;
 

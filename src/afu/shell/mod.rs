@@ -55,8 +55,3 @@ pub(super) fn of(shell: Shell) -> &'static dyn ShellDesign {
         Shell::Line | Shell::Axi => &line::Line,
     }
 }
-
-/// The shell of an AFU that is nothing but the core.
-pub(super) fn none() -> &'static dyn ShellDesign {
-    &line::Line
-}

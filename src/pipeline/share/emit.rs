@@ -8,6 +8,7 @@ use super::mux::Chooser;
 use super::schedule::Plan;
 use crate::hdl::{BuildErrors, Graph, Module, Register, Signal};
 use crate::operator::INPUTS;
+use crate::pipeline::emit::chosen;
 use crate::pipeline::kernel::{Kernel, Source, ValueId};
 use crate::pipeline::names::Names;
 
@@ -175,15 +176,7 @@ impl<'g> Emitter<'_, 'g> {
                 let name = self.names.instance(id, operator);
                 self.graph.instance(&name, &module, &inputs).output("result")
             }
-            (Source::Select, &[condition, yes, no]) => match (yes.as_constant(), no.as_constant()) {
-                (_, Some(0)) => yes.gate(condition),
-                (Some(0), _) => no.gate(!condition),
-                _ => condition.select(yes, no),
-            },
-            (Source::And, &[a, b]) => a & b,
-            (Source::Or, &[a, b]) => a | b,
-            (Source::Not, &[a]) => !a,
-            _ => return None,
+            (source, operands) => chosen(source, operands)?,
         };
         Some(match self.names.signal(id) {
             Some(name) => signal.named(name),
