@@ -183,6 +183,7 @@ impl One {
         let Self { scpus, interval, machine: m } = self;
         let given = [
             ("--interval", interval.is_some()),
+            ("--query", m.query.is_some()),
             ("--profile", m.profile.is_some()),
             ("--rounding", m.rounding.is_some()),
             ("--subnormals", m.subnormals.is_some()),

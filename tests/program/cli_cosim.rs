@@ -83,6 +83,7 @@ fn wrong_options_are_exit_2_before_anything_is_built() {
         (&["--json", "-", "--junit", "-"], "standard output is for one of them"),
         (&["--rtl", "absent"], "absent"),
         (&["--rtl", "absent", "--profile", "paper"], "--profile does not go with --rtl"),
+        (&["--rtl", "absent", "--query", "sphere-plane"], "--query does not go with --rtl"),
         (&["--interval", "0"], "interval 0"),
         (&["--shell", "axi"], "shell axi"),
     ] {

@@ -126,7 +126,6 @@ fn what_is_not_built_yet_or_out_of_range_is_one_line_and_exit_2() {
     for (arguments, word) in [
         (["--interval", "65"], "interval 65"),
         (["--interval", "fast"], "--interval fast"),
-        (["--input", "indexed"], "unknown input `indexed`: use direct"),
         (["--shell", "axi"], "shell axi"),
         (["--target", "tin"], "tin"),
         // There is no Verilog for these alone, and no other is written in its place.
@@ -143,6 +142,8 @@ fn what_is_not_built_yet_or_out_of_range_is_one_line_and_exit_2() {
         let said = said(&refused);
         assert!(said.starts_with("afu: ") && said.lines().count() == 1 && said.contains(word), "{said}");
     }
+    let refused = afu(room.path(), &["rtl", "--out", "out", "--input", "indexed"]).code(2);
+    assert!(said(&refused).contains("unknown input `indexed`: use direct"), "{}", said(&refused));
     for (arguments, word) in [
         (["--profile", "exact", "--record", "f16"], "profile exact with record f16"),
         (["--radius", "1e6", "--record", "f16"], "radius 1000000: is infinite in records of f16"),
