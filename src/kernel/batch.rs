@@ -5,7 +5,7 @@
 //! None of them fuses or reorders operations, so all give the same bits.
 
 use super::reference::native;
-use crate::query::{CONTACT_WORDS, ContactRecord, FLAGS, Fields, PAIR_WORDS, PairRecord, Query};
+use crate::query::{CONTACT_WORDS, ContactRecord, Fields, PAIR_WORDS, PairRecord, Query};
 
 /// Records side by side in a block: whole registers of every level, and a block of pairs with its block of contacts
 /// is 4 KiB.
@@ -135,17 +135,17 @@ fn avx512(pairs: &[Block], contacts: &mut [Block], fields: Fields) {
 /// are enough: with and without a root.
 #[inline(always)]
 fn blocks(pairs: &[Block], contacts: &mut [Block], fields: Fields) {
+    // Once, since a block takes no longer than this.
+    let mut is_asked = [false; WORDS];
+    ContactRecord::words(fields).for_each(|word| is_asked[word] = true);
     for (pairs, contacts) in pairs.iter().zip(contacts) {
         if fields == Fields::HIT {
             block(pairs, contacts, Fields::HIT);
             continue;
         }
         block(pairs, contacts, Fields::ALL);
-        let mut asked = ContactRecord::words(fields).peekable();
-        for (word, column) in contacts.0[..FLAGS].iter_mut().enumerate() {
-            if asked.next_if_eq(&word).is_none() {
-                column.fill(0);
-            }
+        for (column, _) in contacts.0.iter_mut().zip(is_asked).filter(|(_, is_asked)| !is_asked) {
+            column.fill(0);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{Contact, Filtered, contact, exact, narrow, settle, widen};
 use crate::number::{Format, Number, Soft};
-use crate::query::{ContactRecord, FLAGS, Fields, Flow, PairRecord, Query};
+use crate::query::{ContactRecord, Fields, Flow, PairRecord, Query};
 
 /// The only NaN in any record that this crate computes.
 const NAN: u32 = 0x7FC0_0000;
@@ -123,7 +123,7 @@ fn write<T: Number<Bool = bool>>(contact: Contact<T>, valid: bool, bits: impl Fn
     // Selections rather than a `match`: the batch kernel is made of this, without branches.
     let touching = if contact.coincident { Flow::Coincident.flags() } else { Flow::Real.flags() };
     let apart = if valid { Flow::Fake.flags() } else { Flow::Invalid.flags() };
-    let mut record = ContactRecord::of_flags(if contact.hit { touching } else { apart });
-    record.0[..FLAGS].copy_from_slice(&contact.numbers().map(bits));
-    record
+    let flags = if contact.hit { touching } else { apart };
+    let [a, b, c, d, e, f, g] = contact.numbers().map(bits);
+    ContactRecord([a, b, c, d, e, f, g, flags])
 }

@@ -1,6 +1,6 @@
 //! A pair as words.
 
-use super::{Input, Query};
+use super::{Input, Query, Rule};
 
 /// Words that a pair of any query has at most. A record has room for sixteen.
 pub const PAIR_WORDS: usize = {
@@ -13,6 +13,22 @@ pub const PAIR_WORDS: usize = {
         i += 1;
     }
     most
+};
+
+/// The largest word that keeps its rule, for each place of each query.
+const LARGEST: [[u32; PAIR_WORDS]; Query::ALL.len()] = {
+    let mut largest = [[u32::MAX; PAIR_WORDS]; Query::ALL.len()];
+    let mut query = 0;
+    while query < Query::ALL.len() {
+        let inputs = Query::ALL[query].shape().inputs;
+        let mut word = 0;
+        while word < inputs.len() {
+            largest[query][word] = inputs[word].rule.largest();
+            word += 1;
+        }
+        query += 1;
+    }
+    largest
 };
 
 /// A pair: the words of its query's [`inputs`](super::Shape::inputs), floating-point numbers as raw binary32.
@@ -40,8 +56,9 @@ impl PairRecord {
     /// Whether every word keeps its [rule](super::Rule).
     #[inline(always)]
     pub fn is_valid(&self, query: Query) -> bool {
-        // Without branches, for the batch kernel.
-        query.shape().inputs.iter().zip(self.0).fold(true, |all, (input, word)| all & input.rule.holds(word))
+        // Without branches and of a known length, for the batch kernel: all words of a block at a time.
+        let largest = &LARGEST[query as usize];
+        (0..PAIR_WORDS).fold(true, |all, word| all & Rule::holds_below(self.0[word], largest[word]))
     }
 
     /// The first word that breaks its rule.
@@ -57,7 +74,6 @@ impl PairRecord {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Rule;
     use super::*;
 
     #[test]

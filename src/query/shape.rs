@@ -18,9 +18,19 @@ impl Rule {
     const INFINITY: u32 = 0x7F80_0000;
 
     /// Whether a binary32 word keeps it.
-    #[inline(always)]
     pub const fn holds(self, word: u32) -> bool {
-        (word & Self::INFINITY != Self::INFINITY) & (!matches!(self, Self::NotNegative) | (word <= Self::SIGN))
+        Self::holds_below(word, self.largest())
+    }
+
+    /// The largest word that keeps it, if it is finite.
+    pub(super) const fn largest(self) -> u32 {
+        if matches!(self, Self::NotNegative) { Self::SIGN } else { u32::MAX }
+    }
+
+    /// Whether a word keeps the rule that has this largest word.
+    #[inline(always)]
+    pub(super) const fn holds_below(word: u32, largest: u32) -> bool {
+        (word & Self::INFINITY != Self::INFINITY) & (word <= largest)
     }
 }
 
