@@ -74,7 +74,7 @@ pub struct Shape {
     pub flows: &'static [Flow],
     /// What is computed, in the notation of [`Shape::inputs`]: a paragraph of PORTS.md.
     pub computes: &'static str,
-    /// Pairs of every flow, and some that are none: those of the generated test bench.
+    /// Pairs of every flow, and invalid ones, for the generated test bench.
     pub examples: &'static [&'static [f32]],
 }
 
