@@ -5,8 +5,8 @@
 //! With `--check` the program fails unless AVX2 is at least 3 and AVX-512 at least 4 times as fast, on every mix.
 
 use contact_afu::kernel::batch::{Batch, Level};
-use contact_afu::kernel::{ContactRecord, Fields, PairRecord};
 use contact_afu::pairs::Set;
+use contact_afu::query::{ContactRecord, Fields, PairRecord};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -73,8 +73,9 @@ fn time(mut pass: impl FnMut()) -> f64 {
 
 /// Pairs that all touch, none of which does, and half of each in random order.
 fn mixes() -> [(&'static str, Vec<PairRecord>); 3] {
-    use contact_afu::kernel::{Flow, Reference};
+    use contact_afu::kernel::Reference;
     use contact_afu::number::Format;
+    use contact_afu::query::Flow;
     let reference = Reference::new(Format::BINARY32, Fields::HIT);
     // The first of every ten random pairs is an ordinary one: numbers around 1.
     let ordinary = Set::Random(150_000).pairs(1).into_iter().step_by(10);

@@ -9,8 +9,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
 use contact_afu::cosim::{Driver, Job, Model, Source, Trace};
-use contact_afu::kernel::PairRecord;
 use contact_afu::link::{Line, Link, LinkModel};
+use contact_afu::query::PairRecord;
 use libloading::os::unix::{Library, Symbol};
 
 /// Turns, of which the median counts.

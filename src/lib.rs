@@ -70,7 +70,7 @@ pub mod tools;
 pub mod verify;
 
 pub use config::Config;
-pub use kernel::{ContactRecord, PairRecord};
 pub use link::LinkModel;
+pub use query::{ContactRecord, PairRecord};
 #[cfg(feature = "cosim")]
 pub use verify::{Bench, Verdict, VerifyError};

@@ -1,6 +1,6 @@
 //! What an engine says of a pair, in numbers wide enough for any of them.
 
-use crate::kernel::ContactRecord;
+use crate::query::ContactRecord;
 
 /// An engine's answer to a pair. Without a hit its numbers mean nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -3,8 +3,8 @@
 use super::measure::in_parallel;
 use super::{Answer, Formula};
 use crate::config::{Config, Profile, RecordFormat};
-use crate::kernel::{ContactRecord, EngineError, Fields, PairRecord, Reference, settle};
-use crate::query::Query;
+use crate::kernel::{EngineError, Reference, settle};
+use crate::query::{ContactRecord, Fields, PairRecord, Query};
 
 /// Something that answers pairs: a profile's reference kernel, or another engine.
 pub trait Contender {

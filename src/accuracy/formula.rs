@@ -1,8 +1,8 @@
 //! The formula as physics engines have it, in plain `f32`.
 
 use super::{Answer, Contender};
-use crate::kernel::{EngineError, PairRecord};
-use crate::query::Query;
+use crate::kernel::EngineError;
+use crate::query::{PairRecord, Query};
 
 /// ODE's formula in the machine's binary32, branches and all, written apart from the kernel. No input is refused and no
 /// NaN made canonical.

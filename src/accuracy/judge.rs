@@ -1,8 +1,8 @@
 //! What is wrong with an answer.
 
 use super::Answer;
-use crate::kernel::{ContactRecord, Flow, PairRecord, Truth, ulp};
-use crate::query::Query;
+use crate::kernel::{Truth, ulp};
+use crate::query::{ContactRecord, Flow, PairRecord, Query};
 
 /// Half a unit in the last place of binary32, relative.
 const HALF_ULP: f64 = 1.0 / (1 << 24) as f64;

@@ -2,8 +2,8 @@
 
 use super::spread::Gathered;
 use super::{Answer, Contender, ErrorStatistics, Row, Standard, StudyError, Tally, judge};
-use crate::kernel::{EngineError, PairRecord};
-use crate::query::Query;
+use crate::kernel::EngineError;
+use crate::query::{PairRecord, Query};
 use crate::store::{Key, Store, sha256};
 use serde::{Deserialize, Serialize};
 use std::thread;

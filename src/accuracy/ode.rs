@@ -1,9 +1,9 @@
 //! The Open Dynamics Engine itself, in double precision.
 
 use super::{Answer, Contender};
-use crate::kernel::{EngineError, PairRecord};
+use crate::kernel::EngineError;
 use crate::ode::{Collider, Ode, SpherePair};
-use crate::query::Query;
+use crate::query::{PairRecord, Query};
 
 /// ODE's own collider, on the pairs' exact values.
 #[derive(Debug)]

@@ -1,7 +1,8 @@
 //! parry3d, the collision detection of Rust's physics engine Rapier.
 
 use super::{Answer, Contender};
-use crate::kernel::{EngineError, PairRecord};
+use crate::kernel::EngineError;
+use crate::query::PairRecord;
 use parry3d::math::{Pose, Vector};
 use parry3d::query;
 use parry3d::shape::Ball;

@@ -1,9 +1,8 @@
 //! Contenders over the hard categories.
 
 use super::{Contender, ContenderError, HardResults, SCHEMA, measure};
-use crate::kernel::PairRecord;
 use crate::pairs::categories;
-use crate::query::Query;
+use crate::query::{PairRecord, Query};
 use crate::report::folder;
 use crate::store::{self, Store, StoreError};
 use std::path::Path;

@@ -5,10 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 #[cfg(feature = "ode")]
 use contact_afu::{
-    config,
-    kernel::Flow,
-    ode,
+    config, ode,
     paper::{self, PaperError, SimulateError, Size, Work},
+    query::Flow,
     query::Query,
 };
 

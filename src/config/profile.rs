@@ -5,8 +5,9 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::kernel::{Arithmetic, Fields, Reference};
+use crate::kernel::{Arithmetic, Reference};
 use crate::number::{Format, FormatError, Roots, Rounding, Subnormals};
+use crate::query::Fields;
 
 /// A named arithmetic (`paper`, `wide`, `exact`, `half`, `bfloat`) or one given by its widths (`eXfY`, `eXfYz`).
 ///

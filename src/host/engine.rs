@@ -3,7 +3,8 @@
 use super::error::HostError;
 use super::session::Session;
 use super::transport::Transport;
-use crate::kernel::{ContactRecord, Engine, EngineError, PairRecord};
+use crate::kernel::{Engine, EngineError};
+use crate::query::{ContactRecord, PairRecord};
 
 impl<T: Transport> Session<T> {
     /// The contacts of `pairs`: in one transaction, or in several where the buffers hold fewer. None without pairs.

@@ -8,8 +8,9 @@ use super::session::Session;
 use super::transport::Transport;
 use super::workspace::pages_for;
 use crate::afu::shell::spl2::map;
-use crate::kernel::{PairRecord, settle};
+use crate::kernel::settle;
 use crate::outcome::Outcome;
+use crate::query::PairRecord;
 
 #[derive(Debug)]
 pub(super) struct Open<'s, T: Transport> {

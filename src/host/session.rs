@@ -9,10 +9,10 @@ use super::workspace::{AFU_DSM, SPL_CONTEXT, SPL_DSM, Workspace};
 use crate::afu::shell::spl2::map::{self, Csr, control, identity, status};
 use crate::afu::{Afu, BuildError, Spec};
 use crate::config::Config;
-use crate::kernel::PairRecord;
 use crate::link::spl2::CsrOffset;
 use crate::link::{LINE_BYTES, Line, Traffic};
 use crate::patience::{self, Patience, Work};
+use crate::query::PairRecord;
 use crate::record::{Capability, LINE_BITS, Layout, Part, pack};
 
 /// Cycles between two calls for progress.

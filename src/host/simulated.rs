@@ -7,9 +7,9 @@ use crate::config::{Config, Results, Shell};
 use crate::cosim::drive::DriveError;
 use crate::cosim::spl2::Machine;
 use crate::cosim::{Driver, Instance, Job, Outcome};
-use crate::kernel::PairRecord;
 use crate::link::spl2::{Spl2, Spl2Model};
 use crate::link::{Link, Traffic};
+use crate::query::PairRecord;
 use crate::record::pack;
 
 /// A job that is to run.

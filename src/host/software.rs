@@ -10,9 +10,10 @@ use super::transport::{Transport, TransportError};
 use crate::afu::shell::spl2::map::{self, control, identity, latency, performance, pointers, scratch, status};
 use crate::afu::{Afu, BuildError, JobError, Spec};
 use crate::config::Config;
-use crate::kernel::{Flow, Reference};
+use crate::kernel::Reference;
 use crate::link::spl2::{CsrOffset, DeviceWrite, Pages, SPL_ID};
 use crate::link::{LINE_BYTES, Line, LinkModel, Memory, Traffic};
+use crate::query::Flow;
 use crate::record::{Layout, pack_contacts, unpack_pairs};
 
 /// What reads of lines find that nobody wrote, as the simulated link has it.
@@ -175,7 +176,7 @@ impl Software {
         for (number, line) in (destination..).zip(pack_contacts(&self.layout, &records)) {
             self.write(number, &line)?;
         }
-        let is_invalid = |record: &crate::kernel::ContactRecord| record.flow() == Some(Flow::Invalid);
+        let is_invalid = |record: &crate::query::ContactRecord| record.flow() == Some(Flow::Invalid);
         let first = records.iter().position(is_invalid).map_or(NONE, |number| number as u128);
         let hits = records.iter().filter(|record| record.is_contact()).count();
         let invalid = records.iter().filter(|record| is_invalid(record)).count();

@@ -6,9 +6,9 @@ use super::received::{Begin, Status};
 use super::results::JobResults;
 use super::session::Session;
 use super::transport::Transport;
-use crate::kernel::PairRecord;
 use crate::link::Traffic;
 use crate::outcome::Outcome;
+use crate::query::PairRecord;
 
 /// After step 1: the pointers are known.
 #[derive(Debug)]
@@ -43,7 +43,7 @@ pub struct Retrieved {
 /// and the workspace freed.
 ///
 /// ```
-/// use contact_afu::{config::Config, host::*, kernel::PairRecord, link::LinkModel};
+/// use contact_afu::{config::Config, host::*, query::PairRecord, link::LinkModel};
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let config = Config::default();
 /// let expected = Expected::new(&config)?;

@@ -179,7 +179,7 @@ pub(super) fn pages_for(layout: &Layout, pairs: u64) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kernel::Fields;
+    use crate::query::Fields;
 
     fn layout() -> Layout {
         Layout::new(512, Fields::ALL)

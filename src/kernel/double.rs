@@ -3,7 +3,7 @@
 //! For comparison only: its decision is that of the rounded root, its input and output are `f64`, and no hardware is
 //! held against it.
 
-use super::PairRecord;
+use crate::query::PairRecord;
 
 /// Pairs side by side in a block.
 const LANES: usize = 32;

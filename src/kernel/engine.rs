@@ -1,7 +1,8 @@
 //! What computes contacts in batches: the seam between those who have pairs and those who can do them.
 
+use super::Reference;
 use super::batch::{Batch, Level};
-use super::{ContactRecord, Fields, PairRecord, Reference};
+use crate::query::{ContactRecord, Fields, PairRecord};
 
 /// Why an engine gave no contacts: whatever its own error is.
 pub type EngineError = Box<dyn std::error::Error + Send + Sync>;

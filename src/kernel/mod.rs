@@ -13,7 +13,6 @@ mod sphere_plane;
 mod sphere_sphere;
 mod truth;
 
-pub use crate::query::{ContactRecord, Fields, FieldsError, Flow, PairRecord};
 pub use contact::{Contact, Scale};
 pub use engine::{Engine, EngineError};
 pub use exact::{Filtered, exact};
@@ -23,7 +22,7 @@ pub use settle::settle;
 pub use truth::{Truth, UlpErrors, ulp};
 
 use crate::number::{Format, Number, Precise};
-use crate::query::Query;
+use crate::query::{Fields, PairRecord, Query};
 
 /// The one place that knows which file has a query's mathematics.
 macro_rules! of_query {

@@ -19,7 +19,8 @@ pub fn settle(pairs: &[PairRecord], contacts: &mut [ContactRecord], fields: Fiel
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kernel::{Flow, Reference};
+    use crate::kernel::Reference;
+    use crate::query::Flow;
 
     #[test]
     fn the_unsettled_are_settled_and_the_others_left_alone() {

@@ -1,7 +1,8 @@
 //! A world's contacts by an engine: gathered, computed in one batch, handed to ODE one by one.
 
 use super::{Collider, Contact, Error, Sphere, Touch, World, replace};
-use crate::kernel::{ContactRecord, Engine, Flow, PairRecord};
+use crate::kernel::Engine;
+use crate::query::{ContactRecord, Flow, PairRecord};
 
 impl World {
     /// Two spheres as a record: each number rounded to binary32 once.

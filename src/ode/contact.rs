@@ -2,7 +2,7 @@
 
 use super::numbers::LARGEST;
 use super::{Sphere, sys};
-use crate::kernel::ContactRecord;
+use crate::query::ContactRecord;
 
 /// Where two spheres touch, in ODE's numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,8 @@
 //! What can go wrong with ODE, its worlds, and engines in its collider's place.
 
 use super::Collider;
-use crate::kernel::{EngineError, Flow};
+use crate::kernel::EngineError;
+use crate::query::Flow;
 
 /// Why ODE could not do what was asked.
 #[derive(Debug, thiserror::Error)]

@@ -1,7 +1,7 @@
 //! The candidate pairs of crowded scenes: what a broad phase hands on.
 
 use super::source::{Source, UNIT};
-use crate::kernel::PairRecord;
+use crate::query::PairRecord;
 
 /// Spheres of a scene.
 const SPHERES: usize = 1000;
@@ -39,8 +39,9 @@ impl Source {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kernel::{Fields, Flow, Reference};
+    use crate::kernel::Reference;
     use crate::number::Format;
+    use crate::query::{Fields, Flow};
 
     #[test]
     fn a_crowd_touches_and_misses_and_stays_the_same() {

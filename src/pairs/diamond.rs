@@ -1,6 +1,6 @@
 //! The candidate pairs of the paper's diamond, in its first step.
 
-use crate::kernel::PairRecord;
+use crate::query::PairRecord;
 
 /// The integer points with |x| + |y| + |z| ≤ `reach`, in lexicographic order: where the paper's diamond has its
 /// spheres.
@@ -54,8 +54,9 @@ const NEXT: [[i32; 3]; 13] = [
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kernel::{Fields, Flow, Reference};
+    use crate::kernel::Reference;
     use crate::number::Format;
+    use crate::query::{Fields, Flow};
 
     /// The numbers of candidates and contacts that the Open Dynamics Engine finds.
     #[test]

@@ -280,7 +280,8 @@ fn pair(([x1, y1, z1], r1): ([f32; 3], f32), ([x2, y2, z2], r2): ([f32; 3], f32)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kernel::{Flow, Truth};
+    use crate::kernel::Truth;
+    use crate::query::Flow;
 
     #[test]
     fn every_category_is_valid_and_what_its_name_says() {

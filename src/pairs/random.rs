@@ -146,8 +146,9 @@ impl Source {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kernel::{Fields, Flow, Reference};
+    use crate::kernel::Reference;
     use crate::number::Format;
+    use crate::query::{Fields, Flow};
 
     fn flows(pairs: &[PairRecord]) -> [usize; 4] {
         let contacts = Reference::new(Format::WIDE, Fields::ALL).run_all(pairs);

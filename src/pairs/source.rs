@@ -1,6 +1,6 @@
 //! Random numbers for sets of pairs.
 
-use crate::kernel::PairRecord;
+use crate::query::PairRecord;
 use rand::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 

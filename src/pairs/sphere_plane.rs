@@ -208,8 +208,9 @@ impl Source {
 mod tests {
     use super::super::{Set, categories};
     use super::*;
-    use crate::kernel::{Fields, Flow, Reference, Truth};
+    use crate::kernel::{Reference, Truth};
     use crate::number::Format;
+    use crate::query::{Fields, Flow};
 
     #[test]
     fn every_flow_of_a_plane_is_well_represented() {

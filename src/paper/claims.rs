@@ -3,9 +3,10 @@
 use serde::Serialize;
 
 use super::Published;
-use crate::kernel::{Fields, Reference};
+use crate::kernel::Reference;
 use crate::number::Format;
 use crate::pairs::Set;
+use crate::query::Fields;
 
 /// Clock of the AFU's port on HARP v1, in MHz: the paper does not say one.
 const PORT_MHZ: f64 = 200.0;

@@ -8,8 +8,8 @@ use std::sync::{Mutex, PoisonError, mpsc};
 use std::thread;
 
 use super::AfuPoint;
-use crate::kernel::PairRecord;
 use crate::link::LinkModel;
+use crate::query::PairRecord;
 use crate::store::{Key, Store, StoreError, sha256};
 use crate::verify::{Bench, VerifyError};
 

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::config::Config;
-use crate::kernel::Flow;
+use crate::query::Flow;
 use crate::verify::Verdict;
 
 /// Contacts and others, as the AFU's own flags tell them.

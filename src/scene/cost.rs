@@ -93,9 +93,8 @@ pub(super) fn narrowest(bound: f64) -> Profile {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kernel::{Fields, Flow, PairRecord};
     use crate::pairs::Set;
-    use crate::query::Query;
+    use crate::query::{Fields, Flow, PairRecord, Query};
 
     /// The bound is kept by depths, and by normals times the distance, on pairs of many sizes; and it is not idle.
     #[test]

@@ -6,7 +6,7 @@ use super::file::{Given, Pull, Scene, Shape};
 use super::{SceneError, bodies};
 use crate::afu::Spec;
 use crate::config::{Config, Profile, Results};
-use crate::kernel::Fields;
+use crate::query::Fields;
 
 /// A line that calls for something.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]

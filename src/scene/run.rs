@@ -7,8 +7,9 @@ use super::demand::Part;
 use super::plan::Plan;
 use super::results::{Energy, SceneRun, Touching};
 use super::{Balance, Scene, SceneError, check_start};
-use crate::kernel::{ContactRecord, Engine, EngineError, Fields, PairRecord};
+use crate::kernel::{Engine, EngineError};
 use crate::ode::{Collider, Ode, Sleep, Sphere, Surface, World};
+use crate::query::{ContactRecord, Fields, PairRecord};
 
 /// Runs a scene: each step's pairs through `engine`, which has the plan's fields. After each step `progress` gets the
 /// number of those done.

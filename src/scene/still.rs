@@ -7,7 +7,8 @@ use super::bodies::{Ball, balls};
 use super::plan::Plan;
 use super::results::{SceneRun, Touching};
 use super::{Part, Scene, SceneError};
-use crate::kernel::{Engine, PairRecord};
+use crate::kernel::Engine;
+use crate::query::PairRecord;
 
 /// A scene in which nothing moves: which spheres of two sets, or of one, touch.
 #[derive(Clone, Debug)]
@@ -107,7 +108,7 @@ pub fn query(scene: &Scene, plan: &Plan, engine: &mut dyn Engine, name: &str) ->
     results.places = vec![query.balls.iter().map(|ball| ball.centre).collect()];
     if plan.has(Part::Contacts) {
         let touching = query.candidates.iter().zip(&contacts).filter(|(_, contact)| contact.is_contact());
-        let row = |(&bodies, contact): (&[usize; 2], &crate::kernel::ContactRecord)| Touching {
+        let row = |(&bodies, contact): (&[usize; 2], &crate::query::ContactRecord)| Touching {
             step: 0,
             bodies,
             words: std::array::from_fn(|word| f32::from_bits(contact.0[word])),
@@ -120,7 +121,7 @@ pub fn query(scene: &Scene, plan: &Plan, engine: &mut dyn Engine, name: &str) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kernel::Fields;
+    use crate::query::Fields;
 
     #[test]
     fn no_pair_that_touches_is_left_out() {

@@ -10,8 +10,8 @@ use std::path::Path;
 use std::time::Instant;
 
 use crate::config::Config;
-use crate::kernel::PairRecord;
 use crate::link::LinkModel;
+use crate::query::PairRecord;
 use crate::report::folder;
 use crate::store::{self, Key, Store, StoreError, sha256};
 use crate::synth::{Area, Options, SynthError, Target, Unit, synthesise};

@@ -158,8 +158,8 @@ impl SweepResults {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kernel::PairRecord;
     use crate::link::LinkModel;
+    use crate::query::PairRecord;
 
     fn row(scpus: u32) -> Row {
         Row {

@@ -11,8 +11,9 @@ use crate::config::{self, Config, Results};
 use crate::cosim::{CosimError, File, Model, Source, Trace};
 use crate::host::Expected;
 use crate::host::simulated::Run;
-use crate::kernel::{PairRecord, Reference};
+use crate::kernel::Reference;
 use crate::link::{Link, LinkModel, Traffic};
+use crate::query::PairRecord;
 
 /// Its parameter that says how many SCPUs.
 const SCPUS: &str = "SCPUS";

@@ -1,8 +1,9 @@
 //! The simulated AFU as an engine: one job a batch, every bit of it compared before it is believed.
 
 use super::{Bench, VerifyError};
-use crate::kernel::{ContactRecord, Engine, EngineError, PairRecord};
+use crate::kernel::{Engine, EngineError};
 use crate::link::LinkModel;
+use crate::query::{ContactRecord, PairRecord};
 
 /// A [`Bench`] in the place of whatever else computes contacts. Each batch is a job from reset, over the same link.
 ///

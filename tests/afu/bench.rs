@@ -6,9 +6,10 @@ use std::path::Path;
 use contact_afu::afu::{Afu, Spec};
 use contact_afu::config::{Config, Results, Shell};
 use contact_afu::cosim::{Driver, File, Instance, Job, Model, Outcome, Source, Trace};
-use contact_afu::kernel::{ContactRecord, Fields, Flow, PairRecord, Reference};
+use contact_afu::kernel::Reference;
 use contact_afu::link::{Line, Link};
 use contact_afu::pairs::Set;
+use contact_afu::query::{ContactRecord, Fields, Flow, PairRecord};
 
 /// The core in the committed `rtl/`, for any number of SCPUs: no text is generated.
 pub fn committed(scpus: u32) -> Model {

@@ -4,8 +4,8 @@ use contact_afu::afu::JobError;
 use contact_afu::config::{Config, Results};
 use contact_afu::cosim::drive::DriveError;
 use contact_afu::cosim::{Instance, Job};
-use contact_afu::kernel::PairRecord;
 use contact_afu::link::{Fault, LinkModel};
+use contact_afu::query::PairRecord;
 
 use crate::bench::{Case, config, driver, generated};
 use crate::faults::{Found, Planted, SELECTOR_BIT, judge, model_of_faults};

@@ -70,7 +70,7 @@ fn every_interval_and_size() {
         [1, 2, 3, 10].into_iter().for_each(|scpus| check(&every(interval, scpus)));
     }
     check(&every(5, 64));
-    check(&Config { contact: contact_afu::kernel::Fields::HIT, results: Results::Hits, ..every(3, 10) });
+    check(&Config { contact: contact_afu::query::Fields::HIT, results: Results::Hits, ..every(3, 10) });
     check(&Config { radius: Some(0.5), ..every(4, 7) });
 }
 

@@ -3,9 +3,9 @@
 use std::thread;
 
 use contact_afu::cosim::Model;
-use contact_afu::kernel::Fields;
 use contact_afu::link::LinkModel;
 use contact_afu::pairs::Set;
+use contact_afu::query::Fields;
 
 use crate::bench::{Case, committed, config, driver, full_rate, generated, of};
 

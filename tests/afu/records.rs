@@ -1,7 +1,7 @@
 //! Records of every size: which fields are asked for decides where words lie, and how many lines there are.
 
-use contact_afu::kernel::Fields;
 use contact_afu::link::LinkModel;
+use contact_afu::query::Fields;
 
 use crate::bench::{Case, config, driver, generated};
 

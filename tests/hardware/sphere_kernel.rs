@@ -1,11 +1,11 @@
 //! The sphere kernel's pipeline against the reference kernel, bit for bit, a new pair in every cycle.
 
 use contact_afu::hdl::{DelayModel, Evaluator, Module};
-use contact_afu::kernel::{Arithmetic, ContactRecord, Fields, Flow, PairRecord, Reference, narrow, widen};
+use contact_afu::kernel::{Arithmetic, Reference, narrow, widen};
 use contact_afu::number::Format;
 use contact_afu::pairs::Set;
 use contact_afu::pipeline::{KernelReport, Settings, contact_kernel};
-use contact_afu::query::Query;
+use contact_afu::query::{ContactRecord, Fields, Flow, PairRecord, Query};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use std::ops::Range;

@@ -14,9 +14,9 @@ use std::sync::Arc;
 
 use contact_afu::config::{Config, Profile, Shell};
 use contact_afu::hdl::{DelayModel, Module};
-use contact_afu::kernel::PairRecord;
 use contact_afu::operator::{Operator, Values};
 use contact_afu::pairs::{self, Set};
+use contact_afu::query::PairRecord;
 use contact_afu::record::Layout;
 use contact_afu::synth::{Target, Unit};
 use rand::{RngExt, SeedableRng};

@@ -3,7 +3,7 @@
 use std::fs;
 
 use contact_afu::cosim::{File, Model, Source, Trace};
-use contact_afu::kernel::PairRecord;
+use contact_afu::query::PairRecord;
 
 use crate::synthesise::Files;
 

@@ -1,8 +1,9 @@
 //! Errors as the studies of accuracy have them, against computations of their own.
 
 use contact_afu::accuracy::{Answer, Contender, Contenders, Formula, Profiled, Row, assess, measure};
-use contact_afu::kernel::{EngineError, PairRecord};
+use contact_afu::kernel::EngineError;
 use contact_afu::pairs::Set;
+use contact_afu::query::PairRecord;
 use contact_afu::query::Query::SphereSphere;
 use contact_afu::store::Store;
 

@@ -1,9 +1,10 @@
 //! The batch kernel gives the reference's bits on every instruction set this processor has.
 
+use contact_afu::kernel::Reference;
 use contact_afu::kernel::batch::{Batch, Level};
-use contact_afu::kernel::{ContactRecord, Fields, PairRecord, Reference};
 use contact_afu::number::Format;
 use contact_afu::pairs::Set;
+use contact_afu::query::{ContactRecord, Fields, PairRecord};
 
 fn check(pairs: &[PairRecord], fields: Fields) {
     let expected = Reference::new(Format::BINARY32, fields).run_all(pairs);

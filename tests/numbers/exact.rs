@@ -1,9 +1,9 @@
 //! The profile `exact`: right for every pair of finite spheres, once the host has settled what the kernel leaves.
 
-use contact_afu::kernel::{ContactRecord, Fields, Filtered, Flow, PairRecord, Reference, Truth, exact, ulp};
+use contact_afu::kernel::{Filtered, Reference, Truth, exact, ulp};
 use contact_afu::number::{Format, Precise};
 use contact_afu::pairs::{CATEGORIES, Set, read_pairs};
-use contact_afu::query::Query;
+use contact_afu::query::{ContactRecord, Fields, Flow, PairRecord, Query};
 use std::path::Path;
 
 const EXACT: Reference = Reference::exact(Fields::ALL);

@@ -3,10 +3,10 @@
 use crate::support::swap;
 use crate::support::watched::raises;
 use contact_afu::accuracy::{Answer, Judgement, Standard, judge};
-use contact_afu::kernel::{ContactRecord, Fields, Flow, PairRecord, Reference, Truth, UlpErrors, ulp};
+use contact_afu::kernel::{Reference, Truth, UlpErrors, ulp};
 use contact_afu::number::Format;
 use contact_afu::pairs::{CATEGORIES, Set, read_pairs};
-use contact_afu::query::Query;
+use contact_afu::query::{ContactRecord, Fields, Flow, PairRecord, Query};
 use std::path::{Path, PathBuf};
 
 const WIDE: Reference = Reference::new(Format::WIDE, Fields::ALL);

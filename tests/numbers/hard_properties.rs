@@ -3,8 +3,8 @@
 
 use crate::support::watched::raises;
 use contact_afu::config::Profile;
-use contact_afu::kernel::{ContactRecord, Fields, Flow, PairRecord, Truth, ulp};
-use contact_afu::query::Query;
+use contact_afu::kernel::{Truth, ulp};
+use contact_afu::query::{ContactRecord, Fields, Flow, PairRecord, Query};
 use proptest::prelude::*;
 use proptest::test_runner::{TestError, TestRunner};
 

@@ -2,10 +2,10 @@
 
 use crate::support::watched::raises;
 use crate::support::{Words, halves};
-use contact_afu::kernel::{ContactRecord, Fields, Flow, PairRecord, Reference};
+use contact_afu::kernel::Reference;
 use contact_afu::number::Format;
 use contact_afu::pairs::Set;
-use contact_afu::query::Query;
+use contact_afu::query::{ContactRecord, Fields, Flow, PairRecord, Query};
 
 /// Algorithm 1 as the Open Dynamics Engine has it, branches and all.
 fn algorithm_1(pair: &PairRecord) -> ContactRecord {

@@ -1,9 +1,9 @@
 //! Files of pairs and contacts: what is written reads back, and what is wrong is named.
 
-use contact_afu::kernel::{ContactRecord, Fields, PairRecord, Reference};
+use contact_afu::kernel::Reference;
 use contact_afu::number::Format;
 use contact_afu::pairs::{self, Set};
-use contact_afu::query::Query;
+use contact_afu::query::{ContactRecord, Fields, PairRecord, Query};
 use std::fs;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;

@@ -3,11 +3,12 @@
 use crate::support::halves;
 use crate::support::watched::raises;
 use contact_afu::accuracy::{Answer, Contender, Formula, Standard, judge};
-use contact_afu::kernel::{Arithmetic, ContactRecord, Fields, Flow, PairRecord, Reference, Truth};
+use contact_afu::kernel::{Arithmetic, Reference, Truth};
 use contact_afu::number::{Format, Rounding};
 use contact_afu::pairs::{Category, Set, categories};
 use contact_afu::pipeline::is_normal;
 use contact_afu::query::Query::SpherePlane;
+use contact_afu::query::{ContactRecord, Fields, Flow, PairRecord};
 
 /// Half a unit in the last place of binary32, relative.
 const U: f64 = 1.0 / (1 << 24) as f64;

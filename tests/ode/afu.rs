@@ -8,10 +8,11 @@
 
 use contact_afu::config::Config;
 use contact_afu::kernel::batch::Level;
-use contact_afu::kernel::{Engine, Fields, Reference};
+use contact_afu::kernel::{Engine, Reference};
 use contact_afu::link::LinkModel;
 use contact_afu::number::Format;
 use contact_afu::ode::{Collider, Contact, Diamond, Ode, SpherePair, Touch, World};
+use contact_afu::query::Fields;
 use contact_afu::verify::{Bench, BenchEngine};
 
 type Point = [f64; 3];

@@ -1,8 +1,9 @@
 //! The paper's benchmark: what is recorded, what counts, and what it takes.
 
-use contact_afu::kernel::{Fields, Flow, Reference};
+use contact_afu::kernel::Reference;
 use contact_afu::number::Format;
 use contact_afu::ode::{Benchmark, Collider, Diamond, Error, Ode};
+use contact_afu::query::{Fields, Flow};
 
 /// 36 pairs touch in the diamond of hMax 3, and 96 more are near.
 #[test]

@@ -1,10 +1,11 @@
 //! An engine in the place of ODE's collider: the same contacts, as far as binary32 can hold them.
 
 use contact_afu::kernel::batch::Level;
-use contact_afu::kernel::{ContactRecord, Engine, EngineError, Fields, Flow, PairRecord, Reference};
+use contact_afu::kernel::{Engine, EngineError, Reference};
 use contact_afu::number::Format;
 use contact_afu::ode::{Collider, Contact, Diamond, Error, Ode, SpherePair, Surface, Touch, World};
 use contact_afu::pairs::Set;
+use contact_afu::query::{ContactRecord, Fields, Flow, PairRecord};
 use std::collections::HashSet;
 
 fn engines() -> Vec<(&'static str, Box<dyn Engine>)> {

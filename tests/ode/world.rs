@@ -1,10 +1,10 @@
 //! ODE itself behind its wrapper: its collider, its worlds, and what it must not be given.
 
-use contact_afu::kernel::{Fields, contact};
+use contact_afu::kernel::contact;
 use contact_afu::number::{Format, Soft};
 use contact_afu::ode::{Collider, Contact, Diamond, Error, Ode, SpherePair, Surface, Touch, World};
 use contact_afu::pairs::Set;
-use contact_afu::query::Query;
+use contact_afu::query::{Fields, Query};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 const BINARY64: &str = "e11f52";

@@ -7,8 +7,8 @@ use std::path::Path;
 use contact_afu::accuracy::trade::{self, Bounds, Time};
 use contact_afu::accuracy::{self, HardResults, Task};
 use contact_afu::config::{self, Config, Profile, Results, Shell};
-use contact_afu::kernel::ContactRecord;
 use contact_afu::link::{Description, Link, LinkModel};
+use contact_afu::query::ContactRecord;
 use contact_afu::scene::{Plan, Scene, Still};
 use contact_afu::store::{Key, Store};
 use contact_afu::sweep::{self, SweepResults};
@@ -42,7 +42,7 @@ fn file(name: &str) -> Vec<u8> {
 }
 
 /// The pairs as other arrays that are read: of binary16 and binary64, big-endian, in Fortran order, n × 2 × 4.
-fn arrays(pairs: &[contact_afu::kernel::PairRecord]) -> Vec<Vec<u8>> {
+fn arrays(pairs: &[contact_afu::query::PairRecord]) -> Vec<Vec<u8>> {
     let array = |descr: &str, order: &str, shape: &str, data: Vec<u8>| {
         let header =
             format!("{{'descr': '{descr}', 'fortran_order': {order}, 'shape': ({}, {shape}), }}\n", pairs.len());

@@ -13,8 +13,9 @@ use std::process::{Command, Output};
 use contact_afu::afu::shell::spl2::map;
 use contact_afu::afu::{Afu, Spec, top_name};
 use contact_afu::config::{Config, Multipliers, Results, Shell};
-use contact_afu::kernel::{PairRecord, Reference};
+use contact_afu::kernel::Reference;
 use contact_afu::pairs;
+use contact_afu::query::PairRecord;
 
 fn generate(config: Config) -> Afu {
     Afu::generate(Spec::from(config)).unwrap()

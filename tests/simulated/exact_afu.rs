@@ -1,9 +1,10 @@
 //! The profile `exact` as hardware: the Verilated AFU leaves to the host what it cannot tell, and nothing else.
 
 use contact_afu::config::{Config, Profile};
-use contact_afu::kernel::{Flow, PairRecord, Truth};
+use contact_afu::kernel::Truth;
 use contact_afu::link::LinkModel;
 use contact_afu::pairs::Set;
+use contact_afu::query::{Flow, PairRecord};
 use contact_afu::verify::Bench;
 
 #[test]

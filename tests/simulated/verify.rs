@@ -2,11 +2,11 @@
 
 use contact_afu::afu::{Afu, Spec};
 use contact_afu::config::{Config, Multipliers, RecordFormat, Results, Shell};
-use contact_afu::kernel::PairRecord;
 use contact_afu::link::spl2::Spl2Model;
 use contact_afu::link::{Description, Direction, LinkModel, Stalls};
 use contact_afu::pairs::Set;
 use contact_afu::patience::{self, Work};
+use contact_afu::query::PairRecord;
 use contact_afu::record::Capability;
 use contact_afu::verify::{Bench, Verdict};
 

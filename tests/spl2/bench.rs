@@ -6,10 +6,11 @@ use contact_afu::config::{Config, Shell};
 use contact_afu::cosim::spl2::Machine;
 use contact_afu::cosim::{File, Instance, Model, Outcome, Source, Trace};
 use contact_afu::host::{Done, Expected, HostError, Loaded, Session, Transaction, Workspace};
-use contact_afu::kernel::{ContactRecord, Flow, PairRecord, Reference};
+use contact_afu::kernel::Reference;
 use contact_afu::link::spl2::{Spl2, Spl2Model};
 use contact_afu::link::{Line, Link, Stalls};
 use contact_afu::pairs::Set;
+use contact_afu::query::{ContactRecord, Flow, PairRecord};
 
 /// The AFU of these tests: all fields, and an arithmetic whose model is made quickly.
 pub fn config(scpus: u32) -> Config {

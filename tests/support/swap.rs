@@ -1,6 +1,7 @@
 //! What a position may differ by if the spheres are swapped.
 
-use contact_afu::kernel::{ContactRecord, PairRecord, ulp};
+use contact_afu::kernel::ulp;
+use contact_afu::query::{ContactRecord, PairRecord};
 
 /// The unit in the last place of the largest number that makes either position's component.
 pub fn unit(pair: &PairRecord, axis: usize, p: f32, q: f32) -> f64 {

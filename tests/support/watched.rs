@@ -1,8 +1,8 @@
 //! The kernel read with an `f32` that notices IEEE overflow and underflow.
 
-use contact_afu::kernel::{Fields, Flow, PairRecord, contact};
+use contact_afu::kernel::contact;
 use contact_afu::number::{Format, Number};
-use contact_afu::query::Query;
+use contact_afu::query::{Fields, Flow, PairRecord, Query};
 use std::cell::Cell;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Sub, SubAssign};
 

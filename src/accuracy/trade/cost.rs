@@ -3,8 +3,8 @@
 use super::plan::Plan;
 use crate::accuracy::measure::with_pairs;
 use crate::config::Config;
-use crate::kernel::PairRecord;
 use crate::link::LinkModel;
+use crate::query::PairRecord;
 use crate::report::tally::Tally;
 use crate::store::sha256;
 use crate::synth::{Area, Figures, Options, SynthError, Unit, synthesise};

@@ -2,9 +2,9 @@
 
 use super::axes::{self, Choice};
 use crate::config::Profile;
-use crate::kernel::PairRecord;
 use crate::link::Description;
 use crate::pairs::Set;
+use crate::query::PairRecord;
 use crate::synth::Target;
 
 /// How much is measured.

@@ -86,7 +86,8 @@ mod with_ode {
     mod tests {
         use super::*;
         use crate::config::Profile;
-        use crate::kernel::{ContactRecord, EngineError, Fields, PairRecord, Truth};
+        use crate::kernel::{EngineError, Truth};
+        use crate::query::{ContactRecord, Fields, PairRecord};
 
         /// The truth in the place of the collider: off by the rounding of records alone.
         struct True;

@@ -3,7 +3,7 @@
 use crate::config::Config;
 use crate::kernel::batch::{Batch, Level};
 use crate::kernel::double::Doubles;
-use crate::kernel::{Fields, PairRecord};
+use crate::query::{Fields, PairRecord};
 use std::hint::black_box;
 use std::time::Instant;
 

@@ -1,10 +1,11 @@
 //! One set of collisions, timed in every way.
 
 use super::{Recording, Timing};
+use crate::kernel::Engine;
 use crate::kernel::batch::{Batch, Level};
-use crate::kernel::{ContactRecord, Engine, Fields, PairRecord};
 use crate::ode::dcollide::Room;
 use crate::ode::{Error, Ode, SpherePair};
+use crate::query::{ContactRecord, Fields, PairRecord};
 use std::hint::black_box;
 
 /// What the same collisions take, all of them together, in nanoseconds. All is measured on this machine, one thread.

@@ -14,7 +14,7 @@ pub use timing::Timing;
 
 use super::dcollide::Room;
 use super::{Collider, Diamond, Error, Ode, Simulation, Sphere, Touch};
-use crate::kernel::{Flow, PairRecord};
+use crate::query::{Flow, PairRecord};
 use std::hint::black_box;
 use std::time::Instant;
 

@@ -6,7 +6,8 @@ mod runs;
 mod scenes;
 
 use contact_afu::config::Profile;
-use contact_afu::kernel::{Fields, Reference};
+use contact_afu::kernel::Reference;
+use contact_afu::query::Fields;
 use runs::{Contacts, Deviation, State, deviation, run};
 use scenes::Build;
 

@@ -83,8 +83,8 @@ fn nothing_happens_that_is_not_named() {
     impl contact_afu::kernel::Engine for Nobody {
         fn contacts(
             &mut self,
-            _: &[contact_afu::kernel::PairRecord],
-        ) -> Result<Vec<contact_afu::kernel::ContactRecord>, contact_afu::kernel::EngineError> {
+            _: &[contact_afu::query::PairRecord],
+        ) -> Result<Vec<contact_afu::query::ContactRecord>, contact_afu::kernel::EngineError> {
             Err("nobody is asked who touches whom".into())
         }
     }

@@ -4,12 +4,12 @@ use contact_afu::afu::{Afu, Spec};
 use contact_afu::config::Config;
 #[cfg(feature = "cosim")]
 use contact_afu::config::Shell;
-use contact_afu::kernel::Fields;
-#[cfg(feature = "cosim")]
-use contact_afu::kernel::PairRecord;
 #[cfg(feature = "cosim")]
 use contact_afu::link::LinkModel;
 use contact_afu::pairs::Set;
+use contact_afu::query::Fields;
+#[cfg(feature = "cosim")]
+use contact_afu::query::PairRecord;
 #[cfg(feature = "cosim")]
 use contact_afu::scene::Still;
 use contact_afu::scene::{Part, Plan};

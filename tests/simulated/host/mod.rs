@@ -8,9 +8,10 @@ use std::sync::LazyLock;
 
 use contact_afu::config::{Config, Shell};
 use contact_afu::host::{Expected, Session, Software, Transport, Workspace};
-use contact_afu::kernel::{ContactRecord, PairRecord, Reference};
+use contact_afu::kernel::Reference;
 use contact_afu::link::LinkModel;
 use contact_afu::pairs::Set;
+use contact_afu::query::{ContactRecord, PairRecord};
 
 fn config() -> Config {
     Config { shell: Shell::Spl2, ..Config::default() }

@@ -3,9 +3,10 @@
 use contact_afu::afu::shell::spl2::map::{self, control, identity, pointers, status};
 use contact_afu::config::{Config, RecordFormat, Results};
 use contact_afu::host::{Expected, HitError, HostError, Session, Software, Transport, TransportError, Workspace};
-use contact_afu::kernel::{Engine, PairRecord};
+use contact_afu::kernel::Engine;
 use contact_afu::link::LinkModel;
 use contact_afu::link::spl2::CsrOffset;
+use contact_afu::query::PairRecord;
 
 use super::meddle::{Dying, Meddled};
 use super::{config, contacts, expected, pairs, session, software};

@@ -1,6 +1,6 @@
-use contact_afu::kernel::PairRecord;
 use contact_afu::link::LinkModel;
 use contact_afu::pairs::Set;
+use contact_afu::query::PairRecord;
 use contact_afu::verify::Bench;
 
 /// The pairs of a seed: none, few, odd, some hundred; hard ones and any.

@@ -1,7 +1,6 @@
-use contact_afu::kernel::{Flow, PairRecord};
 use contact_afu::link::LinkModel;
 use contact_afu::pairs::Set;
-use contact_afu::query::Query;
+use contact_afu::query::{Flow, PairRecord, Query};
 
 /// What makes a pair invalid, and where: NaN (quiet, signalling, negative), infinities, a radius below zero.
 fn invalid(number: usize, pair: PairRecord) -> PairRecord {
