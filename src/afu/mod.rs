@@ -41,8 +41,8 @@ pub use timing::Timing;
 /// Bits of a line address: 64-byte lines of a 64-bit byte address space.
 pub const ADDRESS_BITS: u32 = 58;
 /// Bits of a job's epoch, the upper part of a tag.
-pub const EPOCH_BITS: u32 = 4;
+pub(crate) const EPOCH_BITS: u32 = 4;
 /// Bits that hold a number of SCPUs.
-pub const SCPU_BITS: u32 = 7;
+pub(crate) const SCPU_BITS: u32 = 7;
 /// Largest number of SCPUs.
-pub const MAX_SCPUS: u32 = 64;
+pub(crate) const MAX_SCPUS: u32 = 64;

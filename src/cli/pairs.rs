@@ -7,7 +7,8 @@ use clap::Args;
 use contact_afu::pairs::Loaded;
 use contact_afu::pairs::{self, FileError, LoadError, Set, SetError};
 #[cfg(feature = "cosim")]
-use contact_afu::query::{PairRecord, Query};
+use contact_afu::query::PairRecord;
+use contact_afu::query::Query;
 use contact_afu::report::table::grouped;
 
 use super::failure::{Failure, Kind};

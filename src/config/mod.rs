@@ -192,7 +192,7 @@ impl Config {
     }
 
     /// The name of a module or file with the prefix before it.
-    pub fn prefixed(&self, name: &str) -> String {
+    pub(crate) fn prefixed(&self, name: &str) -> String {
         self.prefix.as_ref().map_or_else(|| name.to_owned(), |prefix| format!("{prefix}_{name}"))
     }
 

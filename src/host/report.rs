@@ -31,11 +31,6 @@ impl Report {
         self.run + self.handshake
     }
 
-    /// Nanoseconds at a clock of `mhz` as simulated, every CSR write included.
-    pub fn simulated_ns(&self, mhz: f64) -> f64 {
-        (self.set_up + self.job() + self.tear_down) as f64 * 1000.0 / mhz
-    }
-
     /// Nanoseconds at a clock of `mhz` with set-up and tear-down as the link's description states them.
     pub fn stated_ns(&self, mhz: f64) -> f64 {
         (self.stated_set_up + self.job() + self.stated_tear_down) as f64 * 1000.0 / mhz

@@ -208,7 +208,7 @@ impl<'s, T: Transport> Transaction<'s, T, Running> {
     ///
     /// # Errors
     /// As `wait`.
-    pub fn wait_with(self, mut progress: impl FnMut(Traffic)) -> Result<Transaction<'s, T, Done>, HostError> {
+    pub(crate) fn wait_with(self, mut progress: impl FnMut(Traffic)) -> Result<Transaction<'s, T, Done>, HostError> {
         let status = self.open.session.wait_for_status(&self.state.begin, self.open.count(), &mut progress)?;
         Ok(self.to(|Running { begin }| Done { begin, status }))
     }

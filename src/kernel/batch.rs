@@ -76,7 +76,7 @@ type Run = unsafe fn(&[Block], &mut [Block], Fields);
 
 impl Level {
     /// What every processor of the target has.
-    pub const PORTABLE: Self = Self { name: "portable", run: portable };
+    pub(crate) const PORTABLE: Self = Self { name: "portable", run: portable };
 
     /// The levels of this processor, slowest first.
     pub fn available() -> Vec<Self> {

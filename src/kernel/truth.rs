@@ -69,7 +69,7 @@ impl Truth {
         let Some(contact) = &self.contact else { return record };
         record.0[..FLAGS].copy_from_slice(&contact.numbers().map(|number| number.to_f32().to_bits()));
         if self.flow == Flow::Coincident {
-            record.0[..3].copy_from_slice(&self.pair.0[..3]);
+            record = record.at_first_centre(&self.pair);
         }
         record
     }

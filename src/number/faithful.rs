@@ -125,27 +125,27 @@ impl Faithful {
     }
 
     /// Bits of the fraction below those that choose a piece; none where the table holds every result.
-    pub fn t_bits(&self) -> u32 {
+    pub(crate) fn t_bits(&self) -> u32 {
         self.fraction_bits - self.index_bits
     }
 
     /// How many of them, from the top, the second degree looks at.
-    pub fn high_bits(&self) -> u32 {
+    pub(crate) fn high_bits(&self) -> u32 {
         self.high_bits
     }
 
     /// The shift behind c2 · t_high.
-    pub fn inner_shift(&self) -> u32 {
+    pub(crate) fn inner_shift(&self) -> u32 {
         self.inner_shift
     }
 
     /// The shift behind slope · t.
-    pub fn outer_shift(&self) -> u32 {
+    pub(crate) fn outer_shift(&self) -> u32 {
         self.outer_shift
     }
 
     /// Bits of a value below the result's last place.
-    pub fn guard_bits(&self) -> u32 {
+    pub(crate) fn guard_bits(&self) -> u32 {
         GUARD_BITS
     }
 

@@ -147,7 +147,7 @@ impl Format {
 
     /// Bits of the significand, the leading bit included (IEEE 754's precision p).
     #[inline]
-    pub const fn significand_bits(self) -> u32 {
+    pub(crate) const fn significand_bits(self) -> u32 {
         self.fraction_bits() + 1
     }
 
@@ -171,7 +171,7 @@ impl Format {
 
     /// Whether gradual underflow is kept.
     #[inline]
-    pub const fn keeps_subnormals(self) -> bool {
+    pub(crate) const fn keeps_subnormals(self) -> bool {
         matches!(self.subnormals, Subnormals::Kept)
     }
 
@@ -183,7 +183,7 @@ impl Format {
 
     /// The word of +infinity.
     #[inline]
-    pub const fn infinity_bits(self) -> u128 {
+    pub(crate) const fn infinity_bits(self) -> u128 {
         (self.special_exponent() as u128) << self.fraction_bits
     }
 

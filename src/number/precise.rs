@@ -28,7 +28,7 @@ pub struct Precise([u64; DIGITS]);
 
 impl Precise {
     /// Zero.
-    pub const ZERO: Self = Self([0; DIGITS]);
+    pub(crate) const ZERO: Self = Self([0; DIGITS]);
 
     /// The same value as `value`, where that is finite and below 2^256 in magnitude; zero elsewhere.
     pub fn from_f64(value: f64) -> Self {

@@ -115,7 +115,7 @@ impl Ports {
 
     /// One that comes some cycles after the others.
     #[track_caller]
-    pub fn input_bit_after(&self, name: &str, cycles: u32) -> Bit {
+    pub(crate) fn input_bit_after(&self, name: &str, cycles: u32) -> Bit {
         Bit(make(name, &[], Location::caller(), |kernel, _| {
             let id = kernel.input(name, Kind::Bit);
             kernel.late.push((id, cycles));

@@ -1,6 +1,6 @@
 //! A contact as words: one order for every query.
 
-use super::{Fields, Flow};
+use super::{Fields, Flow, PairRecord};
 
 /// Numbers that are asked for together.
 #[derive(Clone, Copy, Debug)]
@@ -107,6 +107,13 @@ impl ContactRecord {
     /// The numbers, in order: position, normal, depth.
     pub fn numbers(self) -> [f32; NUMBERS] {
         std::array::from_fn(|word| f32::from_bits(self.0[word]))
+    }
+
+    /// This record with the centre of the pair's first sphere as its position. In every query a pair begins with that
+    /// centre, and a contact with its position.
+    pub(crate) fn at_first_centre(mut self, pair: &PairRecord) -> Self {
+        self.0[..3].copy_from_slice(&pair.0[..3]);
+        self
     }
 
     /// Where the bodies touch.

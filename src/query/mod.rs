@@ -44,7 +44,7 @@ impl Query {
     }
 
     /// Whether it is the default, which files leave out.
-    pub fn is_default(&self) -> bool {
+    pub(crate) fn is_default(&self) -> bool {
         *self == Self::default()
     }
 }

@@ -37,7 +37,7 @@ pub struct PairRecord(pub [u32; PAIR_WORDS]);
 
 impl PairRecord {
     /// The pair of these numbers, in order; words beyond them are zero.
-    pub fn of_values(values: impl IntoIterator<Item = f32>) -> Self {
+    pub(crate) fn of_values(values: impl IntoIterator<Item = f32>) -> Self {
         let mut pair = Self::default();
         pair.0.iter_mut().zip(values).for_each(|(word, value)| *word = value.to_bits());
         pair

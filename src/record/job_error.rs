@@ -42,7 +42,7 @@ impl JobError {
     }
 
     /// The error of a code; `None` if it is 0 or unknown.
-    pub fn of_code(code: u8) -> Option<Self> {
+    pub(crate) fn of_code(code: u8) -> Option<Self> {
         Self::ALL.into_iter().find(|error| error.code() == code)
     }
 

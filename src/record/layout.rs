@@ -73,7 +73,7 @@ impl Layout {
     }
 
     /// The same records in words of `word_bits` bits. Only proofs have other than the record's.
-    pub fn with_words_of(self, word_bits: u32) -> Self {
+    pub(crate) fn with_words_of(self, word_bits: u32) -> Self {
         Self { word_bits, ..self }
     }
 
@@ -132,17 +132,17 @@ impl Layout {
     }
 
     /// Bits of a record before those of the contact: the pair's number, where only contacts come back.
-    pub fn number_bits(&self) -> u32 {
+    pub(crate) fn number_bits(&self) -> u32 {
         if self.results == Results::Hits { COUNT_BITS } else { 0 }
     }
 
     /// Bits of a record in use: without what pads it to a power of two.
-    pub fn used_bits(&self) -> u32 {
+    pub(crate) fn used_bits(&self) -> u32 {
         (self.number_bits() + self.contact_words().len() as u32 * self.word_bits).max(1)
     }
 
     /// Bits a contact takes in a line.
-    pub fn contact_bits(&self) -> u32 {
+    pub(crate) fn contact_bits(&self) -> u32 {
         self.used_bits().next_power_of_two()
     }
 
@@ -156,7 +156,7 @@ impl Layout {
     }
 
     /// Contacts a destination line.
-    pub fn contacts_per_line(&self) -> u32 {
+    pub(crate) fn contacts_per_line(&self) -> u32 {
         self.line_bits / self.contact_bits()
     }
 

@@ -16,6 +16,6 @@ pub use layout::{Layout, OtherRadius};
 pub(crate) use pack::{Line, pack, pack_contacts, unpack_pairs};
 
 /// Bits of a line of memory.
-pub const LINE_BITS: u32 = 512;
+pub(crate) const LINE_BITS: u32 = 512;
 /// Bits of a pair count or number.
 pub const COUNT_BITS: u32 = 32;

@@ -149,7 +149,7 @@ impl Part {
     }
 
     /// What calls for it.
-    pub fn demands(self) -> &'static [Demand] {
+    pub(crate) fn demands(self) -> &'static [Demand] {
         self.rule().map_or(&[], |(.., demands)| demands)
     }
 }

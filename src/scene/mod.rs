@@ -2,7 +2,7 @@
 //!
 //! A [`Scene`] is read from TOML ([`Scene::read`]). Its [`Plan`] says for every effect, every field of a contact and
 //! every part of the hardware whether it is on, and which lines call for it: see `demand::RULES`. What nothing calls
-//! for costs nothing: it is not in the Verilog, not in a record, and its part of ODE is never called. [`run`](fn@run)
+//! for costs nothing: it is not in the Verilog, not in a record, and its part of ODE is never called. `run`
 //! then runs the scene with what the plan has, and nothing else.
 
 mod balance;

@@ -206,7 +206,7 @@ impl Engine for Timed<'_> {
             // A force along the normal goes through both centres, so it has no lever arm there, and the position
             // changes nothing.
             for (contact, pair) in contacts.iter_mut().zip(pairs).filter(|(contact, _)| contact.is_contact()) {
-                contact.0[..3].copy_from_slice(&pair.0[..3]);
+                *contact = contact.at_first_centre(pair);
             }
         }
         Ok(contacts)

@@ -69,7 +69,7 @@ impl Bench {
     ///
     /// # Errors
     /// As `new`.
-    pub fn cached_in(config: &Config, cache: &Path) -> Result<Self, VerifyError> {
+    pub(crate) fn cached_in(config: &Config, cache: &Path) -> Result<Self, VerifyError> {
         Self::of(config, generated(config)?, |source| Model::build_in(source, Trace::Off, cache), false)
     }
 

@@ -95,7 +95,7 @@ impl<'a> Machine<'a> {
     }
 
     /// The cycle of the AFU's last request that was no poll: a write, or a read of another line than the one before.
-    pub fn last_work(&self) -> u64 {
+    pub(crate) fn last_work(&self) -> u64 {
         self.last_work
     }
 

@@ -21,13 +21,13 @@ pub struct Header {
 
 impl Header {
     /// WrThru.
-    pub const WRITE_THROUGH: u32 = 1;
+    pub(crate) const WRITE_THROUGH: u32 = 1;
     /// WrLine.
-    pub const WRITE_LINE: u32 = 2;
+    pub(crate) const WRITE_LINE: u32 = 2;
     /// Rd.
-    pub const READ: u32 = 4;
+    pub(crate) const READ: u32 = 4;
     /// WrFence.
-    pub const WRITE_FENCE: u32 = 5;
+    pub(crate) const WRITE_FENCE: u32 = 5;
 
     /// From the low 99 bits.
     pub fn from_bits(bits: u128) -> Self {

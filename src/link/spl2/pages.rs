@@ -91,7 +91,7 @@ impl Pages {
     }
 
     /// The physical line of a virtual one.
-    pub fn translate(&self, line: u64) -> Option<u64> {
+    pub(crate) fn translate(&self, line: u64) -> Option<u64> {
         let page = (line / PAGE_LINES).checked_sub(self.first)?;
         let first = self.lines.get(usize::try_from(page).ok()?)?;
         Some(first + line % PAGE_LINES)

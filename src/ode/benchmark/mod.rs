@@ -146,7 +146,7 @@ fn flow(touch: bool, [[x1, y1, z1, _], [x2, y2, z2, _]]: [[f64; 4]; 2]) -> Flow 
 
 impl Recording {
     /// The paper's figure for the first `count` collisions: the sum of their averages, in nanoseconds.
-    pub fn total_ns(&self, count: usize) -> f64 {
+    pub(crate) fn total_ns(&self, count: usize) -> f64 {
         self.first(count).iter().map(|collision| collision.nanoseconds).sum()
     }
 

@@ -19,12 +19,12 @@ pub const START_WORD: u32 = 0x406C_CCFF;
 /// Cycles from an answer of the control memory to the next time it is read, while no job runs.
 pub const IDLE_POLL_CYCLES: u32 = 32;
 /// The same while a job runs: only an abort can be found.
-pub const RUNNING_POLL_CYCLES: u32 = 512;
+pub(crate) const RUNNING_POLL_CYCLES: u32 = 512;
 /// Cycles after which a read of the shell's own that was not answered is asked again.
-pub const RETRY_CYCLES: u32 = 1 << 16;
+pub(crate) const RETRY_CYCLES: u32 = 1 << 16;
 
 /// DSM line that says who this is.
-pub const IDENTITY_LINE: u32 = 0;
+pub(crate) const IDENTITY_LINE: u32 = 0;
 /// DSM line of latencies.
 pub const LATENCY_LINE: u32 = 4;
 /// DSM line of cycles and lines.
@@ -34,13 +34,13 @@ pub const SCRATCH_LINE: u32 = 63;
 /// Bytes of the DSM.
 pub const DSM_BYTES: u64 = 4096;
 /// Context line that says where the buffers are.
-pub const POINTERS_LINE: u32 = 0;
+pub(crate) const POINTERS_LINE: u32 = 0;
 /// Context line that the AFU writes when a job has ended.
-pub const STATUS_LINE: u32 = 1;
+pub(crate) const STATUS_LINE: u32 = 1;
 /// Source line of the control memory.
-pub const CONTROL_LINE: u32 = 0;
+pub(crate) const CONTROL_LINE: u32 = 0;
 /// Source line of the first pairs.
-pub const DATA_LINE: u32 = 1;
+pub(crate) const DATA_LINE: u32 = 1;
 
 /// A 32-bit register, written through a CSR write. Of two halves the high one comes first, and the low one commits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,7 +69,7 @@ pub const CONTEXT_BASE_LOW: Csr = csr(0x8A0C, "context_base_low", "bits 31:0; th
 pub const SCRATCH: Csr = csr(0x8AFC, "scratch", "the AFU repeats it in DSM line 63");
 
 /// All registers.
-pub const CSRS: [Csr; 5] = [DSM_BASE_HIGH, DSM_BASE_LOW, CONTEXT_BASE_HIGH, CONTEXT_BASE_LOW, SCRATCH];
+pub(crate) const CSRS: [Csr; 5] = [DSM_BASE_HIGH, DSM_BASE_LOW, CONTEXT_BASE_HIGH, CONTEXT_BASE_LOW, SCRATCH];
 
 /// A field of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -144,9 +144,10 @@ pub mod latency {
     use super::{Field, field};
 
     /// From the start of the job to the first source line.
-    pub const FIRST_READ: Field = field(0, 32, "first_read", "cycles from the job's start to its first source line");
+    pub(crate) const FIRST_READ: Field =
+        field(0, 32, "first_read", "cycles from the job's start to its first source line");
     /// From the start of the job to the first destination line.
-    pub const FIRST_WRITE: Field =
+    pub(crate) const FIRST_WRITE: Field =
         field(1, 32, "first_write", "cycles from the job's start to its first write request");
     /// The job.
     pub const SEQUENCE: Field = field(2, 32, "sequence", "of the job");
@@ -159,12 +160,13 @@ pub mod performance {
     use super::{Field, field};
 
     /// Cycles of the job.
-    pub const BUSY: Field =
+    pub(crate) const BUSY: Field =
         field(0, 64, "cycles_busy", "cycles of the job, from its start to its last acknowledgement");
     /// Cycles without pairs.
-    pub const INPUT: Field = field(2, 64, "cycles_input", "of these, cycles in which the SCPUs waited for pairs");
+    pub(crate) const INPUT: Field =
+        field(2, 64, "cycles_input", "of these, cycles in which the SCPUs waited for pairs");
     /// Cycles without room.
-    pub const OUTPUT: Field =
+    pub(crate) const OUTPUT: Field =
         field(4, 64, "cycles_output", "of these, cycles in which pairs waited for room for their results");
     /// The job.
     pub const SEQUENCE: Field = field(6, 32, "sequence", "of the job");
@@ -211,7 +213,7 @@ pub mod control {
     pub const SEQUENCE: Field =
         field(3, 32, "sequence", "the job's number: one unlike the last job's makes it a new job");
     /// Abort.
-    pub const ABORT: Field = field(4, 32, "abort", "anything but 0 ends the running job with error 1");
+    pub(crate) const ABORT: Field = field(4, 32, "abort", "anything but 0 ends the running job with error 1");
     /// Watchdog.
     pub const WATCHDOG: Field = field(
         5,
@@ -236,11 +238,11 @@ pub mod status {
     /// The job.
     pub const SEQUENCE: Field = field(1, 32, "sequence", "of the job that has ended");
     /// Contacts.
-    pub const CONTACTS: Field = field(2, 32, "contacts", "contacts of the job");
+    pub(crate) const CONTACTS: Field = field(2, 32, "contacts", "contacts of the job");
     /// Invalid pairs.
-    pub const INVALID: Field = field(3, 32, "invalid", "invalid pairs of the job");
+    pub(crate) const INVALID: Field = field(3, 32, "invalid", "invalid pairs of the job");
     /// The first of them.
-    pub const FIRST_INVALID: Field =
+    pub(crate) const FIRST_INVALID: Field =
         field(4, 32, "first_invalid", "number of the first invalid pair, all ones if there is none");
     /// [`super::VERSION`].
     pub const VERSION: Field = field(5, 32, "version", "of this map");
