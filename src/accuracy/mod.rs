@@ -8,6 +8,7 @@ mod answer;
 mod contender;
 mod formula;
 mod judge;
+mod matrix;
 mod measure;
 #[cfg(feature = "ode")]
 mod ode;

@@ -1,6 +1,6 @@
 //! What contenders came to on the hard pairs: a row for each category and contender, in a folder that grows.
 
-use super::{ErrorStatistics, Tally, Task};
+use super::{ErrorStatistics, Tally, Task, matrix};
 use crate::query::Query;
 use crate::report::table::{grouped, table};
 use crate::report::{folder, manifest};
@@ -10,6 +10,7 @@ use std::path::Path;
 /// The schema of a study's `manifest.json`.
 pub const SCHEMA: &str = "contact-afu/hard/1";
 const CSV: &str = "hard.csv";
+const PICTURE: &str = "hard.svg";
 
 /// One contender on one category.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -34,8 +35,8 @@ impl Row {
     }
 }
 
-/// A study: what every contender was given, and what came of it. Its folder holds it twice: `manifest.json`, and the
-/// rows alone as `hard.csv`.
+/// A study: what every contender was given, and what came of it. Its folder holds it three times: as `manifest.json`,
+/// the rows as `hard.csv`, and gross failures as the picture `hard.svg`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HardResults {
@@ -72,7 +73,8 @@ impl HardResults {
     pub(super) fn save(&self, folder: &Path) -> Result<(), folder::Error> {
         folder::create(folder)?;
         folder::replace_json(&folder.join(manifest::NAME), self)?;
-        folder::replace_csv(&folder.join(CSV), |out| self.csv(out))
+        folder::replace_csv(&folder.join(CSV), |out| self.csv(out))?;
+        folder::replace_file(&folder.join(PICTURE), matrix::svg(self).as_bytes())
     }
 
     fn csv(&self, out: &mut csv::Writer<Vec<u8>>) -> Result<(), csv::Error> {
@@ -98,6 +100,20 @@ impl HardResults {
         distinct(self.rows.iter().map(|row| row.contender.as_str()))
     }
 
+    /// The categories, each once, in their order.
+    pub(super) fn categories(&self) -> Vec<&str> {
+        distinct(self.rows.iter().map(|row| row.category.as_str()))
+    }
+
+    /// Pairs of a category, as text: two numbers where the last ones have one pair less.
+    pub(super) fn per_category(&self) -> String {
+        let pairs = |of: fn(u64, u64) -> u64| {
+            self.rows.iter().map(|row| row.tally.pairs).reduce(of).map_or_else(String::new, grouped)
+        };
+        let (least, most) = (pairs(u64::min), pairs(u64::max));
+        if least == most { most } else { format!("{least} or {most}") }
+    }
+
     /// The tables for people: each contender by category, and at the end all of them by their gross failures.
     pub fn tables(&self) -> String {
         let mut text = String::new();
@@ -118,7 +134,7 @@ impl HardResults {
 
     fn summary(&self) -> String {
         let contenders = self.contenders();
-        let categories = distinct(self.rows.iter().map(|row| row.category.as_str()));
+        let categories = self.categories();
         let heading: Vec<&str> = ["", "pairs"].into_iter().chain(contenders.iter().copied()).collect();
         let line = |name: &str, tallies: Vec<Tally>| {
             let pairs = tallies.first().map_or(0, |tally| tally.pairs);

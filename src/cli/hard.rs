@@ -28,7 +28,8 @@ pub struct Hard {
     /// Profiles to judge, beside the other engines [default: paper,wide, and of sphere-sphere exact]
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     profile: Vec<Profile>,
-    /// Folder to write: manifest.json (JSON of all), hard.csv, and measurements/, from which the same command resumes
+    /// Folder to write: manifest.json (JSON of all), hard.csv, hard.svg (gross failures), and measurements/, from which
+    /// the same command resumes
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Write into the folder even if afu did not make it; other files in it are left alone

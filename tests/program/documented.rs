@@ -184,8 +184,8 @@ fn the_figures_of_scenes_are_their_plans() {
 }
 
 /// The table of gross failures in a page is what `afu hard` finds with these arguments. Its columns are `contenders`
-/// and ODE, which is compared if it is built in.
-fn compare_gross_failures(page: &str, arguments: &[&str], contenders: &[&str], sums: &[(&str, &str)]) {
+/// and ODE, which is compared if it is built in. Returns the picture beside it.
+fn compare_gross_failures(page: &str, arguments: &[&str], contenders: &[&str], sums: &[(&str, &str)]) -> String {
     let room = tempfile::tempdir().unwrap();
     let out = room.path().join("hard");
     afu(&[&["hard", "--out", out.to_str().expect("UTF-8")], arguments].concat());
@@ -211,12 +211,18 @@ fn compare_gross_failures(page: &str, arguments: &[&str], contenders: &[&str], s
         page.row(table, name, &cells(None, what));
     }
     page.check();
+    fs::read_to_string(out.join("hard.svg")).unwrap()
 }
 
 #[test]
 fn gross_failures_on_hard_pairs_are_the_table_s() {
     let sums = [("all 170 000", "BAD"), ("left to the host", "unsettled")];
-    compare_gross_failures("docs/hard.md", &[], &["wide", "exact", "formula f32"], &sums);
+    let drawn = compare_gross_failures("docs/hard.md", &[], &["wide", "exact", "formula f32"], &sums);
+    if cfg!(feature = "ode") && !cfg!(feature = "parry") {
+        let mut picture = Page::open("docs/img/hard.svg");
+        picture.text = drawn;
+        picture.check();
+    }
     let planes = ["--query", "sphere-plane", "--pairs", "120000"];
     compare_gross_failures("docs/sphere-plane.md", &planes, &["wide", "formula f32"], &[("all 120 000", "BAD")]);
 }
