@@ -105,6 +105,10 @@ pub fn run(options: &Cosim) -> Result<(), Failure> {
 
     let stdout_taken = [&options.json, &options.junit].into_iter().flatten().any(|path| output::is_stdout(path));
     output::show(&format!("{}\n{}", run.table(), run.verdict()), stdout_taken)?;
+    if let Some(path) = &options.trace {
+        let path = path.display();
+        output::show(&format!("waves: open them with `gtkwave {path}` or `surfer {path}`"), stdout_taken)?;
+    }
     if let Some(path) = &options.json {
         output::json(path, &run.json())?;
     }

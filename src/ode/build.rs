@@ -15,8 +15,8 @@ const INSTALL: &str =
 /// What src/ode calls.
 const FUNCTIONS: &str = "
     dAllocateODEDataForThread dBodyAddForce dBodyCreate dBodyGetAngularVel dBodyGetLinearVel dBodyGetMass
-    dBodyGetPosition dBodyIsEnabled dBodySetAngularVel dBodySetLinearVel dBodySetMass dBodySetMaxAngularSpeed
-    dBodySetPosition dCheckConfiguration dCloseODE dCollide dCreatePlane dCreateSphere dGeomDestroy dGeomGetData
+    dBodyGetPosition dBodyGetQuaternion dBodyIsEnabled dBodySetAngularVel dBodySetLinearVel dBodySetMass
+    dBodySetMaxAngularSpeed dBodySetPosition dCheckConfiguration dCloseODE dCollide dCreatePlane dCreateSphere dGeomDestroy dGeomGetData
     dGeomPlaneSetParams dGeomSetBody dGeomSetData dGeomSetPosition dGeomSphereSetRadius dHashSpaceCreate
     dInitODE2 dJointAttach dJointCreateContact dJointGroupCreate dJointGroupDestroy dJointGroupEmpty
     dMassSetSphere dRandGetSeed dRandSetSeed dSetColliderOverride dSpaceCollide dSpaceDestroy dWorldCreate

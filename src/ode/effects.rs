@@ -137,6 +137,12 @@ impl World {
         unsafe { *sys::dBodyGetLinearVel(self.spheres[sphere.index()].body).cast() }
     }
 
+    /// A sphere's orientation as a unit quaternion: scalar part, then the vector.
+    pub fn orientation(&self, sphere: Sphere) -> [f64; 4] {
+        // SAFETY: the body lives as long as the world, and a quaternion has four numbers.
+        unsafe { *sys::dBodyGetQuaternion(self.spheres[sphere.index()].body).cast() }
+    }
+
     /// Adds a wall: spheres stay where `normal` · position ≥ `offset`. The normal is an axis or its opposite, or any
     /// unit vector.
     ///

@@ -65,6 +65,11 @@ pub(super) struct Fitted {
 }
 
 impl Fitted {
+    /// The least and the largest value.
+    pub(super) const fn ends(&self) -> [f64; 2] {
+        [self.least, self.most]
+    }
+
     /// Where a value lies: 0 at the least, 1 at the most.
     pub(super) fn place(&self, value: f64) -> f64 {
         let on = |v: f64| if self.scale == Scale::Log { v.log10() } else { v };

@@ -2,14 +2,14 @@
 
 use maud::{Markup, PreEscaped, html};
 
-use super::layout::{Layout, SAMPLE, WIDTH};
+use super::layout::{Layout, SAMPLE};
 use super::style::{COLOURS, STYLE};
 use super::{Marker, Plot, Series, names};
 
 pub(super) fn file(plot: &Plot) -> Markup {
     let layout = Layout::new(plot);
     html! {
-        svg xmlns="http://www.w3.org/2000/svg" class="plot" viewBox=(view(&layout)) width=(WIDTH)
+        svg xmlns="http://www.w3.org/2000/svg" class="plot" viewBox=(view(plot, &layout)) width=(plot.width)
             height=(layout.height) role="img" aria-label=(plot.title) {
             style { (PreEscaped(STYLE)) }
             (inside(plot, &layout))
@@ -20,14 +20,21 @@ pub(super) fn file(plot: &Plot) -> Markup {
 pub(super) fn figure(plot: &Plot) -> Markup {
     let layout = Layout::new(plot);
     html! {
-        svg class="plot" viewBox=(view(&layout)) width="100%" role="img" aria-label=(plot.title) {
+        svg class="plot" viewBox=(view(plot, &layout)) width="100%" role="img" aria-label=(plot.title)
+            data-area=(area(&layout)) {
             (inside(plot, &layout))
         }
     }
 }
 
-fn view(layout: &Layout) -> String {
-    format!("0 0 {WIDTH} {}", layout.height)
+fn view(plot: &Plot, layout: &Layout) -> String {
+    format!("0 0 {} {}", plot.width, layout.height)
+}
+
+/// Where the x axis lies, for a script: left, top, width and height in the picture, then its least and largest value.
+fn area(layout: &Layout) -> String {
+    let [least, most] = layout.x.ends();
+    format!("{} {} {} {} {least} {most}", layout.left, layout.top, layout.wide, layout.high)
 }
 
 fn inside(plot: &Plot, layout: &Layout) -> Markup {
@@ -35,7 +42,7 @@ fn inside(plot: &Plot, layout: &Layout) -> Markup {
     let (right, bottom) = (left + wide, top + high);
     let class = |series: &Series| format!("c{}", series.colour % COLOURS);
     html! {
-        rect class="ground" width=(WIDTH) height=(height) {}
+        rect class="ground" width=(plot.width) height=(height) {}
         text class="title" x=(left) y="20" { (plot.title) }
         g class="ticks" {
             @for (value, words) in &layout.x.ticks {

@@ -5,6 +5,8 @@ use super::axis::Fitted;
 
 /// Width of the whole picture.
 pub(super) const WIDTH: f64 = 760.0;
+/// The same on a narrow screen.
+pub(super) const NARROW: f64 = 380.0;
 /// Height between the axes.
 const INNER: f64 = 320.0;
 /// Width of a character of the small text.
@@ -43,7 +45,8 @@ impl Layout {
         let y = plot.y.fit(points().map(|p| p.1));
         let widest = y.ticks.iter().map(|(_, text)| width(text)).fold(0.0, f64::max);
         let (left, right) = (34.0 + widest, 32.0);
-        let wide = WIDTH - left - right;
+        let width_of_all = plot.width;
+        let wide = width_of_all - left - right;
 
         // Words of marks: in the first row where they do not touch their neighbour.
         let mut order: Vec<usize> = (0..plot.marks.len()).collect();
@@ -53,7 +56,7 @@ impl Layout {
         for i in order {
             let half = width(&plot.marks[i].label) / 2.0;
             let wanted = left + x.place(plot.marks[i].at).clamp(0.0, 1.0) * wide;
-            let centre = wanted.clamp(half + 2.0, (WIDTH - half - 2.0).max(half + 2.0));
+            let centre = wanted.clamp(half + 2.0, (width_of_all - half - 2.0).max(half + 2.0));
             let row = ends.iter().position(|&end| end + 12.0 <= centre - half).unwrap_or(ends.len());
             if row == ends.len() {
                 ends.push(0.0);
@@ -70,7 +73,7 @@ impl Layout {
         let (mut across, mut down) = (left, top + high + 64.0);
         for series in &plot.series {
             let needed = SAMPLE + 8.0 + width(&series.name) + 20.0;
-            if across > left && across + needed > WIDTH {
+            if across > left && across + needed > width_of_all {
                 (across, down) = (left, down + ROW + 2.0);
             }
             legend.push((across, down));

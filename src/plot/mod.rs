@@ -27,12 +27,13 @@ pub struct Plot {
     pub series: Vec<Series>,
     /// Upright lines at places on the x axis, each with a few words above the plot.
     pub marks: Vec<Mark>,
+    width: f64,
 }
 
 impl Plot {
     /// A plot without series.
     pub fn new(title: &str, x: Axis, y: Axis) -> Self {
-        Self { title: title.to_owned(), x, y, series: Vec::new(), marks: Vec::new() }
+        Self { title: title.to_owned(), x, y, series: Vec::new(), marks: Vec::new(), width: layout::WIDTH }
     }
 
     /// Adds a series.
@@ -46,6 +47,13 @@ impl Plot {
     #[must_use]
     pub fn marked(mut self, mark: Mark) -> Self {
         self.marks.push(mark);
+        self
+    }
+
+    /// The same for a narrow screen: text is as large, and all else has less room.
+    #[must_use]
+    pub(crate) fn narrow(mut self) -> Self {
+        self.width = layout::NARROW;
         self
     }
 

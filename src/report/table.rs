@@ -1,6 +1,6 @@
 //! Tables for a terminal.
 
-use comfy_table::{Cell, CellAlignment, LineStyle, Table, TableStyle};
+use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
 
 const RULE: LineStyle = LineStyle::none().fill('─').junction('─');
 const STYLE: TableStyle = TableStyle::new().top_border(RULE).header_separator(RULE).bottom_border(RULE);
@@ -11,26 +11,32 @@ where
     R: IntoIterator<Item = C>,
     C: IntoIterator<Item = String>,
 {
-    aligned_from(1, heading, rows)
+    aligned_from(1, None, heading, rows)
 }
 
-/// A table of nothing but text.
+/// The width of a terminal that text is made for.
+pub const WIDTH: u16 = 100;
+
+/// A table of nothing but text, whose cells are wrapped to keep to [`WIDTH`].
 pub fn words<R, C>(heading: &[&str], rows: R) -> String
 where
     R: IntoIterator<Item = C>,
     C: IntoIterator<Item = String>,
 {
-    aligned_from(usize::MAX, heading, rows)
+    aligned_from(usize::MAX, Some(WIDTH), heading, rows)
 }
 
 /// Columns from `figures` on are on the right.
-fn aligned_from<R, C>(figures: usize, heading: &[&str], rows: R) -> String
+fn aligned_from<R, C>(figures: usize, width: Option<u16>, heading: &[&str], rows: R) -> String
 where
     R: IntoIterator<Item = C>,
     C: IntoIterator<Item = String>,
 {
     let mut table = Table::new();
     table.load_style(STYLE);
+    if let Some(width) = width {
+        table.set_content_arrangement(ContentArrangement::Dynamic).set_width(width);
+    }
     let aligned = |(column, text): (usize, String)| {
         let side = if column < figures { CellAlignment::Left } else { CellAlignment::Right };
         Cell::new(text).set_alignment(side)

@@ -22,6 +22,8 @@ pub struct Ball {
     pub velocity: [f64; 3],
     /// Its angular velocity, radians / time.
     pub turning: [f64; 3],
+    /// The number of its group, from 0.
+    pub group: usize,
 }
 
 /// The spheres of groups, in their order.
@@ -30,7 +32,7 @@ pub struct Ball {
 /// When a file of bodies cannot be read, or has what is no sphere.
 pub fn balls(scene: &Scene, groups: &[Group]) -> Result<Vec<Ball>, SceneError> {
     let mut all = Vec::new();
-    for group in groups {
+    for (number, group) in groups.iter().enumerate() {
         let radius = group.radius.value;
         let pitch = 2.0 * radius + group.gap;
         let lattice = |points: Vec<[f64; 3]>| points.into_iter().map(|p| (p.map(|v| v * pitch), radius)).collect();
@@ -52,6 +54,7 @@ pub fn balls(scene: &Scene, groups: &[Group]) -> Result<Vec<Ball>, SceneError> {
             mass: group.mass,
             velocity: group.velocity.as_ref().map_or([0.0; 3], |given| given.value),
             turning: group.turning.as_ref().map_or([0.0; 3], |given| given.value),
+            group: number,
         }));
     }
     Ok(all)

@@ -15,6 +15,7 @@ mod error;
 mod file;
 mod ladder;
 mod page;
+mod picture;
 mod plan;
 mod read;
 mod results;
@@ -23,6 +24,7 @@ mod run;
 mod start;
 mod still;
 mod text;
+mod viewer;
 
 pub use balance::Balance;
 pub use bodies::{Ball, balls};
@@ -33,7 +35,7 @@ pub use file::{Effects, Given, Group, Pull, Scene, Shape, Start, Want};
 pub use ladder::ladder;
 pub use page::page;
 pub use plan::{Call, Plan, Row};
-pub use results::{Energy, SCHEMA, SceneRun, Summary, Touching};
+pub use results::{Energy, Meeting, SCHEMA, SceneRun, Summary, Touching};
 #[cfg(feature = "ode")]
 pub use run::run;
 pub use start::check_start;

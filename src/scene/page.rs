@@ -1,91 +1,51 @@
-//! A run as a page: the scene moving, the plan, and what each effect cost.
+//! A run as a page: the scene moving or its contacts, the plan, and what each effect cost.
 
 use maud::{Markup, PreEscaped, html};
 
 use super::cost::Cost;
+use super::plan::Row;
 use super::results::SceneRun;
 use super::text::cost_rows;
-use crate::plot::{Axis, Plot, Scale, Series};
-use crate::report::page::{base64, scripted, table};
-
-/// Frames at most, and numbers in all of them.
-const FRAMES: usize = 600;
-const NUMBERS: usize = 1_500_000;
-/// Steps of a coordinate across the scene: 16 bits.
-const STEPS: f64 = 65_535.0;
-
-const SCRIPT: &str = include_str!("viewer.js");
-const STYLE: &str = "canvas{width:100%;height:26rem;border:1px solid var(--grid);touch-action:none;display:block}\
-div.bar{display:flex;gap:.6rem;align-items:center;margin:.5rem 0}div.bar input{flex:1}\
-button{font:inherit;padding:.2rem .9rem;background:none;color:inherit;border:1px solid var(--soft);border-radius:.3rem}";
+use super::viewer;
+use crate::plot::{Axis, Line, Marker, Plot, Scale, Series};
+use crate::report::page::{scripted, table};
 
 /// The page of a run; `ladder` is the cost with one effect after another, from [`Cost`]s by name.
 pub fn page(results: &SceneRun, ladder: &[(String, Cost)]) -> String {
     let body = html! {
-        style { (PreEscaped(STYLE)) }
-        p { (results.name) ", contacts by " (results.engine) "." }
-        (picture(results))
-        h2 { "What the scene takes" }
-        (plan(results))
-        h2 { "What that cost, and what everything would" }
-        (table("", &["", "what the scene calls for", "everything"], 1, &cost_rows(&[&results.cost, &results.everything])))
-        h2 { "One effect after another" }
-        (ladder_of(ladder))
+        style { (PreEscaped(viewer::STYLE)) }
+        p { "Contacts were computed by " (results.engine) "." }
+        (viewer::view(results))
         h2 { "The run" }
-        (summary(results))
-        (energy(results))
+        (table("", &["", ""], 1, &results.rows()))
+        @if let Some(sentence) = results.energy_sentence() { p { (sentence) } }
+        @if let Some(warning) = results.warning() { p { strong { "Warning: " } (warning) } }
+        h2 { "What the scene calls for" }
+        (plan(&results.rows))
+        h2 { "What that costs, and what everything would cost" }
+        (table("", &["", "what the scene calls for", "everything"], 1, &cost_rows(&[&results.cost, &results.everything])))
+        @if ladder.len() > 1 {
+            h2 { "The cost of one effect after another" }
+            (ladder_of(ladder))
+        }
     };
-    scripted(&format!("Scene: {}", results.name), &body, SCRIPT)
+    scripted(&format!("Scene: {}", results.name), &body, viewer::SCRIPT)
 }
 
-/// The bodies' places as 16-bit numbers between the scene's corners, frame after frame, in base 64.
-fn picture(results: &SceneRun) -> Markup {
-    let bodies = results.radii.len().max(1);
-    let most = FRAMES.min(NUMBERS / (3 * bodies)).max(1);
-    let every = results.places.len().div_ceil(most).max(1);
-    let frames: Vec<(usize, &Vec<[f64; 3]>)> = results.places.iter().enumerate().step_by(every).collect();
-    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for (ball, radius) in frames.iter().flat_map(|(_, places)| places.iter().zip(&results.radii)) {
-        for axis in 0..3 {
-            low[axis] = low[axis].min(ball[axis] - radius);
-            high[axis] = high[axis].max(ball[axis] + radius);
-        }
-    }
-    let span = (0..3).map(|axis| high[axis] - low[axis]).fold(f64::MIN_POSITIVE, f64::max);
-    let mut bytes = Vec::with_capacity(frames.len() * bodies * 6);
-    for place in frames.iter().flat_map(|(_, places)| places.iter()) {
-        for axis in 0..3 {
-            let value = ((place[axis] - low[axis]) / span * STEPS).round() as u16;
-            bytes.extend(value.to_le_bytes());
-        }
-    }
-    let shares: Vec<String> = results.radii.iter().map(|radius| format!("{:.5}", radius / span)).collect();
-    let middle: Vec<String> = (0..3).map(|axis| format!("{:.5}", (high[axis] - low[axis]) / span / 2.0)).collect();
-    let steps: Vec<String> = frames.iter().map(|(step, _)| step.to_string()).collect();
+/// What is on, as a table; what is off is folded away.
+fn plan(rows: &[Row]) -> Markup {
+    let line = |row: &Row| vec![row.name.clone(), row.value.clone(), row.called_for_by().join("; ")];
+    let on: Vec<Vec<String>> = rows.iter().filter(|row| row.on).map(line).collect();
+    let off: Vec<Vec<String>> = rows.iter().filter(|row| !row.on).map(line).collect();
     html! {
-        figure {
-            canvas id="scene" data-places=(base64(&bytes)) data-radii=(shares.join(" ")) data-middle=(middle.join(" "))
-                data-steps=(steps.join(" ")) aria-label="the bodies of the scene, moving" {}
-            @if frames.len() > 1 {
-                div.bar {
-                    button id="play" type="button" { "Pause" }
-                    input id="at" type="range" min="0" max=(frames.len() - 1) value="0" aria-label="step";
-                    output id="step" { "step 0" }
-                }
+        (table("", &["on", "value", "called for by"], 3, &on))
+        @if !off.is_empty() {
+            details {
+                summary { (off.len()) " more are off: not in the Verilog, not in a record, not called in ODE" }
+                (table("", &["off", "value", "called for by"], 3, &off))
             }
-            figcaption { "Drag to turn, wheel to come nearer. "
-                @if frames.len() > 1 { "Every " (every) " of " (results.places.len() - 1) " steps." }
-                @else { "Trajectories are not wanted, or nothing moves: the bodies as they lie at first." } }
         }
     }
-}
-
-fn plan(results: &SceneRun) -> Markup {
-    let row = |row: &super::Row| {
-        let calls = row.called_for_by().join("; ");
-        vec![row.name.clone(), if row.on { "on" } else { "off" }.to_owned(), row.value.clone(), calls]
-    };
-    table("", &["", "", "value", "called for by"], 4, &results.rows.iter().map(row).collect::<Vec<_>>())
 }
 
 fn ladder_of(ladder: &[(String, Cost)]) -> Markup {
@@ -102,49 +62,36 @@ fn ladder_of(ladder: &[(String, Cost)]) -> Markup {
     };
     let heading = [
         "with",
-        "operators of an SCPU",
-        "cycles",
-        "LUTs of an SCPU",
-        "bytes sent a pair",
-        "bytes a contact",
-        "host time a step, µs",
+        "operators per SCPU",
+        "latency, cycles",
+        "LUTs per SCPU",
+        "bytes sent per pair",
+        "bytes per contact",
+        "host time per step, µs",
     ];
     let points = |figure: fn(&Cost) -> f64| {
         (1..).zip(ladder).map(move |(step, (_, cost))| (f64::from(step), figure(cost))).collect::<Vec<_>>()
     };
     let plot = Plot::new(
-        "One effect after another: rows of the table, from the first",
-        Axis::new("row", Scale::Linear),
-        Axis::new("cycles, operators", Scale::Linear),
+        "The cost of one effect after another",
+        Axis::new("row of the table", Scale::Linear),
+        Axis::new("cycles; operators", Scale::Linear),
     )
-    .with(Series::new("cycles from a pair to its contact", 0, points(|cost| f64::from(cost.latency_cycles))))
-    .with(Series::new("operators of an SCPU", 1, points(|cost| cost.operators.values().sum::<usize>() as f64)));
+    .with(
+        Series::new("latency of a pair, cycles", 0, points(|cost| f64::from(cost.latency_cycles)))
+            .line(Line::Solid)
+            .marker(Marker::Circle),
+    )
+    .with(
+        Series::new("operators per SCPU", 1, points(|cost| cost.operators.values().sum::<usize>() as f64))
+            .line(Line::Dashed)
+            .marker(Marker::Square),
+    );
     html! {
         (table("", &heading, 1, &ladder.iter().map(row).collect::<Vec<_>>()))
-        figure { (plot.figure()) }
+        figure {
+            div.broad { (plot.figure()) }
+            div.narrow { (plot.narrow().figure()) }
+        }
     }
-}
-
-fn summary(results: &SceneRun) -> Markup {
-    html! { pre { (results.text()) } }
-}
-
-fn energy(results: &SceneRun) -> Markup {
-    if results.energy.is_empty() {
-        return html! {};
-    }
-    let points = |figure: fn(&super::Energy) -> f64| {
-        let every = results.energy.len().div_ceil(500);
-        results
-            .energy
-            .iter()
-            .enumerate()
-            .step_by(every)
-            .map(move |(step, e)| (step as f64, figure(e)))
-            .collect::<Vec<_>>()
-    };
-    let plot = Plot::new("Energy", Axis::new("step", Scale::Linear), Axis::new("energy", Scale::Linear))
-        .with(Series::new("kinetic", 0, points(|e| e.kinetic)))
-        .with(Series::new("with the field's", 1, points(|e| e.kinetic + e.potential)));
-    html! { figure { (plot.figure()) } }
 }

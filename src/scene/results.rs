@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::plan::{Plan, Row};
-use super::{Balance, Cost, Scene};
+use super::{Balance, Ball, Cost, Scene};
 use crate::config::Config;
 
 /// The schema of a scene's JSON.
@@ -18,6 +18,15 @@ pub struct Touching {
     pub bodies: [usize; 2],
     /// The contact's words as the engine gave them: position, normal, depth.
     pub words: [f32; 7],
+}
+
+/// Two bodies that touch in a step and did not in several steps before it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Meeting {
+    /// The number of steps done before it.
+    pub step: u64,
+    /// The bodies' numbers.
+    pub bodies: [usize; 2],
 }
 
 /// Energy and momentum after a step.
@@ -78,10 +87,25 @@ pub struct SceneRun {
     pub engine: String,
     /// The counts.
     pub summary: Summary,
-    /// Radii of the bodies.
+    /// Time per step.
+    pub time_step: f64,
+    /// The height of the floor, if there is one.
+    pub floor: Option<f64>,
+    /// Two corners of the box of walls, if there is one.
+    pub walls: Option<[[f64; 3]; 2]>,
+    /// Radii of the bodies, those of queries last.
     pub radii: Vec<f64>,
-    /// Where every body is, at first and after each step; at first alone where trajectories are not wanted.
+    /// The group of each body: `bodies` in the order of the scene, then `queries`.
+    pub groups: Vec<usize>,
+    /// The number of bodies that are not queries.
+    pub queries_from: usize,
+    /// Position of every body, at first and after each step; only at first if trajectories are not wanted.
     pub places: Vec<Vec<[f64; 3]>>,
+    /// Orientation of every body, if spin is on and trajectories are wanted: the vector part of a unit quaternion
+    /// whose scalar part is not negative.
+    pub turns: Vec<Vec<[f32; 3]>>,
+    /// Who began to touch whom in which step; empty if trajectories are not wanted.
+    pub meetings: Vec<Meeting>,
     /// Contacts, if wanted.
     pub contacts: Vec<Touching>,
     /// Energy before the first step and after each, if wanted.
@@ -117,6 +141,15 @@ impl<'a> From<&'a Row> for PlanRow<'a> {
 }
 
 impl SceneRun {
+    /// Takes what does not change in a run from its bodies.
+    pub(super) fn describe(&mut self, balls: &[Ball], queries_from: usize) {
+        self.radii = balls.iter().map(|ball| ball.radius).collect();
+        self.queries_from = queries_from;
+        let past_bodies = balls[..queries_from].iter().map(|ball| ball.group + 1).max().unwrap_or(0);
+        let group = |(number, ball): (usize, &Ball)| ball.group + if number < queries_from { 0 } else { past_bodies };
+        self.groups = balls.iter().enumerate().map(group).collect();
+    }
+
     pub(super) fn begin(scene: &Scene, plan: &Plan, engine: String) -> Result<Self, super::SceneError> {
         Ok(Self {
             name: scene.name.value.clone(),
@@ -126,8 +159,15 @@ impl SceneRun {
             everything: Cost::of(&plan.everything())?,
             engine,
             summary: Summary::default(),
+            time_step: scene.time_step.value,
+            floor: scene.effects.floor.as_ref().map(|floor| floor.value),
+            walls: scene.effects.walls.as_ref().map(|walls| walls.value),
             radii: Vec::new(),
+            groups: Vec::new(),
+            queries_from: 0,
             places: Vec::new(),
+            turns: Vec::new(),
+            meetings: Vec::new(),
             contacts: Vec::new(),
             energy: Vec::new(),
         })

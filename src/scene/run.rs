@@ -1,15 +1,19 @@
 //! Scenes that move: ODE's steps, with an engine in the place of its collider of two spheres, and what the plan has.
 
+use std::collections::HashMap;
 use std::time::{Duration, Instant};
 
 use super::bodies::{Ball, balls};
 use super::demand::Part;
 use super::plan::Plan;
-use super::results::{Energy, SceneRun, Touching};
+use super::results::{Energy, Meeting, SceneRun, Touching};
 use super::{Balance, Scene, SceneError, check_start};
 use crate::kernel::{Engine, EngineError};
 use crate::ode::{Collider, Ode, Sleep, Sphere, Surface, World};
 use crate::query::{ContactRecord, Fields, PairRecord};
+
+/// Two bodies meet when they touch and did not in so many steps before. Bodies that lie on each other touch on and off.
+const APART: u64 = 20;
 
 /// Runs a scene: each step's pairs through `engine`, which has the plan's fields. After each step `progress` gets the
 /// number of those done.
@@ -35,7 +39,8 @@ pub fn run(
     let mut engine = Timed { inner: engine, fields: plan.config.contact, spent: Duration::ZERO, pairs: 0 };
     let mut step_times = Vec::new();
     let count = bodies.len() as u64;
-    results.radii = bodies.iter().map(|ball| ball.radius).collect();
+    results.describe(&bodies, bodies.len());
+    let mut last_touch: HashMap<[usize; 2], u64> = HashMap::new();
     record(&mut results, plan, scene, &world, &bodies, true);
     let mut balance = Balance::begin(scene, &world, &bodies);
     for step in 0..scene.steps.value {
@@ -80,6 +85,14 @@ pub fn run(
                 let words = [x, y, z, nx, ny, nz, c.depth].map(|v| v as f32);
                 Touching { step, bodies: [touch.first.index(), touch.second.index()], words }
             }));
+        }
+        if plan.has(Part::Trajectories) {
+            for touch in &touches {
+                let bodies = [touch.first.index(), touch.second.index()];
+                if last_touch.insert(bodies, step).is_none_or(|last| last + APART < step) {
+                    results.meetings.push(Meeting { step, bodies });
+                }
+            }
         }
         record(&mut results, plan, scene, &world, &bodies, false);
         progress(step + 1);
@@ -176,6 +189,9 @@ fn record(results: &mut SceneRun, plan: &Plan, scene: &Scene, world: &World, bod
     if is_first || plan.has(Part::Trajectories) {
         results.places.push(world.spheres().map(|sphere| world.position(sphere)).collect());
     }
+    if plan.has(Part::Trajectories) && plan.has(Part::Spin) {
+        results.turns.push(world.spheres().map(|sphere| turn(world.orientation(sphere))).collect());
+    }
     if plan.has(Part::Energy) {
         let motion = world.motion();
         let gravity = scene.effects.gravity.as_ref().map_or([0.0; 3], |gravity| gravity.value);
@@ -186,6 +202,13 @@ fn record(results: &mut SceneRun, plan: &Plan, scene: &Scene, world: &World, bod
         let potential = potential.sum();
         results.energy.push(Energy { kinetic: motion.energy, potential, momentum: motion.momentum });
     }
+}
+
+/// A unit quaternion by its vector part: it and its opposite are the same orientation, so the scalar part can be kept
+/// from being negative.
+fn turn([scalar, x, y, z]: [f64; 4]) -> [f32; 3] {
+    let sign = if scalar < 0.0 { -1.0 } else { 1.0 };
+    [x, y, z].map(|part| (part * sign) as f32)
 }
 
 /// The engine, its time told apart from the host's, its pairs counted, and what it does not compute filled in.

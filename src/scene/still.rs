@@ -104,7 +104,7 @@ pub fn query(scene: &Scene, plan: &Plan, engine: &mut dyn Engine, name: &str) ->
     summary.contacts = contacts.iter().filter(|contact| contact.is_contact()).count() as u64;
     summary.bytes = results.cost.bytes(summary.pairs, summary.contacts);
     summary.bytes_with_everything = results.everything.bytes(summary.all_pairs, summary.all_pairs);
-    results.radii = query.balls.iter().map(|ball| ball.radius).collect();
+    results.describe(&query.balls, query.bodies);
     results.places = vec![query.balls.iter().map(|ball| ball.centre).collect()];
     if plan.has(Part::Contacts) {
         let touching = query.candidates.iter().zip(&contacts).filter(|(_, contact)| contact.is_contact());

@@ -98,33 +98,49 @@ pub(super) fn cost_rows(all: &[&Cost]) -> Vec<Vec<String>> {
 }
 
 impl SceneRun {
-    /// What a run came to.
-    pub fn text(&self) -> String {
+    /// The counts of the run, each with its name.
+    pub(super) fn rows(&self) -> Vec<Vec<String>> {
         let s = &self.summary;
         let mut rows = vec![
             ("bodies".to_owned(), grouped(s.bodies as u64)),
             ("steps".to_owned(), grouped(s.steps)),
-            ("pairs of bodies there are".to_owned(), grouped(s.all_pairs)),
+            ("pairs of bodies that exist".to_owned(), grouped(s.all_pairs)),
             ("pairs sent, all steps".to_owned(), grouped(s.pairs)),
             ("contacts, all steps".to_owned(), grouped(s.contacts)),
             ("contacts with walls".to_owned(), grouped(s.wall_contacts)),
             ("bytes over the link".to_owned(), grouped(s.bytes as u64)),
-            ("with everything on".to_owned(), grouped(s.bytes_with_everything as u64)),
+            ("bytes with everything on".to_owned(), grouped(s.bytes_with_everything as u64)),
             (
-                if s.steps > 0 { "host, a step, µs" } else { "the engine, µs" }.to_owned(),
+                if s.steps > 0 { "host time per step, µs" } else { "time of the engine, µs" }.to_owned(),
                 format!("{:.1}", s.step_ns / 1000.0),
             ),
         ];
         if let Some(cycles) = s.cycles {
             rows.push(("cycles of the AFU, all steps".to_owned(), grouped(cycles)));
         }
+        rows.into_iter().map(|(name, value)| vec![name, value]).collect()
+    }
+
+    /// The energy at both ends of the run, if it was wanted.
+    pub(super) fn energy_sentence(&self) -> Option<String> {
+        let sum = |e: &super::Energy| e.kinetic + e.potential;
+        let (first, last) = (self.energy.first()?, self.energy.last()?);
+        Some(format!("energy {:.5e} at first, {:.5e} in the end", sum(first), sum(last)))
+    }
+
+    /// What to say of a run that gained energy from nowhere.
+    pub(super) fn warning(&self) -> Option<String> {
+        self.summary.balance.and_then(|balance| balance.warning())
+    }
+
+    /// The run as text.
+    pub fn text(&self) -> String {
         let mut out = format!("{} by {}\n", self.name, self.engine);
-        out += &table(&["", ""], rows.into_iter().map(|(name, value)| [name, value]));
-        if let (Some(first), Some(last)) = (self.energy.first(), self.energy.last()) {
-            let sum = |e: &super::Energy| e.kinetic + e.potential;
-            out += &format!("\nenergy {:.5e} at first, {:.5e} in the end", sum(first), sum(last));
+        out += &table(&["", ""], self.rows());
+        if let Some(sentence) = self.energy_sentence() {
+            out += &format!("\n{sentence}");
         }
-        if let Some(warning) = s.balance.and_then(|balance| balance.warning()) {
+        if let Some(warning) = self.warning() {
             out += &format!("\nWarning: {warning}");
         }
         out

@@ -328,7 +328,8 @@ fn a_waveform_that_cannot_be_written_is_exit_4_and_leaves_no_file() {
 fn a_waveform_is_written() {
     let room = room();
     let arguments = ["cosim", "--scpus", "1", "--pairs", "diamond:2", "--trace", "wave.vcd"];
-    afu(room.path(), &arguments).success();
+    let told = String::from_utf8_lossy(&afu(room.path(), &arguments).success().get_output().stdout).into_owned();
+    assert!(told.ends_with("waves: open them with `gtkwave wave.vcd` or `surfer wave.vcd`\n"), "{told}");
     let wave = fs::read_to_string(room.path().join("wave.vcd")).expect("written");
     assert!(wave.contains("$enddefinitions") && wave.contains("afu_tx_rd_valid"));
 }

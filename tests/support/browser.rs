@@ -10,10 +10,13 @@ use std::time::{Duration, Instant};
 /// Programs that will do, the first there is.
 const PROGRAMS: [&str; 3] = ["chromium", "chromium-browser", "google-chrome"];
 /// No network of its own, and nothing kept.
-const FLAGS: [&str; 13] = [
+const FLAGS: [&str; 15] = [
     "--headless",
     "--no-sandbox",
-    "--disable-gpu",
+    // WebGL in software, as machines that run tests have no graphics card.
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
     "--disable-quic",
     "--no-first-run",
     "--disable-background-networking",

@@ -3,6 +3,8 @@
 mod bad;
 mod lines;
 #[cfg(feature = "ode")]
+mod pages;
+#[cfg(feature = "ode")]
 mod physics;
 mod plans;
 mod program;

@@ -39,6 +39,19 @@ fn a_plan_names_lines_and_an_effect_more_or_less_says_what_it_costs() {
 }
 
 #[test]
+fn every_plan_fits_in_a_terminal_of_100_columns() {
+    for example in super::EXAMPLES {
+        for more in [&["--plan"][..], &["--with", "friction", "--no-luts"], &["--without", "bounce", "--no-luts"]] {
+            let arguments: Vec<String> =
+                [text(&path(example))].into_iter().chain(more.iter().map(|m| (*m).to_owned())).collect();
+            let told = told(&afu(&arguments.iter().map(String::as_str).collect::<Vec<_>>()).success());
+            let widest = told.lines().max_by_key(|line| line.chars().count()).expect("a plan");
+            assert!(widest.chars().count() <= 100, "{example} {more:?}: {widest}");
+        }
+    }
+}
+
+#[test]
 fn a_bad_scene_ends_in_one_line_and_writes_nothing() {
     let room = tempfile::tempdir().expect("a temporary folder");
     let (file, out) = (room.path().join("s.toml"), room.path().join("out"));
@@ -122,7 +135,7 @@ fn the_simulated_afu_moves_bodies_as_software_does() {
     assert!(opened.console.is_empty() && opened.fetched.is_empty(), "{opened:?}");
     // The script drew: it says which frame the canvas shows.
     assert!(opened.dom.contains("data-frame=\""), "the canvas was never drawn");
-    assert!(opened.dom.contains("id=\"play\"") && opened.dom.matches("<svg class=\"plot\"").count() == 2);
+    assert!(opened.dom.contains("id=\"play\"") && opened.dom.contains("figure class=\"energy\""));
 
     // A reader's hand: it scrubs to step 17, which stops the play, and plays again. Its script needs a policy without
     // hash.
