@@ -28,13 +28,17 @@ fn rows(all: &[Figures]) -> BTreeMap<u32, Row<'_>> {
 
 const ABOUT: &str = "# Area by interval
 
-Made by `scripts/intervals`, which runs `afu synth --kernel --interval II --no-route --json FILE` for each interval, the same with \
-the router where asked, and hands the JSON to `afu synth --intervals`.
+`scripts/intervals` makes this page. For each interval it runs `afu synth --kernel --interval II --no-route --json FILE`, and \
+the same with place and route where asked, and passes the JSON to `afu synth --intervals`.
 
-At `--interval II` an SCPU takes a pair every II cycles and has as few operators as that allows: operations are placed by \
-modulo scheduling, sums, differences and sums of magnitudes take turns in one adder, products and squares in one multiplier \
-where that is smaller, values that wait are written down once in II cycles, and root and reciprocal do a digit or a few a cycle \
-in ranks that keep a number for up to II cycles. N SCPUs take N/II pairs a cycle, and never more than a line of them.
+An SCPU at interval II takes a pair every II cycles, and has as few operators as that allows:
+
+- Operations are placed by modulo scheduling. Sums, differences and sums of magnitudes take turns in one adder; products \
+and squares take turns in one multiplier where that is smaller.
+- Values that wait are stored once in II cycles.
+- Root and reciprocal compute one or a few digits per cycle, in stages that hold a number for up to II cycles.
+
+N SCPUs take N/II pairs per cycle, and never more than one line of pairs per cycle.
 
 ![LUTs, flip-flops and DSPs of an SCPU by interval](img/interval.svg)
 

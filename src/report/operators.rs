@@ -42,11 +42,13 @@ const HEADING: &str =
 pub fn page(all: &[Figures]) -> Result<String, serde_json::Error> {
     let public: PublicCores = serde_json::from_str(include_str!("public_cores.json"))?;
     let mut out = String::from("# Operators, placed and routed\n\n");
-    out += "Made by `scripts/operators`, which runs `afu synth` and hands its JSON to `afu synth --table`. Ours: LFE5U-85F \
-            speed 8, the median of the seeds' clocks; the wrapper's cells are subtracted. Public cores: ";
+    out += "`scripts/operators` makes this page: it runs `afu synth` and passes the JSON to `afu synth --table`.\n\n\
+            - Our operators: LFE5U-85F speed 8, median clock of the seeds; the wrapper's cells are subtracted.\n\
+            - Public cores: ";
     out += &public.flow;
-    out += " Ratios are ours to the public core marked *: below 1 is better.\n\nOver about 200 MHz through a multiplier \
-            block with registers the figure is the tool's model, not silicon's: nextpnr does not time the path inside.\n";
+    out += "\n- Ratios are ours to the public core marked *; below 1 is better.\n\nAbove about 200 MHz, a clock through a \
+            multiplier block with registers is the tool's model and not the device's: nextpnr does not time the path \
+            inside the block.\n";
     let mut units: Vec<&str> = Vec::new();
     for figures in all {
         if !units.contains(&figures.unit.as_str()) {

@@ -155,7 +155,7 @@ fn the_figures_of_scenes_are_their_plans() {
     let touching = plan("touching", &[]);
     let [cycles, bytes] =
         ["cycles from a pair to its contact", "bytes that come back"].map(|row| figures(&touching, row).concat());
-    page.between("of touching alone, ", " a contact.", &format!("{cycles} cycles and {bytes} bytes"));
+    page.between("of touching alone, ", " per contact.", &format!("{cycles} cycles and {bytes} bytes"));
     let friction = plan("diamond", &["--with", "friction", "--no-luts"]);
     let cycles = figures(&friction, "cycles from a pair to its contact").join(" cycles ");
     let bytes = figures(&friction, "bytes that come back");
@@ -207,7 +207,7 @@ fn compare_gross_failures(page: &str, arguments: &[&str], contenders: &[&str], s
     for category in rows.iter().filter(|row| row["contender"] == "wide").map(|row| row["category"]) {
         page.row(table, category, &cells(Some(category), "BAD"));
     }
-    for (name, what) in [("contacts missed", "missed"), ("contacts invented", "false")].iter().chain(sums) {
+    for (name, what) in [("contacts missed", "missed"), ("false positives", "false")].iter().chain(sums) {
         page.row(table, name, &cells(None, what));
     }
     page.check();
