@@ -66,8 +66,8 @@ const HOUSE: &[(&str, &[&str])] = &[
     (
         "sweep",
         &[
-            "store", "query", "record", "report", "synth", "verify", "host", "cosim", "config", "afu", "link", "pairs",
-            "number",
+            "store", "query", "record", "report", "plot", "synth", "verify", "host", "cosim", "config", "afu", "link",
+            "pairs", "number",
         ],
     ),
 ];

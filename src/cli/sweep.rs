@@ -33,7 +33,8 @@ pub struct Sweep {
     /// Seed of random pairs, of the link, and of registers that no reset reaches
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = super::usage::seed)]
     seed: u64,
-    /// Folder to write: manifest.json (JSON of all), sweep.csv, and measurements/, from which the same command resumes
+    /// Folder to write: report.html (table and plot), throughput.svg, manifest.json (JSON of all), sweep.csv, and
+    /// measurements/, from which the same command resumes
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     /// Write into the folder even if afu did not make it, or if it holds another sweep, whose rows are replaced; other

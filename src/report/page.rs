@@ -26,6 +26,7 @@ code,pre{font-family:ui-monospace,'DejaVu Sans Mono',monospace;font-size:.92em}
 pre{overflow-x:auto;border:1px solid var(--grid);padding:.7rem}
 a{color:inherit}
 h3{font-size:1rem;margin-bottom:.3rem}
+.narrow{display:none}@media (max-width:40rem){.broad{display:none}.narrow{display:block}}
 th[aria-sort]::after{content:\" ↑\"}th[aria-sort=descending]::after{content:\" ↓\"}
 #points{font-size:.85em}#points th{cursor:pointer;white-space:normal;vertical-align:bottom}#points td{white-space:nowrap}
 #points tr.chosen td{background:var(--grid)}
@@ -76,6 +77,13 @@ pub(crate) fn base64(bytes: &[u8]) -> String {
         (0..4).for_each(|place| text.push(if place <= three.len() { digit(place) } else { '=' }));
     }
     text
+}
+
+/// A plot, drawn twice: for a wide screen and for a narrow one, where its text would be too small otherwise.
+pub(crate) fn figure(plot: &plot::Plot) -> Markup {
+    html! {
+        figure { div.broad { (plot.figure()) } div.narrow { (plot.clone().narrow().figure()) } }
+    }
 }
 
 /// A table: a caption, headings, and rows. Columns but the first `words` are figures, on the right.

@@ -1,5 +1,6 @@
 //! The same job for many AFUs: what each number of SCPUs gives, in a table that grows row by row and is resumed.
 
+mod page;
 mod results;
 mod row;
 

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Row, Task, fingerprint};
+use super::{Row, Task, fingerprint, page};
 use crate::config::Config;
 use crate::report::table::table;
 use crate::report::{folder, manifest};
@@ -16,9 +16,12 @@ use crate::store::sha256;
 pub const SCHEMA: &str = "contact-afu/sweep/1";
 /// The rows alone, in a sweep's folder.
 const CSV: &str = "sweep.csv";
+/// For people: a page, and its first plot alone.
+const PAGE: &str = "report.html";
+const PICTURE: &str = "throughput.svg";
 
-/// A sweep: what every AFU was given, and the rows so far. Its folder holds it twice: as `manifest.json`, which it is
-/// known by, and the rows alone as `sweep.csv`.
+/// A sweep: what every AFU was given, and the rows so far. Its folder has `manifest.json`, by which it is known,
+/// the rows alone as `sweep.csv`, the page `report.html` and its plot `throughput.svg`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SweepResults {
@@ -142,7 +145,9 @@ impl SweepResults {
     pub fn save(&self, folder: &Path) -> Result<(), folder::Error> {
         folder::create(folder)?;
         folder::replace_json(&folder.join(manifest::NAME), self)?;
-        folder::replace_csv(&folder.join(CSV), |out| self.rows.iter().try_for_each(|row| out.serialize(row)))
+        folder::replace_csv(&folder.join(CSV), |out| self.rows.iter().try_for_each(|row| out.serialize(row)))?;
+        folder::replace_file(&folder.join(PICTURE), page::throughput(self).svg().as_bytes())?;
+        folder::replace_file(&folder.join(PAGE), page::page(self).as_bytes())
     }
 
     /// The table for people.

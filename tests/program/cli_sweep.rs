@@ -39,6 +39,15 @@ fn a_sweep_has_a_row_for_each_size_and_is_resumed() {
     let csv = fs::read_to_string(room.path().join("out/sweep.csv")).expect("written");
     assert!(csv.starts_with("scpus,interval,pairs,") && csv.lines().count() == 3, "{csv}");
 
+    let page = fs::read_to_string(room.path().join("out/report.html")).expect("written");
+    let reached = page.split("<g data-series=\"interval 1\">").nth(1).and_then(|rest| rest.split("</g>").next());
+    assert_eq!(reached.expect("the line of what was reached").matches("<circle").count(), 2, "a point per row");
+    for words in ["link limit", "interval 1, N/1 per cycle", "million pairs per second"] {
+        assert!(page.contains(words), "{words}");
+    }
+    assert!(!page.contains("LUT per SCPU") && !page.contains("NaN"), "nothing was counted");
+    assert!(fs::read_to_string(room.path().join("out/throughput.svg")).expect("written").contains("link limit"));
+
     let manifest = || fs::read(room.path().join("out/manifest.json")).expect("written");
     let before = manifest();
     let read: Value = serde_json::from_slice(&before).expect("JSON");
