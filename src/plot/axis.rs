@@ -65,6 +65,21 @@ pub(super) struct Fitted {
 }
 
 impl Fitted {
+    /// Leaves out every other tick until there is room between any two neighbours: their places and words.
+    pub(super) fn thin(&mut self, has_room: impl Fn([(f64, &str); 2]) -> bool) {
+        loop {
+            let placed: Vec<(f64, &str)> = self.ticks.iter().map(|(v, text)| (self.place(*v), text.as_str())).collect();
+            if placed.windows(2).all(|two| has_room([two[0], two[1]])) {
+                return;
+            }
+            let mut keep = false;
+            self.ticks.retain(|_| {
+                keep = !keep;
+                keep
+            });
+        }
+    }
+
     /// The least and the largest value.
     pub(super) const fn ends(&self) -> [f64; 2] {
         [self.least, self.most]

@@ -3,14 +3,14 @@
 use maud::{Markup, PreEscaped, html};
 
 use super::layout::{Layout, SAMPLE};
-use super::style::{COLOURS, STYLE};
-use super::{Marker, Plot, Series, names};
+use super::style::{FONT, LIGHT, STYLE};
+use super::{Line, Marker, Plot, Series, names};
 
 pub(super) fn file(plot: &Plot) -> Markup {
     let layout = Layout::new(plot);
     html! {
         svg xmlns="http://www.w3.org/2000/svg" class="plot" viewBox=(view(plot, &layout)) width=(plot.width)
-            height=(layout.height) role="img" aria-label=(plot.title) {
+            height=(layout.height) font-family=(FONT) font-size="12" role="img" aria-label=(plot.title) {
             style { (PreEscaped(STYLE)) }
             (inside(plot, &layout))
         }
@@ -20,7 +20,7 @@ pub(super) fn file(plot: &Plot) -> Markup {
 pub(super) fn figure(plot: &Plot) -> Markup {
     let layout = Layout::new(plot);
     html! {
-        svg class="plot" viewBox=(view(plot, &layout)) width="100%" role="img" aria-label=(plot.title)
+        svg class="plot" viewBox=(view(plot, &layout)) width="100%" font-family=(FONT) font-size="12" role="img" aria-label=(plot.title)
             data-area=(area(&layout)) {
             (inside(plot, &layout))
         }
@@ -40,33 +40,36 @@ fn area(layout: &Layout) -> String {
 fn inside(plot: &Plot, layout: &Layout) -> Markup {
     let Layout { left, top, wide, high, height, .. } = *layout;
     let (right, bottom) = (left + wide, top + high);
-    let class = |series: &Series| format!("c{}", series.colour % COLOURS);
     html! {
-        rect class="ground" width=(plot.width) height=(height) {}
-        text class="title" x=(left) y="20" { (plot.title) }
+        rect class="ground" width=(plot.width) height=(height) fill=(LIGHT.ground) {}
+        text class="title" x=(left) y="20" fill=(LIGHT.ink) font-size="14" font-weight="600" { (plot.title) }
         g class="ticks" {
             @for (value, words) in &layout.x.ticks {
                 @let x = round(left + layout.x.place(*value) * wide);
-                path class="grid" d=(format!("M{x} {top}V{bottom}")) {}
-                text class="soft" x=(x) y=(bottom + 18.0) text-anchor="middle" { (words) }
+                (grid(&format!("M{x} {top}V{bottom}")))
+                text class="soft" x=(x) y=(bottom + 18.0) text-anchor="middle" fill=(LIGHT.soft) { (words) }
             }
             @for (value, words) in &layout.y.ticks {
                 @let y = round(top + (1.0 - layout.y.place(*value)) * high);
-                path class="grid" d=(format!("M{left} {y}H{right}")) {}
-                text class="soft" x=(left - 8.0) y=(y + 4.0) text-anchor="end" { (words) }
+                (grid(&format!("M{left} {y}H{right}")))
+                text class="soft" x=(left - 8.0) y=(y + 4.0) text-anchor="end" fill=(LIGHT.soft) { (words) }
             }
         }
-        path class="axis" d=(format!("M{left} {top}V{bottom}H{right}")) {}
-        text x=(left + wide / 2.0) y=(bottom + 38.0) text-anchor="middle" { (plot.x.label) }
-        text transform=(format!("translate(14 {}) rotate(-90)", top + high / 2.0)) text-anchor="middle" {
+        path class="axis" d=(format!("M{left} {top}V{bottom}H{right}")) fill="none" stroke=(LIGHT.soft) {}
+        text x=(left + wide / 2.0) y=(bottom + 38.0) text-anchor="middle" fill=(LIGHT.ink) { (plot.x.label) }
+        text transform=(format!("translate(14 {}) rotate(-90)", top + high / 2.0)) text-anchor="middle" fill=(LIGHT.ink) {
             (plot.y.label)
         }
         @for (mark, (x, y)) in plot.marks.iter().zip(&layout.marks) {
             @let at = round(left + layout.x.place(mark.at) * wide);
-            @let colour = mark.colour.map_or("ink".to_owned(), |colour| format!("c{}", colour % COLOURS));
+            @let (class, colour) = match mark.colour {
+                None => ("ink".to_owned(), LIGHT.soft),
+                Some(colour) => (class(colour), LIGHT.series(colour)),
+            };
             @if plot.x.holds(mark.at) && (left..=right).contains(&at) {
-                path class={ "mark " (colour) } d=(format!("M{at} {}V{bottom}", y + 4.0)) {}
-                text x=(round(*x)) y=(y) text-anchor="middle" { (mark.label) }
+                path class={ "mark " (class) } d=(format!("M{at} {}V{bottom}", y + 4.0)) stroke=(colour)
+                    stroke-dasharray="3 3" {}
+                text x=(round(*x)) y=(y) text-anchor="middle" fill=(LIGHT.ink) { (mark.label) }
             }
         }
         // An svg within one cuts off what lies beyond it; a margin keeps signs on the border whole.
@@ -74,12 +77,10 @@ fn inside(plot: &Plot, layout: &Layout) -> Markup {
             viewBox=(format!("{} {} {} {}", left - 5.0, top - 5.0, wide + 10.0, high + 10.0)) {
             @for series in &plot.series {
                 g data-series=(series.name) {
-                    @if let Some(line) = series.line {
-                        path class={ "line " (class(series)) " " (format!("{line:?}")) } d=(path(plot, series, layout)) {}
-                    }
+                    @if let Some(style) = series.line { (line(series, style, &path(plot, series, layout))) }
                     @if let Some(marker) = series.marker {
                         @for (number, &(x, y)) in series.points.iter().enumerate().filter(|(_, p)| shown(plot, p)) {
-                            (pointed(series.names.get(number), layout.at(x, y), sign(marker, layout.at(x, y), &class(series))))
+                            (pointed(series.names.get(number), layout.at(x, y), sign(marker, layout.at(x, y), series.colour)))
                         }
                     }
                 }
@@ -88,16 +89,35 @@ fn inside(plot: &Plot, layout: &Layout) -> Markup {
         (beside(plot, layout))
         g class="legend" {
             @for (series, &(x, y)) in plot.series.iter().zip(&layout.legend) {
-                @if let Some(line) = series.line {
-                    path class={ "line " (class(series)) " " (format!("{line:?}")) }
-                        d=(format!("M{x} {}h{SAMPLE}", y - 4.0)) {}
-                }
+                @if let Some(style) = series.line { (line(series, style, &format!("M{x} {}h{SAMPLE}", y - 4.0))) }
                 @if let Some(marker) = series.marker {
-                    (sign(marker, (x + SAMPLE / 2.0, y - 4.0), &class(series)))
+                    (sign(marker, (x + SAMPLE / 2.0, y - 4.0), series.colour))
                 }
-                text x=(x + SAMPLE + 8.0) y=(y) { (series.name) }
+                text x=(x + SAMPLE + 8.0) y=(y) fill=(LIGHT.ink) { (series.name) }
             }
         }
+    }
+}
+
+/// The class of a series' colour: a dark ground replaces it by another.
+fn class(colour: usize) -> String {
+    format!("c{}", LIGHT.place(colour))
+}
+
+fn grid(path: &str) -> Markup {
+    html! { path class="grid" d=(path) fill="none" stroke=(LIGHT.grid) {} }
+}
+
+fn line(series: &Series, style: Line, path: &str) -> Markup {
+    let (dashes, cap) = match style {
+        Line::Solid => (None, None),
+        Line::Dashed => (Some("8 4"), None),
+        Line::Dotted => (Some("1.5 4"), Some("round")),
+    };
+    html! {
+        path class={ "line " (class(series.colour)) " " (format!("{style:?}")) } d=(path) fill="none"
+            stroke=(LIGHT.series(series.colour)) stroke-width="2" stroke-linejoin="round" stroke-dasharray=[dashes]
+            stroke-linecap=[cap] {}
     }
 }
 
@@ -107,7 +127,7 @@ fn pointed(name: Option<&String>, (x, y): (f64, f64), sign: Markup) -> Markup {
     html! {
         g class="point" data-point=(name) tabindex="0" {
             title { (name) }
-            circle class="around" cx=(round(x)) cy=(round(y)) r="8" {}
+            circle class="around" cx=(round(x)) cy=(round(y)) r="8" fill="none" pointer-events="all" {}
             (sign)
         }
     }
@@ -126,7 +146,12 @@ fn beside(plot: &Plot, layout: &Layout) -> Markup {
     html! {
         g class="names" {
             @for ((_, _, name), place) in points.iter().zip(places) {
-                @if let Some((x, y)) = place { text x=(round(x)) y=(round(y)) { (name) } }
+                @if let Some((x, y)) = place {
+                    // Twice: the ground around a name parts it from lines in viewers that know no order of painting too.
+                    text class="halo" aria-hidden="true" x=(round(x)) y=(round(y)) fill=(LIGHT.ground)
+                        stroke=(LIGHT.ground) stroke-width="3" font-size="11" { (name) }
+                    text x=(round(x)) y=(round(y)) fill=(LIGHT.ink) font-size="11" { (name) }
+                }
             }
         }
     }
@@ -156,14 +181,18 @@ fn path(plot: &Plot, series: &Series, layout: &Layout) -> String {
     path
 }
 
-fn sign((marker, hollow): (Marker, bool), (x, y): (f64, f64), colour: &str) -> Markup {
+fn sign((marker, hollow): (Marker, bool), (x, y): (f64, f64), colour: usize) -> Markup {
     let (x, y) = (round(x), round(y));
-    let class = format!("sign {} {colour}", if hollow { "hollow" } else { "full" });
+    let class = format!("sign {} {}", if hollow { "hollow" } else { "full" }, class(colour));
+    let stroke = LIGHT.series(colour);
+    let fill = if hollow { LIGHT.ground } else { stroke };
     let corners = match marker {
-        Marker::Circle => return html! { circle class=(class) cx=(x) cy=(y) r="3.5" {} },
+        Marker::Circle => {
+            return html! { circle class=(class) cx=(x) cy=(y) r="3.5" fill=(fill) stroke=(stroke) stroke-width="1.5" {} };
+        }
         Marker::Square => "m-3.2 -3.2h6.4v6.4h-6.4z",
         Marker::Diamond => "m0 -4.4l4.4 4.4l-4.4 4.4l-4.4 -4.4z",
         Marker::Triangle => "m0 -4.4l4.2 7.4h-8.4z",
     };
-    html! { path class=(class) d=(format!("M{x} {y}{corners}")) {} }
+    html! { path class=(class) d=(format!("M{x} {y}{corners}")) fill=(fill) stroke=(stroke) stroke-width="1.5" {} }
 }

@@ -41,12 +41,13 @@ pub(super) struct Layout {
 impl Layout {
     pub(super) fn new(plot: &Plot) -> Self {
         let points = || plot.series.iter().flat_map(|series| &series.points);
-        let x = plot.x.fit(points().map(|p| p.0).chain(plot.marks.iter().map(|mark| mark.at)));
+        let mut x = plot.x.fit(points().map(|p| p.0).chain(plot.marks.iter().map(|mark| mark.at)));
         let y = plot.y.fit(points().map(|p| p.1));
         let widest = y.ticks.iter().map(|(_, text)| width(text)).fold(0.0, f64::max);
         let (left, right) = (34.0 + widest, 32.0);
         let width_of_all = plot.width;
         let wide = width_of_all - left - right;
+        x.thin(|[a, b]| (b.0 - a.0) * wide >= (width(a.1) + width(b.1)) / 2.0 + 4.0);
 
         // Words of marks: in the first row where they do not touch their neighbour.
         let mut order: Vec<usize> = (0..plot.marks.len()).collect();

@@ -1,12 +1,14 @@
 //! Plots as SVG: axes, ticks, series of lines and points, marks, and a legend below, where it covers nothing.
 //!
-//! [`Plot::svg`] is a file of its own; [`Plot::figure`] goes into a page that has [`STYLE`] in its head. Colours are
-//! CSS variables, so both follow a reader's light or dark scheme. Imports nothing of ours.
+//! [`Plot::svg`] is a file of its own; [`Plot::figure`] goes into a page that has [`STYLE`] in its head. Both follow a
+//! reader's light or dark scheme, and are light in a viewer that knows no style. Imports nothing of ours.
 
 mod axis;
 mod draw;
 mod layout;
 mod names;
+#[cfg(test)]
+pub(crate) mod overlap;
 mod series;
 mod style;
 
@@ -118,6 +120,38 @@ mod tests {
             assert!(svg.contains(text), "{text}: {svg}");
         }
         assert!(!svg.contains("lost"), "a point without a place has no name either");
+    }
+
+    /// A viewer that knows no variables of CSS draws nothing where a colour is one.
+    #[test]
+    fn every_element_has_its_colours_as_attributes() {
+        let named = Series::new("t", 8, [(3.0, 3.0)]).hollow(Marker::Circle).named(["a name".to_owned()]);
+        let svg = plot(Scale::Linear).with(named).svg();
+        let (style, drawn) = svg.split_once("</style>").expect("a style");
+        assert!(!svg.contains("var(") && style.contains("prefers-color-scheme:dark"), "{style}");
+        let elements = drawn
+            .split('<')
+            .filter(|element| ["path ", "circle ", "text ", "rect "].iter().any(|kind| element.starts_with(kind)));
+        for element in elements {
+            let is_line = element.contains("class=\"mark ");
+            assert!(element.contains(" fill=\"") || is_line && element.contains(" stroke=\"#"), "{element}");
+            assert!(element.starts_with("text ") || element.contains("\"#") || element.contains("around"), "{element}");
+        }
+    }
+
+    #[test]
+    fn no_words_lie_on_others_in_a_broad_or_a_narrow_plot() {
+        let marked = |scale| {
+            let points: Vec<(f64, f64)> = (1..12).map(|i| (f64::from(i * i * i) * 70.0, f64::from(i))).collect();
+            let names: Vec<String> = (1..12).map(|i| format!("point {i}")).collect();
+            plot(scale)
+                .with(Series::new("named", 2, points).marker(Marker::Square).named(names))
+                .marked(Mark::new(260.0, "near"))
+        };
+        for scale in [Scale::Linear, Scale::Log] {
+            overlap::check(&marked(scale).svg());
+            overlap::check(&marked(scale).narrow().svg());
+        }
     }
 
     #[test]
