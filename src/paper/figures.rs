@@ -25,9 +25,9 @@ pub fn figure7(results: &Experiment) -> Plot {
 
 /// Both figures divided by the number of collisions: where the set-up is won back, and what is left.
 pub fn per_collision(results: &Experiment) -> Plot {
-    let axes = (Axis::new("collisions in a transaction", Scale::Log), Axis::new("ns a collision", Scale::Log));
+    let axes = (Axis::new("collisions in a transaction", Scale::Log), Axis::new("ns per collision", Scale::Log));
     let all: Vec<&Joined> = results.points.iter().collect();
-    let mut plot = Plot::new("Time a collision", axes.0, axes.1);
+    let mut plot = Plot::new("Time per collision", axes.0, axes.1);
     for series in series(results, &all, |point, total| total / point.collisions as f64) {
         plot = plot.with(series);
     }
@@ -79,6 +79,7 @@ mod tests {
         let results = example();
         for plot in [figure6(&results), figure7(&results), per_collision(&results)] {
             let svg = plot.svg();
+            crate::plot::overlap::check(&svg);
             for words in
                 [": measured here", ": simulated, harp1 at 200 MHz", "the paper&#39;s text", "the paper's text"]
             {

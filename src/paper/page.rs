@@ -17,7 +17,7 @@ pub fn page(results: &Experiment, claims: &[Claim], paper: &Published) -> String
         h2 { "Figures" }
         (legend(&results.settings))
         @for plot in [figure6(results), figure7(results), per_collision(results)] { figure { (plot.figure()) } }
-        h2 { "What of the paper’s text does not add up" }
+        h2 { "What in the paper’s text is inconsistent" }
         (doubts(claims))
         h2 { "How it was done" }
         (method(results))
@@ -52,9 +52,9 @@ fn sums(s: &Summary, settings: &Settings, paper: &Published) -> Markup {
     ];
     let caption = format!("At {} collisions in one transaction", grouped(s.collisions as u64));
     html! {
-        h2 { "What it comes to" }
-        (table(&caption, &["who", "how known", "ns a collision", "time over the AFU’s", "AFU faster from"], 2, &rows))
-        p { "The link model allows " (format!("{:.2}", s.link_limit_ns)) " ns a collision; the AFU reaches "
+        h2 { "Results" }
+        (table(&caption, &["who", "how known", "ns per collision", "time over the AFU’s", "AFU faster from"], 2, &rows))
+        p { "The link model allows " (format!("{:.2}", s.link_limit_ns)) " ns per collision; the AFU reaches "
             (format!("{:.1}", 100.0 * s.link_share)) " % of that, set-up apart. “AFU faster from” is the least number of "
             "collisions tried from which on the AFU takes less time at every point. " b { "A measured time and a simulated "
             "one are not of the same kind" } ": the simulated clock and link are assumptions, of hardware of 2014; the "
@@ -63,7 +63,7 @@ fn sums(s: &Summary, settings: &Settings, paper: &Published) -> Markup {
             "to binary32, and spheres that touch with next to no depth may then be apart." }
         @if s.speed_up_over_batch < 1.0 {
             p { "Against the same arithmetic on this processor, in batch, the AFU loses: "
-                (format!("{:.1}", 1.0 / s.speed_up_over_batch)) " times the time. The link carries 64 bytes a collision, and "
+                (format!("{:.1}", 1.0 / s.speed_up_over_batch)) " times the time. The link carries 64 bytes per collision, and "
                 "that is what it takes." }
         }
     }
@@ -74,7 +74,7 @@ fn legend(settings: &Settings) -> Markup {
         p { b { "Solid" } " lines were measured on this machine (" (settings.processor) "), " b { "dashed" } " ones simulated: "
             "cycles of the Verilog, told in time at an assumed " (settings.clock_mhz) " MHz over the link model "
             code { (settings.link) } ", with " (format!("{:.0}", settings.set_up_ns)) " ns of set-up and tear-down. "
-            b { "Dotted" } " ones are the paper’s text, not its plots: 102 and 86 ns a collision, and the set-up that its "
+            b { "Dotted" } " ones are the paper’s text, not its plots: 102 and 86 ns per collision, and the set-up that its "
             "crossover implies." }
     }
 }
@@ -93,10 +93,10 @@ fn method(results: &Experiment) -> Markup {
         ul {
             li { "Collisions: the first " (grouped(s.n_col_max as u64)) " " (s.t_col) " ones of the diamond with hMax " (s.h_max)
                 " and dSph " (s.d_sph) ", from " (grouped(s.steps as u64)) " steps (every "
-                (grouped(s.steps_of_a_run as u64)) " the diamond is built anew: in the end its spheres fly apart). A transaction gathers "
+                (grouped(s.steps_of_a_run as u64)) " the diamond is rebuilt: in the end its spheres fly apart). A transaction gathers "
                 "those of several steps." }
             li { "ODE, the paper’s rule: each collision executed " (s.executions) " times within the simulation, and the averages "
-                "added. A look at the clock takes " (s.clock_ns) " ns here, and each average has a part of it." }
+                "added. Reading the clock takes " (s.clock_ns) " ns here, and each average has a part of it." }
             li { "ODE, loop of calls: dCollide on all collisions one after the other, timed as a whole; the shortest of several "
                 "passes. So is the f32 kernel in batch (" (s.level) ", one thread, in its own layout)." }
             li { "AFU: " (s.scpus) " SCPUs, " (s.profile) " arithmetic, " (s.shell) " shell, the Verilog simulated for every point; no point is "
@@ -117,7 +117,7 @@ fn points(results: &Experiment) -> Markup {
         "AFU cycles",
         "AFU",
         "AFU with set-up",
-        "link allows",
+        "link limit",
     ];
     let row = |p: &&Joined| {
         let us = |ns: f64| format!("{:.2}", ns / 1000.0);

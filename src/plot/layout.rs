@@ -66,8 +66,9 @@ impl Layout {
             places[i] = (centre, row);
         }
         let rows = ends.len();
-        let top = 34.0 + rows as f64 * ROW;
-        let marks = places.into_iter().map(|(centre, row)| (centre, top - 6.0 - row as f64 * ROW)).collect();
+        // Above the words of the topmost tick, which stand half a line above their own.
+        let top = 34.0 + rows as f64 * ROW + if rows > 0 { 4.0 } else { 0.0 };
+        let marks = places.into_iter().map(|(centre, row)| (centre, top - 10.0 - row as f64 * ROW)).collect();
 
         let high = INNER;
         let mut legend = Vec::new();

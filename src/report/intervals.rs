@@ -148,6 +148,8 @@ mod tests {
         let page = page(&all);
         assert!(page.contains("| 1 | 200 | 70 | 1000 | 1.00 | 2000 | 1.00 | 33 | 0 | 1100 | 1.00 | 190 |"), "{page}");
         assert!(page.contains("| 8 | 200 | 70 | 300 | 0.30 | 600 | 0.30 | 4 | 0 | 330 | 0.30 | 210 |"), "{page}");
-        assert!(picture(&all).svg().contains("flip-flops"));
+        let svg = picture(&all).svg();
+        assert!(svg.contains("flip-flops"));
+        crate::plot::overlap::check(&svg);
     }
 }

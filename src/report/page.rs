@@ -19,6 +19,7 @@ h1{font-size:1.6rem;line-height:1.2}h2{font-size:1.2rem;margin-top:2.2rem}
 p.soft,caption,figcaption{color:var(--soft)}caption{text-align:left;padding-bottom:.4rem}
 figure{margin:1.5rem 0}figure svg{display:block;max-width:100%;height:auto;border:1px solid var(--grid)}
 div.wide{overflow-x:auto}
+@media (max-width:40rem){body{padding:1rem}figure{overflow-x:auto}figure>svg.plot{min-width:38rem}}
 table{border-collapse:collapse;font-variant-numeric:tabular-nums;margin:.8rem 0}
 th,td{padding:.3rem .7rem;border-bottom:1px solid var(--grid);text-align:left;vertical-align:top}
 td.n,th.n{text-align:right;white-space:nowrap}

@@ -83,6 +83,28 @@ fn files_hold_every_point_and_steps_are_computed() {
     }
 }
 
+#[test]
+fn the_picture_in_the_docs_is_that_of_the_committed_study() {
+    let room = tempfile::tempdir().expect("a temporary folder");
+    write(&results(), room.path()).expect("written");
+    let drawn = fs::read_to_string(room.path().join("front.svg")).expect("written");
+    expect_test::expect_file!["../../docs/img/accuracy.svg"].assert_eq(&drawn);
+}
+
+#[test]
+fn the_columns_that_the_page_is_about_come_first() {
+    let made = page(&results());
+    let heading = between(&made, "<thead>", "</thead>");
+    let names: Vec<&str> = heading.split("</th>").filter_map(|cell| cell.rsplit('>').next()).collect();
+    assert_eq!(names[..4], ["configuration", "largest error", "latency, ns", "link, ns per pair"], "{names:?}");
+    // Errors of billions of units are written as powers of ten, not with all of their digits.
+    let body = between(&made, "<tbody>", "</tbody>");
+    let cells: Vec<&str> = body.split("</td>").filter_map(|cell| cell.rsplit('>').next()).collect();
+    let whole = |cell: &&str| cell.split_once('.').filter(|_| !cell.contains('e')).map_or(0, |(whole, _)| whole.len());
+    assert!(cells.iter().any(|cell| cell.ends_with("e10")), "no error of billions of units is left to show");
+    assert!(cells.iter().all(|cell| whole(cell) <= 6 || cell.parse::<f64>().is_err()));
+}
+
 /// With clocks of place and route the front is solid, through filled points alone, and the others are hollow.
 #[test]
 fn a_routed_point_is_filled_and_on_a_solid_front() {
@@ -103,7 +125,7 @@ fn a_routed_point_is_filled_and_on_a_solid_front() {
     assert!(opened.console.is_empty(), "{:#?}", opened.console);
     let front = between(&opened.dom, "<g data-series=\"front, placed and routed\">", "</g>");
     assert!(front.contains("Solid") && !front.contains("Dotted"), "{front}");
-    let of_model = "<g data-series=\"clock by the delay model\">";
+    let of_model = "<g data-series=\"clock by the delay model, not routed\">";
     let drawn = between(&opened.dom, "<g data-series=\"placed and routed\">", of_model);
     assert_eq!(drawn.matches("data-point=").count(), 3, "{drawn}");
     assert!(drawn.contains("data-point=\"wide\"") && !drawn.contains("hollow"), "{drawn}");

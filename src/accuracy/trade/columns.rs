@@ -11,6 +11,8 @@ pub(super) enum Show {
     Count,
     /// With two decimals.
     Time,
+    /// With two decimals, and from a thousand on as an error.
+    Units,
     /// With two significant digits and a power of ten.
     Error,
 }
@@ -21,7 +23,7 @@ pub(super) struct Column {
     pub key: &'static str,
     /// Its heading for people.
     pub heading: &'static str,
-    /// The figure; none where it was not measured.
+    /// The figure; `None` if it was not measured.
     pub value: fn(&Study, &Point) -> Option<f64>,
     /// How it is written.
     pub show: Show,
@@ -33,7 +35,8 @@ impl Column {
         let Some(value) = (self.value)(results, point) else { return "–".to_owned() };
         match self.show {
             Show::Count => grouped(value as u64),
-            Show::Time => format!("{value:.2}"),
+            Show::Units if value >= 1000.0 => format!("{value:.1e}"),
+            Show::Time | Show::Units => format!("{value:.2}"),
             Show::Error if value == 0.0 => "0".to_owned(),
             Show::Error => format!("{value:.1e}"),
         }
@@ -58,34 +61,37 @@ fn ulps(results: &Study, point: &Point, which: usize) -> Option<f64> {
     [errors.depth_ulps, errors.normal_ulps, errors.position_ulps].get(which).map(|spread| spread.largest)
 }
 
-/// All of them.
+/// What the page is about, in the order in which it has them; the other columns follow.
+pub(super) const FIRST: [&str; 7] = ["worst", "lone_ns", "link_ns", "device_ns", "luts", "wrong", "bad"];
+
+/// All columns, in the order of the CSV.
 pub(super) const COLUMNS: [Column; 26] = [
     column("wrong", "wrong decisions", Show::Count, |_, p| Some(p.wrong() as f64)),
     column("missed", "missed", Show::Count, |_, p| Some(p.tally().missed as f64)),
-    column("false", "false", Show::Count, |_, p| Some(p.tally().false_hits as f64)),
+    column("false", "false positives", Show::Count, |_, p| Some(p.tally().false_hits as f64)),
     column("bad", "gross failures", Show::Count, |_, p| Some(p.tally().bad as f64)),
     column("worst", "largest error", Show::Error, |r, p| Some(r.worst(p))),
     column("p999", "99.9 % within", Show::Error, |r, p| Some(p.errors(&r.scenes()).contact.p999)),
     column("typical", "mean error", Show::Error, |r, p| Some(r.typical(p))),
-    column("depth_ulps", "depth, units", Show::Time, |r, p| ulps(r, p, 0)),
-    column("normal_ulps", "normal, units", Show::Time, |r, p| ulps(r, p, 1)),
-    column("position_ulps", "position, units", Show::Time, |r, p| ulps(r, p, 2)),
-    column("lone_cycles", "lone pair, cycles", Show::Count, |_, p| Some(p.cycles.lone as f64)),
-    column("lone_ns", "lone pair, ns", Show::Time, |r, p| Time::Lone.of(p, r)),
-    column("compute_ns", "an SCPU, ns a pair", Show::Time, |_, p| Some(p.compute_ns())),
-    column("device_ns", "full device, ns a pair", Show::Time, |r, p| Time::Device.of(p, r)),
-    column("device_scpus", "SCPUs in it", Show::Count, |r, p| p.on_device(r.target).map(|scpus| scpus as f64)),
-    column("device_pairs_per_second", "its pairs a second", Show::Count, |r, p| {
+    column("depth_ulps", "depth, ulp", Show::Units, |r, p| ulps(r, p, 0)),
+    column("normal_ulps", "normal, ulp", Show::Units, |r, p| ulps(r, p, 1)),
+    column("position_ulps", "position, ulp", Show::Units, |r, p| ulps(r, p, 2)),
+    column("lone_cycles", "latency, cycles", Show::Count, |_, p| Some(p.cycles.lone as f64)),
+    column("lone_ns", "latency, ns", Show::Time, |r, p| Time::Lone.of(p, r)),
+    column("compute_ns", "one SCPU, ns per pair", Show::Time, |_, p| Some(p.compute_ns())),
+    column("device_ns", "full device, ns per pair", Show::Time, |r, p| Time::Device.of(p, r)),
+    column("device_scpus", "SCPUs per device", Show::Count, |r, p| p.on_device(r.target).map(|scpus| scpus as f64)),
+    column("device_pairs_per_second", "its pairs per second", Show::Count, |r, p| {
         Time::Device.of(p, r).map(|ns| 1e9 / ns)
     }),
-    column("link_ns", "link, ns a pair", Show::Time, |r, p| Time::Link.of(p, r)),
+    column("link_ns", "link, ns per pair", Show::Time, |r, p| Time::Link.of(p, r)),
     column("modelled_mhz", "clock by model, MHz", Show::Count, |_, p| Some(p.modelled_mhz.round())),
     column("routed_mhz", "clock routed, MHz", Show::Count, |_, p| p.routed_mhz().map(f64::round)),
     column("luts", "LUTs", Show::Count, |_, p| area(p, |a| a.luts)),
     column("ffs", "flip-flops", Show::Count, |_, p| area(p, |a| a.ffs)),
     column("dsps", "DSPs", Show::Count, |_, p| area(p, |a| a.dsps)),
     column("brams", "memories", Show::Count, |_, p| area(p, |a| a.brams)),
-    column("software_ns", "software, ns a pair", Show::Time, |_, p| p.software_ns),
-    column("drift", "diamond after 300 steps, radii off", Show::Error, |_, p| p.drift.map(|drift| drift.mean)),
+    column("software_ns", "software, ns per pair", Show::Time, |_, p| p.software_ns),
+    column("drift", "drift of the diamond, radii", Show::Error, |_, p| p.drift.map(|drift| drift.mean)),
     column("asked_mhz", "clock asked, MHz", Show::Count, |_, p| Some(p.config.clock_mhz.round())),
 ];

@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 /// A time that points are compared by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Time {
-    /// A lone pair, line in to line out.
+    /// The latency of a single pair, line in to line out.
     Lone,
     /// A pair through a device full of SCPUs.
     Device,
@@ -33,8 +33,8 @@ impl Time {
     pub(super) fn words(self) -> &'static str {
         match self {
             Self::Lone => "latency",
-            Self::Device => "time a pair of a full device",
-            Self::Link => "time a pair over the link",
+            Self::Device => "time per pair of a full device",
+            Self::Link => "time per pair over the link",
         }
     }
 }

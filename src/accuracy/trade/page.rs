@@ -1,13 +1,13 @@
 //! `report.html`: the pictures, the steps along their fronts, and a table that sorts.
 
-use super::columns::{COLUMNS, Column};
+use super::columns::{COLUMNS, Column, FIRST};
 use super::front::{Time, front, step};
 use super::{GAP, LAYERS, Point, STEPS, Study, picture};
 use crate::report::page;
 use crate::report::table::grouped;
 use maud::{Markup, html};
 
-/// The page's own script: pointing shows a row, a heading sorts.
+/// The page's own script: hovering over a point shows its row, a heading sorts.
 const SCRIPT: &str = include_str!("report.js");
 
 /// The page.
@@ -15,12 +15,12 @@ pub fn page(results: &Study) -> String {
     let body = html! {
         p { "Each point is a configuration of the AFU: its error, measured against the truth in arbitrary precision, over "
             "its time, counted by simulating its Verilog. Down is more accurate, left is faster. A hollow one is at the delay "
-            "model’s clock, which place and route would lower. Point at a point and its row stands below." }
+            "model’s clock, which place and route would lower. Hover over a point to see its row." }
         (sentences(results))
         @for time in results.times() { figure { (picture(results, time).figure()) } }
-        aside #row aria-live="polite" { span { small { "Point at a point, and its row stands here." } } }
+        aside #row aria-live="polite" { span { small { "Hover over a point to see its row." } } }
         h2 { "Points" }
-        p.soft { "A click on a heading sorts. Errors are of " (results.scenes().join(" and ")) ": of a contact the largest of the "
+        p.soft { "Click a heading to sort. Errors are of " (results.scenes().join(" and ")) ": of a contact the largest of the "
             "depth’s (relative to the sum of the radii), the normal’s (to 1) and the position’s (to the largest coordinate or "
             "radius), and in units in the last place of binary32. Decisions and gross failures are of all "
             (grouped(results.pairs())) " pairs." }
@@ -61,8 +61,8 @@ fn table(results: &Study) -> Markup {
             table #points {
                 thead { tr {
                     th { "configuration" }
-                    th { "axis" }
                     @for column in known(results) { th.n { (column.heading) } }
+                    th { "axis" }
                 } }
                 tbody { @for point in &results.points { (row(results, point)) } }
             }
@@ -70,22 +70,24 @@ fn table(results: &Study) -> Markup {
     }
 }
 
-/// The columns in which anything is known.
+/// The columns in which anything is known: what the page is about, then the others.
 fn known(results: &Study) -> impl Iterator<Item = &'static Column> {
     let is_known = |column: &&Column| results.points.iter().any(|point| (column.value)(results, point).is_some());
-    COLUMNS.iter().filter(is_known)
+    let first = FIRST.iter().filter_map(|key| COLUMNS.iter().find(|column| column.key == *key));
+    let others = COLUMNS.iter().filter(|column| !FIRST.contains(&column.key));
+    first.chain(others).filter(is_known)
 }
 
 fn row(results: &Study, point: &Point) -> Markup {
     html! {
         tr data-name=(point.name) {
             td { (point.name) }
-            td { (point.axis) }
             @for column in known(results) {
                 td.n data-v=((column.value)(results, point).map_or(String::new(), |value| value.to_string())) {
                     (column.text(results, point))
                 }
             }
+            td { (point.axis) }
         }
     }
 }
@@ -100,7 +102,7 @@ fn method(results: &Study) -> Markup {
                 }
                 "; seed " (results.seed) "." }
             li { "Time: cycles of one SCPU’s AFU, simulated, at the clock after place and route where there is one (filled points), "
-                "else at the delay model’s (hollow). A lone pair: from its line in to its contact’s line out. Over the link: "
+                "otherwise at the delay model’s (hollow). Latency: of a single pair, from its line in to its contact’s line out. Over the link: "
                 code { (results.link) } "." }
             @if results.has_areas() {
                 li { "Area: an SCPU on " (results.target.device()) ", cells as they were placed, or as Yosys counts them where "
@@ -110,7 +112,7 @@ fn method(results: &Study) -> Markup {
                 li { "Software: the same arithmetic on one thread of " (results.processor) "; its best kernels take "
                     @for (number, (name, ns)) in results.kernels.iter().enumerate() {
                         @if number > 0 { ", " }
-                        (format!("{ns:.2}")) " ns a pair (" (name) ")"
+                        (format!("{ns:.2}")) " ns per pair (" (name) ")"
                     } "." }
             }
             @if results.points.iter().any(|point| point.drift.is_some()) {

@@ -26,7 +26,7 @@ pub fn picture(results: &Study, time: Time) -> Plot {
         false => x,
     };
     let title = match time {
-        Time::Lone => "A lone pair",
+        Time::Lone => "Latency of a single pair",
         Time::Device => "Throughput of a full device",
         Time::Link => "Over the link",
     };
@@ -36,7 +36,7 @@ pub fn picture(results: &Study, time: Time) -> Plot {
     plot = if anyone_routed {
         plot.with(Series::new("front, placed and routed", 0, line(&routed)).line(Line::Solid))
     } else {
-        plot.with(Series::new("front by the delay model, nothing of it routed", 5, line(&|_| true)).line(Line::Dotted))
+        plot.with(Series::new("front by the delay model, not routed", 5, line(&|_| true)).line(Line::Dotted))
     };
     if anyone_routed {
         let (points, names) = of(&routed);
@@ -44,15 +44,29 @@ pub fn picture(results: &Study, time: Time) -> Plot {
     }
     let (points, names) = of(&|point| !routed(point));
     if !points.is_empty() {
-        plot = plot.with(Series::new("clock by the delay model", 1, points).hollow(Marker::Circle).named(names));
+        plot = plot
+            .with(Series::new("clock by the delay model, not routed", 1, points).hollow(Marker::Circle).named(names));
     }
     plot
 }
 
 fn label(time: Time) -> &'static str {
     match time {
-        Time::Lone => "a lone pair, line in to line out, ns",
-        Time::Device => "ns a pair, of a device full of SCPUs",
-        Time::Link => "ns a pair over the link, one SCPU",
+        Time::Lone => "latency of a single pair, line in to line out, ns",
+        Time::Device => "ns per pair, of a device full of SCPUs",
+        Time::Link => "ns per pair over the link, one SCPU",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_words_lie_on_others_in_the_pictures_of_the_committed_study() {
+        let results = super::super::committed().expect("results");
+        for time in results.times() {
+            crate::plot::overlap::check(&picture(&results, time).svg());
+        }
     }
 }
