@@ -147,7 +147,7 @@ fn beside(plot: &Plot, layout: &Layout) -> Markup {
         g class="names" {
             @for ((_, _, name), place) in points.iter().zip(places) {
                 @if let Some((x, y)) = place {
-                    // Twice: the ground around a name parts it from lines in viewers that know no order of painting too.
+                    // Twice: its ground parts a name from lines, in viewers that know no order of painting too.
                     text class="halo" aria-hidden="true" x=(round(x)) y=(round(y)) fill=(LIGHT.ground)
                         stroke=(LIGHT.ground) stroke-width="3" font-size="11" { (name) }
                     text x=(round(x)) y=(round(y)) fill=(LIGHT.ink) font-size="11" { (name) }

@@ -1,4 +1,4 @@
-//! Whether words in an SVG lie on others, for tests: boxes of its text elements, from their places and estimated widths.
+//! Whether words in an SVG lie on others, for tests: boxes of its text elements, whose widths are estimated.
 
 /// Left, top, right and bottom.
 type Frame = [f64; 4];

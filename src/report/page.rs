@@ -19,7 +19,8 @@ h1{font-size:1.6rem;line-height:1.2}h2{font-size:1.2rem;margin-top:2.2rem}
 p.soft,caption,figcaption{color:var(--soft)}caption{text-align:left;padding-bottom:.4rem}
 figure{margin:1.5rem 0}figure svg{display:block;max-width:100%;height:auto;border:1px solid var(--grid)}
 div.wide{overflow-x:auto}
-@media (max-width:40rem){body{padding:1rem}figure{overflow-x:auto}figure>svg.plot{min-width:38rem}}
+@media (max-width:40rem){body{padding:1rem}figure{overflow-x:auto}figure>svg.plot{min-width:38rem}\
+#row span:nth-child(n+9){display:none}}
 table{border-collapse:collapse;font-variant-numeric:tabular-nums;margin:.8rem 0}
 th,td{padding:.3rem .7rem;border-bottom:1px solid var(--grid);text-align:left;vertical-align:top}
 td.n,th.n{text-align:right;white-space:nowrap}
@@ -30,7 +31,8 @@ h3{font-size:1rem;margin-bottom:.3rem}
 .narrow{display:none}@media (max-width:40rem){.broad{display:none}.narrow{display:block}}
 th[aria-sort]::after{content:\" ↑\"}th[aria-sort=descending]::after{content:\" ↓\"}
 #points{font-size:.85em}#points th{cursor:pointer;white-space:normal;vertical-align:bottom}#points td{white-space:nowrap}
-#points tr.chosen td{background:var(--grid)}
+#points tr>:first-child{position:sticky;left:0;background:var(--ground)}#points tr.chosen td{background:var(--grid)}
+details summary{cursor:pointer}
 #row{position:sticky;bottom:0;display:flex;flex-wrap:wrap;gap:.2rem 1.1rem;padding:.5rem .7rem;font-size:.85em;\
 background:var(--ground);border:1px solid var(--grid);font-variant-numeric:tabular-nums}#row small{color:var(--soft)}
 ";

@@ -107,14 +107,17 @@ pub fn step(results: &Study, time: Time, from: &Point, to: &Point) -> String {
     let luts = to.area().zip(from.area()).map(|(to, from)| to.luts as f64 / from.luts.max(1) as f64);
     let luts = luts.map_or_else(String::new, |luts| format!(" and {luts:.2} × the LUTs"));
     let error = format!("a largest error of {:.1e} instead of {:.1e}", results.worst(to), results.worst(from));
+    let [bad, bad_before] = [to, from].map(|point| point.tally().bad);
+    let bad = match (bad, bad_before) {
+        (0, 0) => String::new(),
+        _ => format!(" and {} gross failures instead of {}", grouped(bad), grouped(bad_before)),
+    };
     format!(
-        "From {} to {}: {error}, {} wrong decisions instead of {} and {} gross failures instead of {} in {} pairs{ratio}{luts}.",
+        "From {} to {}: {error}, {} wrong decisions instead of {}{bad} in {} pairs{ratio}{luts}.",
         from.name,
         to.name,
         grouped(to.wrong()),
         grouped(from.wrong()),
-        grouped(to.tally().bad),
-        grouped(from.tally().bad),
         grouped(results.pairs()),
     )
 }

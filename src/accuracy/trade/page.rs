@@ -16,9 +16,9 @@ pub fn page(results: &Study) -> String {
         p { "Each point is a configuration of the AFU: its error, measured against the truth in arbitrary precision, over "
             "its time, counted by simulating its Verilog. Down is more accurate, left is faster. A hollow one is at the delay "
             "model’s clock, which place and route would lower. Hover over a point to see its row." }
-        (sentences(results))
         @for time in results.times() { figure { (picture(results, time).figure()) } }
         aside #row aria-live="polite" { span { small { "Hover over a point to see its row." } } }
+        (sentences(results))
         h2 { "Points" }
         p.soft { "Click a heading to sort. Errors are of " (results.scenes().join(" and ")) ": of a contact the largest of the "
             "depth’s (relative to the sum of the radii), the normal’s (to 1) and the position’s (to the largest coordinate or "
@@ -45,11 +45,13 @@ fn sentences(results: &Study) -> Markup {
     html! {
         h2 { "Step by step" }
         @for (time, steps) in steps(results) {
-            h3 { "By " (time.words()) }
-            @if steps.is_empty() {
-                p { "One configuration has both the least time and the least error." }
-            } @else {
-                ol { @for step in steps { li { (step) } } }
+            details {
+                summary { "By " (time.words()) }
+                @if steps.is_empty() {
+                    p { "One configuration has both the least time and the least error." }
+                } @else {
+                    ol { @for step in steps { li { (step) } } }
+                }
             }
         }
     }

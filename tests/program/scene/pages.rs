@@ -123,7 +123,7 @@ fn a_large_query_makes_a_page_that_is_not() {
 fn handled(page: &str, hand: &str, to: &Path) {
     let (before, rest) = page.split_once("<meta http-equiv=\"Content-Security-Policy\"").expect("a policy");
     let (_, after) = rest.split_once('>').expect("its end");
-    // What the canvas shows: how many pixels have a bright colour, as bodies do and the room does not, and a sum of all.
+    // What the canvas shows: how many pixels have a bright colour, as bodies do and the room does not; a sum of all.
     let look = "function look() { const c = document.getElementById('scene'), d = document.createElement('canvas');\
         d.width = 200; d.height = 150; const p = d.getContext('2d'); p.drawImage(c, 0, 0, 200, 150);\
         const v = new Uint32Array(p.getImageData(0, 0, 200, 150).data.buffer);\
