@@ -62,6 +62,10 @@ def copy(path, out):
     if path.is_file():
         to.parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(path, to)
+        if path.suffix == ".md":
+            # mdBook makes index.html of README.md, but lets links to it name README.html.
+            text = to.read_text(encoding="utf-8")
+            to.write_text(re.sub(r"(\]\([^)\s]*)README\.md(?=[)#])", r"\1index.md", text), encoding="utf-8")
     elif not (to / "index.html").exists():
         # A link to a folder shows what is in it.
         to.mkdir(parents=True, exist_ok=True)
