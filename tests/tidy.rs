@@ -225,9 +225,13 @@ fn no_file_names_a_registry_host_or_a_path_of_one_machine() {
     for folder in ["src", "tests", "examples", "benches", "tb", "rtl", "scripts", "docs"] {
         checked.extend(files(folder, &["rs", "h", "cpp", "v", "sv", "md", "json", "core", "f", "toml", "sdc", "xdc"]));
     }
-    for name in ["demo", "paper", "test", "setup", "prove"] {
+    for name in ["demo", "docs", "fit-delays", "intervals", "operators", "paper", "prove", "release", "setup", "test"] {
         checked.push(Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts").join(name));
     }
+    for name in ["pyproject.toml", ".github/workflows/ci.yml", "scripts/packaging/test", "scripts/packaging/wheel"] {
+        checked.push(Path::new(env!("CARGO_MANIFEST_DIR")).join(name));
+    }
+    checked.extend(files("scripts", &["py"]));
     let mut found = Vec::new();
     checked.retain(|path| path.exists());
     assert!(checked.len() > 20, "the files are where this test looks");
