@@ -142,7 +142,11 @@ fn beside(plot: &Plot, layout: &Layout) -> Markup {
         .map(|((x, y), name)| (x, y, name))
         .collect();
     let within = [layout.left + 2.0, layout.top + 2.0, layout.left + layout.wide - 2.0, layout.top + layout.high - 2.0];
-    let places = names::place(&points, within);
+    let joined = plot.series.iter().filter(|series| series.line.is_some()).flat_map(|series| series.points.windows(2));
+    let both_shown = joined.filter(|two| two.iter().all(|point| shown(plot, point)));
+    let lines: Vec<names::Stroke> =
+        both_shown.map(|two| [layout.at(two[0].0, two[0].1), layout.at(two[1].0, two[1].1)]).collect();
+    let places = names::place(&points, &lines, within);
     html! {
         g class="names" {
             @for ((_, _, name), place) in points.iter().zip(places) {
