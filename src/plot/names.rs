@@ -14,8 +14,8 @@ pub(super) type Place = (f64, f64);
 pub(super) type Stroke = [(f64, f64); 2];
 
 /// A place for each name beside its point, or `None` if it would lie over a point, another name or the border. A place
-/// that no line crosses comes before one that a line does. Points are x, y and name, in pixels and in the order in which
-/// they get a place; `within` is left, top, right, bottom.
+/// that no line crosses is taken before one that a line does. Points are x, y and name, in pixels, and get their places
+/// in this order; `within` is left, top, right, bottom.
 pub(super) fn place(points: &[(f64, f64, &str)], lines: &[Stroke], within: [f64; 4]) -> Vec<Option<Place>> {
     let mut taken: Vec<[f64; 4]> = points.iter().map(|&(x, y, _)| [x - 4.0, y - 4.0, x + 4.0, y + 4.0]).collect();
     let [left, top, right, bottom] = within;

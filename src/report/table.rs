@@ -61,7 +61,7 @@ pub fn grouped(number: u64) -> String {
     text
 }
 
-/// A figure with `places` decimals, or a dash where there is none (a job of no pairs has no cycles a pair).
+/// A figure with `places` decimals, or a dash for `None` (a job without pairs has no cycles per pair).
 pub fn figure(value: Option<f64>, places: usize) -> String {
     value.map_or_else(|| "-".to_owned(), |value| format!("{value:.places$}"))
 }

@@ -40,7 +40,7 @@ pub struct Tally {
     pub mismatches: u64,
     /// Clock cycles from start to done.
     pub cycles: u64,
-    /// The least number of cycles the link allows for the lines that went over it.
+    /// The fewest cycles in which the link can carry the lines that went over it.
     pub limit_cycles: f64,
     /// Cycles from the first line of pairs to the first line of contacts; of several jobs, the first one's.
     pub latency_cycles: Option<u64>,
@@ -99,12 +99,12 @@ impl Tally {
         }
     }
 
-    /// Clock cycles a pair; none without pairs.
+    /// Clock cycles per pair; `None` without pairs.
     pub fn cycles_per_pair(&self) -> Option<f64> {
         per(self.cycles as f64, self.pairs)
     }
 
-    /// The least number of cycles a pair that the link allows.
+    /// The link limit, cycles per pair.
     pub(crate) fn limit_per_pair(&self) -> Option<f64> {
         per(self.limit_cycles, self.pairs)
     }

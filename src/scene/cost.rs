@@ -25,7 +25,7 @@ pub struct Cost {
     pub bytes_returned: f64,
     /// Whether pairs that do not touch come back too.
     pub returns_misses: bool,
-    /// LUTs of an SCPU on an ECP5, counted by Yosys; nothing where it was not asked or is not there.
+    /// LUTs of an SCPU on an ECP5, counted by Yosys; `None` if they were not counted.
     pub luts: Option<u64>,
     /// DSP blocks of an SCPU, likewise.
     pub dsps: Option<u64>,

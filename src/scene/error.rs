@@ -36,7 +36,7 @@ pub enum SceneError {
     /// An effect that is not one, as `--with` and `--without` have it.
     #[error("no effect is called `{0}`: use {1}")]
     Effect(String, String),
-    /// The AFU that the scene calls for is none.
+    /// The AFU that the scene calls for cannot be made.
     #[error(transparent)]
     Afu(#[from] crate::afu::BuildError),
     /// Yosys.

@@ -20,7 +20,7 @@ const TURN_STEPS: f32 = 32_767.0;
 /// The data of a page's viewer.
 #[derive(Serialize)]
 pub(super) struct Picture {
-    /// The scene's number of every body drawn; none if that is its place.
+    /// The number in the scene of every body drawn; `None` if all are.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub numbers: Option<Vec<usize>>,
     radii: Vec<f32>,

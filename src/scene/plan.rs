@@ -26,7 +26,7 @@ pub struct Row {
     pub on: bool,
     /// How much of it, where that can be said.
     pub value: String,
-    /// The lines that call for it; none where it is off, or on for want of a line.
+    /// The lines that call for it; empty if it is off, or on by default.
     pub calls: Vec<Call>,
 }
 

@@ -34,7 +34,7 @@ pub struct Meeting {
 pub struct Energy {
     /// Kinetic energy, of travel and of spin: mass · length² / time².
     pub kinetic: f64,
-    /// In the field of gravity, of z = 0 and so on: none without gravity.
+    /// In the field of gravity, relative to the origin; 0 without gravity.
     pub potential: f64,
     /// Mass · length / time.
     pub momentum: [f64; 3],
@@ -51,13 +51,13 @@ pub struct Summary {
     pub all_pairs: u64,
     /// Pairs sent to the engine: those that could reach each other, and did not both sleep. Of all steps.
     pub pairs: u64,
-    /// Pairs of two bodies that slept, in reach of each other or not: none of them is sent. Of all steps.
+    /// Pairs of two bodies that slept, in reach of each other or not. They are not sent. Of all steps.
     pub asleep: u64,
     /// Contacts among them.
     pub contacts: u64,
     /// Contacts with walls, ODE's.
     pub wall_contacts: u64,
-    /// Clock cycles of the simulated AFU, all jobs; none of the reference engine.
+    /// Clock cycles of the simulated AFU, all jobs; `None` for the reference engine.
     pub cycles: Option<u64>,
     /// Bytes over the link, by the layout.
     pub bytes: f64,
@@ -65,7 +65,7 @@ pub struct Summary {
     pub bytes_with_everything: f64,
     /// The median step's time on this host without the engine's part, nanoseconds; of a query the engine's time.
     pub step_ns: f64,
-    /// The energy at first and in the end, and what came in; none of a query.
+    /// The energy at first and in the end, and what came in; `None` for a query.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub balance: Option<Balance>,
 }

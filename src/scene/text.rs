@@ -43,10 +43,10 @@ impl Cost {
 }
 
 impl Row {
-    /// The lines that call for it, or that there are none; of a group of bodies only which lines.
+    /// The lines that call for it, or a word that says that none does; for a group of bodies only their numbers.
     pub(crate) fn called_for_by(&self) -> Vec<String> {
         match self.calls.as_slice() {
-            [] if self.on => vec!["(usual)".to_owned()],
+            [] if self.on => vec!["(default)".to_owned()],
             [] => vec!["nothing".to_owned()],
             [first, .., last] if self.calls.len() > 4 && last.line - first.line < self.calls.len() => {
                 vec![format!("lines {} to {}", first.line, last.line)]
@@ -77,14 +77,14 @@ pub(super) fn cost_rows(all: &[&Cost]) -> Vec<Vec<String>> {
     let mut rows = vec![
         row("modules of the AFU", &|cost| cost.modules.to_string()),
         row("cycles from a pair to its contact", &|cost| cost.latency_cycles.to_string()),
-        row("bytes sent for a pair", &|cost| cost.bytes_sent.to_string()),
+        row("bytes sent per pair", &|cost| cost.bytes_sent.to_string()),
         row("bytes that come back", &|cost| {
-            let who = if cost.returns_misses { "for every pair" } else { "for a contact alone" };
+            let who = if cost.returns_misses { "per pair" } else { "per contact" };
             format!("{} {who}", cost.bytes_returned)
         }),
-        row("LUTs of an SCPU", &|cost| counted(cost.luts)),
-        row("DSP blocks of an SCPU", &|cost| counted(cost.dsps)),
-        row("host time a step, µs", &|cost| {
+        row("LUTs per SCPU", &|cost| counted(cost.luts)),
+        row("DSP blocks per SCPU", &|cost| counted(cost.dsps)),
+        row("host time per step, µs", &|cost| {
             cost.host_step_ns.map_or_else(|| "not measured".to_owned(), |ns| format!("{:.1}", ns / 1000.0))
         }),
     ];

@@ -70,7 +70,7 @@ fn label(run: &SceneRun, moves: bool) -> String {
 fn caption(run: &SceneRun, picture: &Picture) -> Markup {
     let steps = run.places.len().saturating_sub(1) as u64;
     html! {
-        "Drag to turn. Click the picture, then use the wheel to zoom. "
+        "Drag to turn. To zoom, pinch, or click the picture and use the wheel. "
         @if picture.frames > 1 {
             kbd { "Space" } " pauses, " kbd { "←" } " and " kbd { "→" } " step. "
             @if picture.every > 1 { "The " (grouped(steps)) " steps are drawn " (picture.every) " at a time. " }

@@ -97,7 +97,7 @@ fn the_readme_shows_what_the_demo_prints() {
     let printed = afu(&["cosim", "--pairs", "diamond:10", "--pairs", "random:100000"]);
     let (first, table) = printed.split_once('\n').expect("a heading and a table");
     let mut page = Page::open("README.md");
-    page.block(first, table, &["simulated in"]);
+    page.block(first, table, &["simulation time"]);
     page.check();
 }
 

@@ -89,7 +89,7 @@ impl Run {
         }
     }
 
-    /// The table for people: what ran, and a column a job.
+    /// The table for people: what ran, and one column per job.
     pub fn table(&self) -> String {
         let heading: Vec<&str> = [""].into_iter().chain(self.jobs.iter().map(|job| job.name.as_str())).collect();
         let ns = self.config.cycle_ns();
@@ -103,17 +103,17 @@ impl Run {
             ("invalid pairs", Box::new(|t| grouped(t.flows.invalid))),
             ("mismatches with the reference", Box::new(|t| grouped(t.mismatches))),
             ("cycles", Box::new(|t| grouped(t.cycles))),
-            ("cycles a pair", Box::new(|t| figure(t.cycles_per_pair(), 3))),
-            ("ns a pair", Box::new(move |t| figure(t.cycles_per_pair().map(|c| c * ns), 2))),
+            ("cycles per pair", Box::new(|t| figure(t.cycles_per_pair(), 3))),
+            ("ns per pair", Box::new(move |t| figure(t.cycles_per_pair().map(|c| c * ns), 2))),
             ("latency, line in to line out, cycles", Box::new(|t| t.latency_cycles.map_or("-".into(), grouped))),
-            ("link allows, ns a pair", Box::new(move |t| figure(t.limit_per_pair().map(|c| c * ns), 2))),
-            ("share of that reached", Box::new(|t| percent(t.efficiency()))),
-            ("bytes a pair, in", Box::new(|t| figure(t.read_per_pair(), 2))),
-            ("bytes a pair, out", Box::new(|t| figure(t.written_per_pair(), 2))),
-            ("simulated in, seconds", Box::new(|t| format!("{:.1}", t.host_seconds))),
+            ("link limit, ns per pair", Box::new(move |t| figure(t.limit_per_pair().map(|c| c * ns), 2))),
+            ("share of the link limit", Box::new(|t| percent(t.efficiency()))),
+            ("bytes per pair, in", Box::new(|t| figure(t.read_per_pair(), 2))),
+            ("bytes per pair, out", Box::new(|t| figure(t.written_per_pair(), 2))),
+            ("simulation time, seconds", Box::new(|t| format!("{:.1}", t.host_seconds))),
         ];
         if self.config.profile.is_exact() {
-            rows.insert(6, ("unsettled, settled by the host", Box::new(|t| grouped(t.unsettled))));
+            rows.insert(6, ("unsettled, resolved by the host", Box::new(|t| grouped(t.unsettled))));
         }
         if !self.config.query.shape().flows.contains(&Flow::Coincident) {
             rows.retain(|(title, _)| *title != "  coincident centres");
@@ -191,14 +191,14 @@ mod tests {
              invalid pairs                                   0           0
              mismatches with the reference                   0           0
              cycles                                      6 300           9
-             cycles a pair                               0.510           -
-             ns a pair                                    2.55           -
+             cycles per pair                             0.510           -
+             ns per pair                                  2.55           -
              latency, line in to line out, cycles           83           -
-             link allows, ns a pair                       2.50           -
-             share of that reached                      98.0 %           -
-             bytes a pair, in                            32.00           -
-             bytes a pair, out                           32.00           -
-             simulated in, seconds                         0.2         0.0
+             link limit, ns per pair                      2.50           -
+             share of the link limit                    98.0 %           -
+             bytes per pair, in                          32.00           -
+             bytes per pair, out                         32.00           -
+             simulation time, seconds                      0.2         0.0
             ───────────────────────────────────────────────────────────────"#]]
         .assert_eq(&run().table());
     }

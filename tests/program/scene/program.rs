@@ -27,7 +27,7 @@ fn a_plan_names_lines_and_an_effect_more_or_less_says_what_it_costs() {
         assert!(plan.contains(row), "{row} in\n{plan}");
     }
     let with = told(&afu(&[&diamond, "--plan", "--with", "friction", "--no-luts"]).success());
-    for row in ["asked for on the command line", "fp_halve_e10f23z_normal", "position", "then", "host time a step"] {
+    for row in ["asked for on the command line", "fp_halve_e10f23z_normal", "position", "then", "host time per step"] {
         assert!(with.contains(row), "{row} in\n{with}");
     }
     assert!(!with.contains("damping"), "{with}");
