@@ -25,6 +25,7 @@ table{border-collapse:collapse;font-variant-numeric:tabular-nums;margin:.8rem 0}
 th,td{padding:.3rem .7rem;border-bottom:1px solid var(--grid);text-align:left;vertical-align:top}
 td.n,th.n{text-align:right;white-space:nowrap}
 code,pre{font-family:ui-monospace,'DejaVu Sans Mono',monospace;font-size:.92em}
+p code{overflow-wrap:anywhere}
 pre{overflow-x:auto;border:1px solid var(--grid);padding:.7rem}
 a{color:inherit}
 h3{font-size:1rem;margin-bottom:.3rem}
