@@ -72,7 +72,7 @@ pub enum StoreError {
         error: io::Error,
     },
     /// A key or a value cannot be written as JSON.
-    #[error("a measurement has no JSON: {0}")]
+    #[error("a measurement cannot be written as JSON: {0}")]
     Json(String),
     /// The environment names no folder of this user's.
     #[error("no folder for results: set AFU_CACHE, XDG_CACHE_HOME or HOME")]

@@ -38,16 +38,16 @@ pub enum SpecError {
     #[error(transparent)]
     Config(#[from] crate::config::Error),
     /// A line that holds no record.
-    #[error("a line of {0} bits: use a power of two that holds a pair and a contact")]
+    #[error("line of {0} bits: expected a power of two that holds a pair and a contact")]
     Line(u32),
     /// Words that the kernel does not have.
-    #[error("words of {0} bits: the records' have {1}; an SCPU of the caller's may have 1 to 32")]
+    #[error("words of {0} bits: expected the records' {1}; only an SCPU of your own may have 1 to 32")]
     Word(u32, u32),
     /// No room beyond what a pipeline holds, or more than memory serves.
-    #[error("{0} cycles in dispatch: use 1 to 1024")]
+    #[error("{0} cycles in dispatch: expected 1 to 1024")]
     Dispatch(u32),
     /// A number of requests that the tags cannot carry.
-    #[error("{0} requests outstanding: use a power of two from 2 to 64")]
+    #[error("{0} outstanding requests: expected a power of two from 2 to 64")]
     Outstanding(u32),
 }
 

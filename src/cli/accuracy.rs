@@ -1,4 +1,4 @@
-//! `afu accuracy`: what accuracy costs in time.
+//! `afu accuracy`: what accuracy costs in time and area.
 
 use std::path::PathBuf;
 use std::thread;
@@ -10,52 +10,57 @@ use contact_afu::config::Profile;
 use super::failure::{Failure, Kind};
 use super::{link, origin, output, progress};
 
-/// Show what accuracy costs in time: errors against the truth beside latency, throughput and area
+/// Measure what accuracy costs: errors beside latency, throughput and area
 ///
-/// For each arithmetic: wrong decisions and errors on the diamond, crowded scenes and the hard pairs; the time of a
-/// lone pair and of many over a link, from the simulated Verilog; area and clock of an SCPU, from synthesis. Models and
-/// netlists are kept, so only a first run builds them.
+/// For each arithmetic the table shows wrong decisions and errors against arbitrary precision, on the paper's diamond,
+/// crowded scenes and hard pairs. Beside them stand latency and throughput of the simulated Verilog, and area and clock
+/// of one SCPU (sphere collision processing unit) after synthesis. Models and netlists are cached, so only the first
+/// run builds them.
 #[derive(Args, Debug)]
 pub struct Accuracy {
-    /// Folder to write: report.html, front.svg, throughput.svg, link.svg, results.csv, results.json, and
-    /// measurements/, from which the same command goes on where it was stopped. Without it, a row a profile
+    /// Folder for the full study: report.html, pictures, results.csv, results.json, measurements/ to resume from
+    ///
+    /// Without this option the command prints one row per profile.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Some ten configurations and fewer pairs; no areas unless --synth asks for them, no routes unless --seeds does
+    /// Study only some ten configurations on fewer pairs, without synthesis unless --synth or --seeds is given
     #[arg(long, requires = "out")]
     quick: bool,
-    /// Count cells in the quick study too: the first time Yosys takes longer than all the rest
+    /// Count cells in the quick study too; the first time this takes longer than the rest of the study
     #[arg(long, requires = "quick", conflicts_with = "no_synth")]
     synth: bool,
-    /// Write into the folder even if afu did not make it; other files in it are left alone
+    /// Write into the folder even if afu did not make it; other files in it stay
     #[arg(long, requires = "out")]
     force: bool,
-    /// Place and route nothing: the fronts are then those of the delay model
+    /// Skip place and route; clocks then come from the delay model
     #[arg(long)]
     no_route: bool,
-    /// Place and route the points on the fronts with each of these seeds of the placer, a list, of whose clocks the
-    /// median counts; nextpnr must then be there [default: 1 in the full study, where nextpnr is there]
+    /// Seeds of the placer, a comma-separated list: place and route the points on the fronts with each, and use the
+    /// median clock [default: 1 in the full study, if nextpnr is installed]
+    ///
+    /// A front holds the configurations that no other one beats in both time and error. With this option the command
+    /// fails if nextpnr is missing.
     #[arg(long, value_name = "LIST", value_delimiter = ',', requires = "out", conflicts_with_all = ["no_route", "no_synth"])]
     seeds: Vec<u32>,
     /// Link between AFU and memory: a name or file as in `afu cosim`
     #[arg(long, value_name = "NAME|FILE", default_value = "harp1")]
     link: String,
-    /// Seed of pairs and link
+    /// Seed of the pairs and of the link
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = super::usage::seed)]
     seed: u64,
-    /// Configurations worked on at a time [default: one a processor]
+    /// Configurations measured in parallel, 1 to 256 [default: the number of processors]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256))]
     jobs: Option<u32>,
-    /// Neighbours of the front that the full study adds, at most
+    /// Maximum number of neighbours of the front that the full study adds
     #[arg(long, value_name = "N", default_value_t = 6, requires = "out")]
     neighbours: usize,
-    /// Only these profiles: a list of half, bfloat, paper, wide, exact, eXfY
+    /// Profiles to study, a comma-separated list of half, bfloat, paper, wide, exact, eXfY [default: all]
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     profile: Vec<Profile>,
-    /// Neither Yosys nor nextpnr: no areas, and clocks by the delay model
+    /// Run neither Yosys nor nextpnr: the results then have no areas, and clocks come from the delay model
     #[arg(long)]
     no_synth: bool,
-    /// Write the results as JSON too (schema contact-afu/accuracy/1); - is standard output
+    /// Also write the results as JSON (schema contact-afu/accuracy/1) to a file, or to standard output for -
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }

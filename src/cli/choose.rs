@@ -6,49 +6,50 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use contact_afu::accuracy::trade::{Bounds, Study, Time, choose, committed, to_build};
 use contact_afu::config::MANIFEST_SCHEMA;
+use contact_afu::report::table::counted;
 use serde_json::json;
 
 use super::failure::{Classify, Failure, Kind};
 use super::output;
 
-/// Name the cheapest configuration that meets bounds, from the results of `afu accuracy --out`
+/// Pick the cheapest configuration that meets your bounds on error, time or area
 ///
-/// The cheapest has the fewest LUTs, of those that were placed and routed where any was; where no cells were counted,
-/// it has the least time. At least one bound is needed. Where nothing meets the bounds, it says what it would take,
-/// bound by bound, and ends with status 1. The configuration's clock is the one that the router reached for stages that
-/// were cut for a higher one (--clock and --cut-for).
+/// The command reads results of `afu accuracy --out`; at least one bound is needed. The cheapest configuration is the
+/// one with the fewest LUTs per SCPU (sphere collision processing unit). If no cells were counted, it is the fastest
+/// one. If some configurations were placed and routed, only those are considered, at the clock that the router reached.
+/// If no configuration meets the bounds, the command says by how much to relax each and ends with status 1.
 #[derive(Args, Debug)]
 pub struct Choose {
-    /// Largest relative error on the scenes, at most
+    /// Maximum relative error on the diamond and the crowded scenes
     #[arg(long, value_name = "ERROR", value_parser = positive)]
     max_error: Option<f64>,
-    /// Nanoseconds, at most: of what --time says
+    /// Maximum time in ns, of the kind that --time selects
     #[arg(long, value_name = "NS", value_parser = positive)]
     max_ns: Option<f64>,
-    /// LUTs of an SCPU, at most
+    /// Maximum number of LUTs per SCPU
     #[arg(long, value_name = "N", value_parser = positive)]
     max_luts: Option<f64>,
-    /// Gross failures on all pairs of the study, at most
+    /// Maximum number of gross failures (grossly wrong contacts, see docs/hard.md) on all pairs of the study
     #[arg(long, value_name = "N", value_parser = at_least_zero)]
     max_bad: Option<f64>,
-    /// Which time --max-ns is of
-    #[arg(long, value_name = "WHICH", default_value = "lone")]
+    /// Time that --max-ns bounds
+    #[arg(long, value_name = "KIND", default_value = "lone")]
     time: Which,
-    /// Results to choose from: results.json, or a folder with one [default: those that are part of this program]
+    /// Results to choose from: a results.json or the folder of one [default: the results that are built in]
     #[arg(long, value_name = "FILE|DIR")]
     from: Option<PathBuf>,
-    /// File to write the configuration to, for --config of other commands; - is standard output
+    /// Write the configuration to a file for --config of other commands, or to standard output for -
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Which {
-    /// A lone pair, line in to line out
+    /// Latency of a single pair, from its line in to its line out
     Lone,
-    /// A pair of a device full of SCPUs
+    /// Time per pair of an FPGA full of SCPUs
     Device,
-    /// A pair over the study's link
+    /// Time per pair over the study's link
     Link,
 }
 
@@ -59,15 +60,14 @@ fn positive(text: &str) -> Result<f64, String> {
 fn at_least_zero(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(value) if (0.0..f64::INFINITY).contains(&value) => Ok(value),
-        _ => Err("give a number, such as 300 or 1e-6".to_owned()),
+        _ => Err("expected a number of at least 0, such as 300 or 1e-6".to_owned()),
     }
 }
 
 pub fn run(options: &Choose) -> Result<(), Failure> {
     let bounds = Bounds { error: options.max_error, ns: options.max_ns, luts: options.max_luts, bad: options.max_bad };
     if bounds == Bounds::default() {
-        let message =
-            "nothing to choose by: give at least one bound, of --max-error, --max-ns, --max-luts and --max-bad";
+        let message = "no bound is given; give at least one of --max-error, --max-ns, --max-luts and --max-bad";
         return Err(Failure::new(Kind::Usage, message));
     }
     let results = options.results()?;
@@ -77,8 +77,8 @@ pub fn run(options: &Choose) -> Result<(), Failure> {
         Which::Link => Time::Link,
     };
     if !results.has_areas() && (options.max_luts.is_some() || time == Time::Device) {
-        let message = "these results have no areas, which --max-luts and --time device need; `afu accuracy --quick --synth` \
-                       or the full study counts cells";
+        let message = "--max-luts and --time device need areas, which these results lack; `afu accuracy --out DIR` or \
+                       `--quick --synth` counts cells";
         return Err(Failure::new(Kind::Usage, message.to_owned()));
     }
     let routed = if results.comparable().any(|point| point.routed_mhz().is_some()) { "placed and routed " } else { "" };
@@ -90,11 +90,11 @@ pub fn run(options: &Choose) -> Result<(), Failure> {
             let luts = point.area().map_or("-".to_owned(), |area| area.luts.to_string());
             let clock = if point.routed_mhz().is_some() { "placed and routed" } else { "by the delay model" };
             let text = format!(
-                "{}: error at most {:.1e} on the scenes, {} gross failures in {} pairs; {ns} ns at {:.0} MHz ({clock}), {luts} LUTs\n({of})",
+                "{}: largest error {:.1e} on the scenes, {} in {}; {ns} ns at {:.0} MHz ({clock}), {luts} LUTs\n({of})",
                 point.name,
                 results.worst(point),
-                point.tally().bad,
-                results.pairs(),
+                counted(point.tally().bad, "gross failure"),
+                counted(results.pairs(), "pair"),
                 point.clock_mhz(),
             );
             let stdout_taken = options.out.as_deref().is_some_and(output::is_stdout);
@@ -106,12 +106,12 @@ pub fn run(options: &Choose) -> Result<(), Failure> {
             }
         }
         Err(instead) => {
-            let mut message = format!("nothing meets these bounds ({of})");
+            let mut message = format!("no configuration meets these bounds ({of})");
             for instead in &instead {
-                message += &format!("; {} would do: {}", instead.bound.words(instead.value), instead.point.name);
+                message += &format!("; {} could be met: {}", instead.bound.words(instead.value), instead.point.name);
             }
             if instead.is_empty() {
-                message += "; more than one of them would have to give way";
+                message += "; relaxing a single bound is not enough";
             }
             Err(Failure::new(Kind::Failed, message))
         }

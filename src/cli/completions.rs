@@ -1,4 +1,4 @@
-//! `afu completions`: what a shell needs to complete afu's options.
+//! `afu completions`: a script with which a shell completes afu's commands and options.
 
 use std::io;
 
@@ -8,9 +8,12 @@ use clap_complete::Shell;
 use super::failure::{Classify, Failure, Kind};
 use super::usage;
 
+/// Print a script that completes afu's commands and options in your shell
+///
+/// In bash, `afu completions bash > ~/.local/share/bash-completion/completions/afu` installs it.
 #[derive(Args, Debug)]
 pub struct Completions {
-    /// The shell; for bash: afu completions bash > ~/.local/share/bash-completion/completions/afu
+    /// Your shell
     shell: Shell,
 }
 

@@ -18,47 +18,55 @@ use super::failure::{Classify, Failure, Kind};
 use super::machine::{One, warn_of_unused_scpus};
 use super::{link, output, progress};
 
-/// Mismatches that are told one by one, for each job, as in the JSON.
+/// Mismatches that are listed for each job, on the terminal and in the JSON.
 const TOLD: usize = 10;
-/// Where mismatching pairs go that no `--replay` takes.
+/// The corpus that mismatching pairs join without `--replay`.
 const CORPUS: &str = "afu-corpus.csv";
 
-/// Send pairs through the simulated AFU and compare every bit with the reference kernel
+/// Run pairs through the simulated AFU and compare every bit with the reference kernel
 ///
-/// Each set or file of pairs is a job of its own: source lines into simulated memory, through the Verilated AFU over
-/// the link, and what it wrote into destination memory against the reference kernel. One table of all jobs ends it.
+/// Verilator turns the AFU's Verilog into a model. Each set or file of pairs is a job: the AFU reads the pairs from
+/// simulated memory over a model of the link and writes the contacts back. The command compares every bit of memory
+/// with the reference kernel and prints one table of all jobs.
 #[derive(Args, Debug)]
 pub struct Cosim {
-    /// Pairs: diamond:H, random:N, dense:N, hard:N, or a .csv or .npy file; given several times, several jobs [default:
-    /// diamond:10; of other queries than sphere-sphere random:10000]
+    /// Pairs: diamond:H, random:N, dense:N, hard:N (see `afu help pairs`), or a .csv or .npy file [default: diamond:10;
+    /// for sphere-plane random:10000]
+    ///
+    /// Repeat the option to run several jobs.
     #[arg(long, value_name = "SET|FILE")]
     pairs: Vec<String>,
-    /// Write the contacts of the only job, as they lie in destination memory: .csv or .npy; with --results hits, only
-    /// those of pairs that touch, each with its pair's number
+    /// Write the contacts to a .csv or .npy file, as they lie in memory; only for a single job
+    ///
+    /// With --results hits the file holds only the contacts of pairs that touch, each with the index of its pair.
     #[arg(long, value_name = "FILE")]
     contacts: Option<PathBuf>,
-    /// Link between AFU and memory: ideal, late, shuffled, hostile, harp1, harp2, pcie3x8, or a .toml file of a link
+    /// Link between AFU and memory: ideal, late, shuffled, hostile, harp1, harp2, pcie3x8, or a .toml file
+    ///
+    /// `ideal` shows what the AFU alone can do. `late`, `shuffled` and `hostile` are made to find faults: high latency,
+    /// responses out of order, stalls. `harp1` and `harp2` are Intel's Xeons with an FPGA, `pcie3x8` is a card on PCI
+    /// Express. docs/link.md describes the models and the file.
     #[arg(long, value_name = "NAME|FILE", default_value = "ideal")]
     link: String,
-    /// Seed of random pairs, of the link, and of registers that no reset reaches
+    /// Seed of random pairs, of the link, and of the initial values of registers without reset
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = super::usage::seed)]
     seed: u64,
-    /// Write a waveform of the only job: .vcd or .fst
+    /// Write a waveform to a .vcd or .fst file; only for a single job
     #[arg(long, value_name = "FILE")]
     trace: Option<PathBuf>,
-    /// Write the figures as JSON (schema contact-afu/cosim/1); - is standard output
+    /// Write the results as JSON (schema contact-afu/cosim/1) to a file, or to standard output for -
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Write a JUnit report, a test case a job; - is standard output
+    /// Write a JUnit report with one test case per job to a file, or to standard output for -
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
-    /// Simulate the Verilog in this folder, which `afu rtl` wrote; of the AFU's options only --scpus goes with it
+    /// Simulate the Verilog in this folder, which `afu rtl` wrote; only --scpus may change the AFU
     #[arg(long, value_name = "DIR")]
     rtl: Option<PathBuf>,
-    /// Corpus, a .csv of pairs that once mismatched: a job that runs first; pairs that mismatch now join it
+    /// Corpus of pairs that mismatched before, a .csv file: run it as the first job and add new mismatches
     ///
-    /// A corpus that does not exist yet is empty, and made by the first mismatch. Without this option, mismatching
-    /// pairs join afu-corpus.csv in the current folder.
+    /// If the file does not exist, the first mismatch creates it. Without this option, mismatching pairs are added to
+    /// afu-corpus.csv in the current folder.
     #[arg(long, value_name = "FILE")]
     replay: Option<PathBuf>,
     #[command(flatten)]
@@ -119,18 +127,21 @@ pub fn run(options: &Cosim) -> Result<(), Failure> {
 }
 
 impl Cosim {
-    /// The jobs by name, with their pairs: all read before anything is built, so that a bad file costs no time.
+    /// The name and pairs of each job. All files are read before anything is built, so a bad file costs no time.
     fn jobs(&self, query: Query) -> Result<Vec<(String, Vec<PairRecord>)>, Failure> {
         let only_one = [("--contacts", &self.contacts), ("--trace", &self.trace)];
         let jobs = self.pairs.len() + usize::from(self.replay.is_some());
         if let Some((option, _)) = only_one.iter().find(|(_, given)| given.is_some() && jobs > 1) {
             return Err(Failure::new(
                 Kind::Usage,
-                format!("{option} is for one job: give one --pairs and no --replay"),
+                format!("{option} works with one job only: give one --pairs and no --replay"),
             ));
         }
         if [&self.json, &self.junit].into_iter().flatten().filter(|path| output::is_stdout(path)).count() > 1 {
-            return Err(Failure::new(Kind::Usage, "--json - and --junit -: standard output is for one of them"));
+            return Err(Failure::new(
+                Kind::Usage,
+                "--json - and --junit -: only one of them can write to standard output; give the other a file",
+            ));
         }
         if let Some(path) = &self.contacts {
             pairs::check_name(path)?;
@@ -150,7 +161,7 @@ impl Cosim {
         Ok(jobs)
     }
 
-    /// What a pair is: of the AFU that is given, or asked for.
+    /// The query of the AFU, from the folder of `--rtl` or from the options.
     fn query(&self) -> Result<Query, Failure> {
         match &self.rtl {
             Some(folder) => {
@@ -161,7 +172,7 @@ impl Cosim {
         }
     }
 
-    /// The sets and files of pairs.
+    /// The sets and files of pairs; the default if none is given.
     fn sources(&self, query: Query) -> Vec<String> {
         let default = if query == Query::SphereSphere { "diamond:10" } else { "random:10000" };
         if self.pairs.is_empty() { vec![default.to_owned()] } else { self.pairs.clone() }
@@ -172,13 +183,16 @@ impl Cosim {
         match path.extension().and_then(|extension| extension.to_str()) {
             Some("vcd") => Ok(Trace::Vcd),
             Some("fst") => Ok(Trace::Fst),
-            _ => Err(Failure::new(Kind::Usage, format!("{}: a waveform's name ends in .vcd or .fst", path.display()))),
+            _ => Err(Failure::new(
+                Kind::Usage,
+                format!("--trace {}: expected a name that ends in .vcd or .fst", path.display()),
+            )),
         }
     }
 
     fn bench(&self, trace: Trace) -> Result<Bench, Failure> {
         let begun = Instant::now();
-        let spinner = progress::spinner("making the model of the AFU (Verilator and C++ compiler)");
+        let spinner = progress::spinner("building the AFU's model with Verilator and the C++ compiler");
         let bench = match &self.rtl {
             Some(folder) => Bench::of_folder(folder, self.one.only_scpus()?, trace),
             None => Bench::traced(&self.one.config_over(&self.link)?, trace),
@@ -187,12 +201,12 @@ impl Cosim {
         let bench = bench?;
         if let Origin::Library(path) = bench.origin() {
             let seconds = begun.elapsed().as_secs_f64();
-            eprintln!("model: {}, after {seconds:.1} s (none of this AFU is built in)", path.display());
+            eprintln!("model: {}, after {seconds:.1} s (not the built-in model)", path.display());
         }
         Ok(bench)
     }
 
-    /// Runs one job. One that does not finish, or breaks the protocol, is a failed job without a verdict.
+    /// Runs one job. A job that does not finish or breaks the protocol has failed, without a verdict.
     fn job(
         &self,
         bench: &Bench,
@@ -232,7 +246,7 @@ impl Cosim {
         command.option("--link", &self.link).option("--seed", &self.seed.to_string()).line()
     }
 
-    /// Says how it went; mismatching pairs join the corpus.
+    /// Reports failures and adds mismatching pairs to the corpus.
     fn verdict(&self, run: &Run, failed: Vec<PairRecord>) -> Result<(), Failure> {
         if run.passed() {
             return Ok(());
@@ -241,7 +255,7 @@ impl Cosim {
         if !failed.is_empty() {
             let path = self.replay.as_deref().unwrap_or(Path::new(CORPUS));
             let added = corpus::join(run.config.query, path, failed)?;
-            eprintln!("corpus: {} ({added} new pairs); to run it first: --replay {}", path.display(), path.display());
+            eprintln!("corpus: {} ({added} new pairs); --replay {} runs it first", path.display(), path.display());
         }
         let bad = run.jobs.iter().filter(|job| !job.passed()).count();
         let message = format!("{bad} of {} jobs failed, {} mismatches", run.jobs.len(), run.total().mismatches);
@@ -249,7 +263,7 @@ impl Cosim {
     }
 }
 
-/// What came back: a contact for each pair, or, where only contacts come back, those with their pairs' numbers.
+/// Writes the contacts: one for each pair or, with `Results::Hits`, one for each pair that touches, with its index.
 fn write_contacts(path: &Path, verdict: &Verdict, config: &Config) -> Result<(), Failure> {
     match config.results {
         Results::All => pairs::write_contacts(path, &verdict.contacts)?,
@@ -261,7 +275,7 @@ fn write_contacts(path: &Path, verdict: &Verdict, config: &Config) -> Result<(),
     Ok(())
 }
 
-/// The first mismatches of a job, one by one, and how many more there are.
+/// Lists the first mismatches of a job and says how many more there are.
 fn tell(job: &str, verdict: &Verdict) -> String {
     let mut told: Vec<String> =
         verdict.mismatches.iter().take(TOLD).map(|found| format!("mismatch: {job}, {found}")).collect();

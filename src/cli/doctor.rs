@@ -1,4 +1,4 @@
-//! `afu doctor`: the tools outside, whether they are there, and what installs them.
+//! `afu doctor`: which external tools are installed, and how to install the missing ones.
 
 use std::path::PathBuf;
 
@@ -9,9 +9,12 @@ use contact_afu::tools;
 use super::failure::{Failure, Kind};
 use super::output;
 
+/// List the external tools: which are installed, what needs them, how to install them
+///
+/// The command ends with status 3 if a tool that simulation needs is missing.
 #[derive(Args, Debug)]
 pub struct Doctor {
-    /// Write the findings as JSON too; - is standard output
+    /// Also write the findings as JSON (schema contact-afu/doctor/1) to a file, or to standard output for -
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }

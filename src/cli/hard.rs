@@ -1,4 +1,4 @@
-//! `afu hard`: profiles and peers on the hard pairs, judged against the truth.
+//! `afu hard`: profiles and other engines on the hard pairs, judged against exact answers.
 
 use std::path::PathBuf;
 
@@ -10,32 +10,34 @@ use contact_afu::query::Query;
 use super::failure::{Failure, Kind};
 use super::{output, progress};
 
-/// Judge profiles and other engines on the hard pairs against the truth in arbitrary precision
+/// Judge arithmetic profiles and other engines on pairs that make floating point fail
 ///
-/// For each category: contacts missed or invented, numbers that are none, normals, directions, depths and positions
-/// that are wrong, gross failures (BAD), and pairs left unsettled. The same command again resumes.
+/// Such hard pairs are tangent or coincident, very small or very large. Answers are judged against arbitrary precision.
+/// For each category the tables count false negatives and false positives, NaNs and infinities, and wrong normals,
+/// directions, depths and positions. They also count gross failures (BAD) and pairs that the hardware leaves to the
+/// host. docs/hard.md defines the columns. If the command is stopped, the same command resumes.
 #[derive(Args, Debug)]
 pub struct Hard {
-    /// Which two bodies a pair is of
+    /// The two bodies of a pair
     #[arg(long, value_name = "QUERY", default_value_t, value_parser = super::usage::query())]
     query: Query,
-    /// Pairs of all categories together
+    /// Number of pairs, divided evenly among the categories
     #[arg(long, value_name = "N", default_value_t = 170_000)]
     pairs: u64,
-    /// Their seed
+    /// Seed of the pairs
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = super::usage::seed)]
     seed: u64,
-    /// Profiles to judge, beside the other engines [default: paper,wide, and of sphere-sphere exact]
+    /// Profiles to judge beside the other engines, a comma-separated list [default: paper,wide and for sphere-sphere
+    /// also exact]
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     profile: Vec<Profile>,
-    /// Folder to write: manifest.json (JSON of all), hard.csv, hard.svg (gross failures), and measurements/, from which
-    /// the same command resumes
+    /// Folder to write: manifest.json with all results, hard.csv, hard.svg (gross failures), measurements/ to resume from
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Write into the folder even if afu did not make it; other files in it are left alone
+    /// Write into the folder even if afu did not make it; other files in it stay
     #[arg(long, requires = "out")]
     force: bool,
-    /// Write the figures as JSON too (schema contact-afu/hard/1); - is standard output
+    /// Also write the results as JSON (schema contact-afu/hard/1) to a file, or to standard output for -
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }
@@ -56,7 +58,7 @@ pub fn run(options: &Hard) -> Result<(), Failure> {
     bar.finish_and_clear();
     let resumed = resumed?;
     if resumed > 0 {
-        eprintln!("{resumed} of {} rows are of an earlier run", results.rows.len());
+        eprintln!("{resumed} of {} rows come from an earlier run", results.rows.len());
     }
     let stdout_taken = options.json.as_deref().is_some_and(output::is_stdout);
     output::show(&results.tables(), stdout_taken)?;
@@ -67,7 +69,7 @@ pub fn run(options: &Hard) -> Result<(), Failure> {
 }
 
 impl Hard {
-    /// The profiles to judge, each known to be one that the query has.
+    /// The profiles to judge, each checked against the query.
     fn profiles(&self) -> Result<Vec<Profile>, Failure> {
         let config = |profile| Config { query: self.query, profile, ..Config::default() };
         if self.profile.is_empty() {

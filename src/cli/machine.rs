@@ -12,66 +12,85 @@ use contact_afu::synth::Target;
 use super::failure::{Classify, Failure, Kind};
 use super::link;
 
-/// Everything but how many SCPUs and how fast each takes pairs: a sweep has lists of those.
+/// The options of an AFU except the number of SCPUs and their interval, of which a sweep takes lists.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "The AFU")]
 pub struct Machine {
-    /// Which two bodies a pair is of [default: sphere-sphere]
+    /// The two bodies of a pair [default: sphere-sphere]
     #[arg(long, value_name = "QUERY", value_parser = super::usage::query())]
     pub query: Option<Query>,
-    /// Arithmetic: paper (IEEE binary32), wide, exact, half, bfloat or eXfY (exponent and fraction bits) [default:
-    /// wide]
+    /// Arithmetic: paper, wide, exact, half, bfloat, or eXfY for X exponent and Y fraction bits [default: wide]
+    ///
+    /// `paper` is IEEE binary32, step by step as in the paper. `wide` gives the same bits wherever binary32 neither
+    /// overflows nor underflows, and never fails grossly. `exact` decides every pair correctly; the host resolves the
+    /// pairs that the hardware cannot decide. `half` is IEEE binary16, `bfloat` is bfloat16.
     #[arg(long, value_name = "NAME|eXfY")]
     pub profile: Option<Profile>,
-    /// Rounding: nearest (ties to even) or zero (toward it) [default: nearest]
-    #[arg(long, value_name = "HOW")]
+    /// Rounding mode: nearest (ties to even) or zero (toward zero) [default: nearest]
+    #[arg(long, value_name = "MODE")]
     pub rounding: Option<Rounding>,
-    /// Numbers below the smallest normal one: kept or flushed to zero [default: as the profile has them]
-    #[arg(long, value_name = "HOW")]
+    /// Subnormal numbers: kept (gradual underflow) or flushed (to zero) [default: the profile's own]
+    #[arg(long, value_name = "MODE")]
     pub subnormals: Option<Subnormals>,
-    /// Square root and reciprocal: correct (rounded correctly) or faithful (within a unit, faster) [default: correct]
-    #[arg(long, value_name = "HOW")]
+    /// Square roots and reciprocals: correct (correctly rounded) or faithful [default: correct]
+    ///
+    /// A faithful result is less than one unit in the last place from the exact value, and has a lower latency.
+    #[arg(long, value_name = "MODE")]
     pub roots: Option<Roots>,
-    /// What comes back for a pair: a list of hit, depth, normal, position [default: all four]
+    /// Fields of a contact: a comma-separated list of hit, depth, normal, position [default: all four]
+    ///
+    /// Hardware for the other fields is not generated.
     #[arg(long, value_name = "FIELDS")]
     pub contact: Option<Fields>,
-    /// How pairs are given: direct (both bodies whole) [default: direct]
+    /// Form of the input: direct (each pair holds both bodies) is the only one [default: direct]
     #[arg(long, value_name = "KIND")]
     pub input: Option<Input>,
-    /// Which pairs come back: all, or hits (those that touch, each with its number) [default: all]
+    /// Pairs that the AFU returns: all, or hits (pairs that touch, each with its index) [default: all]
     #[arg(long, value_name = "WHICH")]
     pub results: Option<Results>,
-    /// One radius for all spheres, which is then part of the hardware and of no record [default: each its own]
+    /// One radius for all spheres, finite and at least 0 [default: each sphere has its own]
+    ///
+    /// The radius then is a constant of the hardware, and records leave it out.
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     pub radius: Option<f32>,
-    /// Numbers of records in memory: f32, or f16 or bf16, to which pairs are rounded, and of which a line holds four
-    /// [default: f32]
+    /// Number format of records in memory: f32, f16 or bf16 [default: f32]
+    ///
+    /// With f16 or bf16 the host rounds the pairs, and a 64-byte line holds four pairs instead of two.
     #[arg(long, value_name = "FORMAT")]
     pub record: Option<RecordFormat>,
-    /// Multiplier blocks: use, or spare (roots and reciprocals digit by digit: more logic and cycles, the same bits)
-    /// [default: use]
-    #[arg(long, value_name = "HOW")]
+    /// Multiplier blocks of the FPGA: use or spare [default: use]
+    ///
+    /// `spare` computes roots and reciprocals digit by digit instead of by table. The results have the same bits, but
+    /// need more logic and more cycles.
+    #[arg(long, value_name = "CHOICE")]
     pub multipliers: Option<Multipliers>,
-    /// What stands around the AFU's line port: spl2 (Intel HARP v1), line (nothing) [default: spl2]
+    /// Logic around the AFU's line port: spl2 or line [default: spl2]
+    ///
+    /// `spl2` connects the AFU to SPL2, the interface of Intel's HARP v1 (a Xeon with an FPGA), as in the paper. `line`
+    /// adds nothing: the AFU's own port reads and writes memory in lines of 64 bytes.
     #[arg(long, value_name = "SHELL")]
     pub shell: Option<Shell>,
-    /// Clock to run at, MHz: pipelines are cut for it, and time is told in it [default: 200]
+    /// Clock frequency in MHz, 1 to 2000 [default: 200]
+    ///
+    /// Pipelines are cut into stages for this clock, and it converts cycles into time.
     #[arg(long, value_name = "MHZ")]
     pub clock: Option<f64>,
-    /// Cut pipelines for this clock instead, MHz: a router may reach less than they were cut for [default: --clock]
+    /// Clock in MHz for which pipelines are cut, if the AFU runs at another one [default: --clock]
+    ///
+    /// Place and route may reach a lower clock than the stages were cut for: then --clock is what it reached.
     #[arg(long, value_name = "MHZ")]
     pub cut_for: Option<f64>,
-    /// FPGA family that the Verilog is for: ecp5 or ice40, and for synth also cyclonev or xilinx; only for rtl and
-    /// synth [default: any; of synth ecp5]
-    #[arg(long, value_name = "NAME")]
+    /// FPGA family, only for rtl and synth: ecp5 or ice40, for synth also cyclonev or xilinx [default: any family; for
+    /// synth ecp5]
+    #[arg(long, value_name = "FAMILY")]
     pub target: Option<String>,
-    /// Take the configuration from a manifest.json (or a folder with one); options given beside it win
-    #[arg(long, value_name = "FILE")]
+    /// Read the AFU's configuration from a manifest.json or the folder of one; other options override it
+    #[arg(long, value_name = "FILE|DIR")]
     pub config: Option<PathBuf>,
 }
 
 impl Machine {
-    /// The family whose blocks are written by name; nothing where none is given.
+    /// The family whose blocks are instantiated by name; `None` without `--target`.
     pub fn target(&self) -> Result<Option<Target>, Failure> {
         self.target.as_ref().map(|word| word.parse().map_err(|error| Failure::caused(Kind::Usage, error))).transpose()
     }
@@ -129,11 +148,14 @@ impl Machine {
 /// One AFU.
 #[derive(Args, Debug)]
 pub struct One {
-    /// Sphere Collision Processing Units, 1 to 64 [default: 10]
+    /// Number of SCPUs (sphere collision processing units), 1 to 64 [default: 10]
     #[arg(long, value_name = "N", help_heading = "The AFU")]
     pub scpus: Option<u32>,
-    /// Cycles from one pair to the next in one SCPU, 1 to 64: above 1 it has fewer operators. auto: the most at which
-    /// the link is still what limits [default: auto; of synth and paper 1]
+    /// Initiation interval: an SCPU takes one pair per II cycles, 1 to 64, or auto [default: auto; for synth and paper
+    /// 1]
+    ///
+    /// With a longer interval operations share operators: an SCPU is smaller, but its latency increases. `auto` is the
+    /// longest interval that keeps the AFU link-bound.
     #[arg(long, value_name = "II", help_heading = "The AFU")]
     pub interval: Option<String>,
     #[command(flatten)]

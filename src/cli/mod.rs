@@ -1,4 +1,4 @@
-//! The command line: a file a subcommand, which reads options, calls the library and writes what it gives.
+//! The command line: one file per subcommand, which reads options, calls the library and writes the results.
 
 #[cfg(feature = "cosim")]
 mod accuracy;
@@ -8,6 +8,8 @@ mod completions;
 #[cfg(feature = "cosim")]
 mod cosim;
 mod doctor;
+#[cfg(all(test, feature = "cosim", feature = "ode"))]
+mod documentation;
 mod failure;
 mod hard;
 mod link;
@@ -33,10 +35,14 @@ use clap::{Parser, Subcommand};
 
 use failure::Failure;
 
-/// Generates, simulates and proves the Verilog of a collision-detection accelerator.
+/// Generates, simulates and checks the Verilog of a collision-detection accelerator for FPGAs
 ///
-/// Exit status: 0 pass; 1 a mismatch, a failed check or a job that does not finish; 2 bad usage or input; 3 a missing
-/// tool; 4 anything else. Results go to standard output or files, progress and messages to standard error.
+/// An AFU (accelerator functional unit) reads pairs of bodies from memory and writes a contact for each pair: whether
+/// they touch, depth, normal and position. Its SCPUs (sphere collision processing units) work in parallel.
+/// `afu help COMMAND` explains all options of a command.
+///
+/// Exit status: 0 success; 1 a mismatch, a failed check or a job that did not finish; 2 wrong usage or input; 3 a
+/// missing tool; 4 any other error. Results go to standard output or files. Progress and messages go to standard error.
 #[derive(Parser, Debug)]
 #[command(name = "afu", version = usage::version())]
 pub struct Program {
@@ -44,29 +50,25 @@ pub struct Program {
     command: Command,
 }
 
+/// The subcommands. [`usage::GROUPS`] says how the help groups them.
 #[derive(Subcommand, Debug)]
 enum Command {
-    /// Write the Verilog of an AFU with file list, FuseSoC core, constraints, template and manifest
     Rtl(rtl::Rtl),
     #[cfg(feature = "cosim")]
     Cosim(cosim::Cosim),
-    /// Write a named set of pairs to a file
     Pairs(pairs::Pairs),
     #[cfg(feature = "cosim")]
     Sweep(sweep::Sweep),
     #[cfg(feature = "cosim")]
     Paper(paper::Paper),
     Scene(scene::Scene),
-    /// Measure an operator, an SCPU or the AFU on an FPGA: cells by Yosys, the clock by nextpnr
     Synth(synth::Synth),
     #[cfg(feature = "cosim")]
     Accuracy(accuracy::Accuracy),
     #[cfg(feature = "cosim")]
     Choose(choose::Choose),
     Hard(hard::Hard),
-    /// Say which tools are there, what needs them, and what installs the missing ones
     Doctor(doctor::Doctor),
-    /// Print a shell's completion script
     Completions(completions::Completions),
 }
 

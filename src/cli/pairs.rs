@@ -14,20 +14,29 @@ use contact_afu::report::table::grouped;
 use super::failure::{Failure, Kind};
 use super::{output, usage};
 
+/// Write a named set of test pairs to a CSV or npy file
+///
+/// Other commands accept the file, or the name of the set itself, with --pairs.
 #[derive(Args, Debug)]
 pub struct Pairs {
-    /// diamond:H (candidate pairs of the paper's diamond of H layers), random:N (N seeded pairs of every kind),
-    /// dense:N (N candidate pairs of crowded scenes) or hard:N (N seeded pairs where floating-point engines fail)
+    /// Set of pairs: diamond:H, random:N, dense:N or hard:N
+    ///
+    /// `diamond:H` is the paper's diamond: touching spheres in the shape of an octahedron, with H layers from the
+    /// centre to a tip. `random:N` holds N pairs of every kind: apart, touching, coincident (equal centres; the paper's
+    /// "grazing") and invalid. `dense:N` holds N pairs with overlapping bounding boxes from crowded scenes. `hard:N`
+    /// holds N pairs on which floating-point engines fail.
     #[arg(value_name = "SET")]
     set: Set,
-    /// Which two bodies a pair is of; diamond and dense are of two spheres alone
+    /// The two bodies of a pair; diamond and dense exist for sphere-sphere only
     #[arg(long, value_name = "QUERY", default_value_t, value_parser = usage::query())]
     query: Query,
-    /// Seed of all but the diamond
+    /// Seed of random, dense and hard pairs
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = usage::seed)]
     seed: u64,
-    /// File to write: .csv (the words of a pair, such as x1,y1,z1,r1,x2,y2,z2,r2, in decimals that read back the same)
-    /// or .npy (<f4, n x 8); - is standard output, as CSV
+    /// File to write, .csv or .npy; - writes CSV to standard output
+    ///
+    /// A row of the CSV holds the numbers of a pair, such as x1,y1,z1,r1,x2,y2,z2,r2, with all the digits needed to
+    /// read back the same bits. The npy file holds an N × 8 array of f4.
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
 }
@@ -38,7 +47,7 @@ pub fn load(query: Query, source: &str, seed: u64) -> Result<Vec<PairRecord>, Fa
     Ok(noted(source, pairs::load_with_notes(query, source, seed)?))
 }
 
-/// The pairs of a file. Numbers that had to be rounded are told of on standard error.
+/// The pairs of a file. A note on standard error counts numbers that had to be rounded.
 #[cfg(feature = "cosim")]
 pub fn noted(source: &str, Loaded { pairs, rounded }: Loaded) -> Vec<PairRecord> {
     if let Some(rounded) = rounded {

@@ -16,27 +16,28 @@ use super::machine::One;
 #[cfg(feature = "ode")]
 use super::{link, origin, output, progress};
 
-/// Run the paper's experiment again: its Figures 6 and 7, on real ODE and the simulated AFU
+/// Repeat the paper's experiment (Figures 6 and 7) with ODE and the simulated AFU
 ///
-/// Records collisions in ODE's diamond, times ODE and the f32 kernel on them on this machine, sends them through the
-/// simulated AFU, and writes figure6.svg, figure7.svg, per-collision.svg, CSVs, results.json and report.html. What was
-/// simulated is kept: the same command again goes on where it was stopped.
+/// The command runs a simulation of ODE, the Open Dynamics Engine: the diamond, spheres in the shape of an octahedron
+/// that are pulled to its centre. It times ODE and an f32 kernel on the collisions on this machine, and runs the same
+/// collisions through the simulated AFU. The folder gets report.html, the figures as SVG and CSV, and results.json. If
+/// the command is stopped, the same command resumes.
 ///
-/// Measuring ODE needs the feature `ode`; without it this command ends with status 3 and says how to get it. In the
-/// repository ./scripts/paper does everything.
+/// Without the feature `ode` the command ends with status 3 and says how to build it. In the repository,
+/// ./scripts/paper installs and builds everything.
 #[derive(Args, Debug)]
 #[cfg_attr(not(feature = "ode"), allow(dead_code, reason = "only the program with ODE reads them"))]
 pub struct Paper {
     /// Folder to write
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Fewer points: some seconds
+    /// Measure fewer points, in some seconds
     #[arg(long)]
     quick: bool,
     /// The paper's hMax: layers of the diamond from its centre to a tip, 1 to 40
     #[arg(long, value_name = "LAYERS", default_value_t = 3, help_heading = "The benchmark")]
     h_max: u32,
-    /// The paper's dSph: the gap between neighbouring spheres, whose radius is 0.5
+    /// The paper's dSph: the gap between neighbouring spheres of radius 0.5; at least -1
     #[arg(
         long,
         value_name = "GAP",
@@ -45,16 +46,19 @@ pub struct Paper {
         help_heading = "The benchmark"
     )]
     d_sph: f64,
-    /// The paper's tCol, the kind of collision that counts
+    /// The paper's tCol: the kind of collision to record
+    ///
+    /// `fake` pairs do not touch. `real` pairs touch and have a normal. `grazing` pairs touch with coincident (equal)
+    /// centres, which needs --d-sph -1.
     #[arg(long, value_name = "KIND", default_value = "real", value_parser = ["fake", "real", "grazing"], help_heading = "The benchmark")]
     t_col: String,
-    /// The paper's nColMax: the most collisions, of which points have the first ones; at least 10
+    /// The paper's nColMax: collisions to record, 10 to 1000000; each point of a figure uses the first of them
     #[arg(long, value_name = "N", default_value_t = 90_000, value_parser = clap::value_parser!(u32).range(10..=1_000_000), help_heading = "The benchmark")]
     n_col_max: u32,
-    /// How often each collision is executed for ODE's average
+    /// Executions of each collision for ODE's average time, 1 to 10000
     #[arg(long, value_name = "TIMES", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=10_000), help_heading = "The benchmark")]
     executions: u32,
-    /// The paper's X: transactions that the AFU's average is of, for up to 1000 collisions; above, one
+    /// The paper's X: transactions per point for the AFU's average time, 1 to 1000; always 1 above 1000 collisions
     #[arg(long, value_name = "X", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1000), help_heading = "The benchmark")]
     transactions: u32,
     /// Link between AFU and memory: a name or file as in `afu cosim`
@@ -63,7 +67,7 @@ pub struct Paper {
     /// Seed of the link
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = super::usage::seed)]
     seed: u64,
-    /// Write into the folder even if afu did not make it; other files in it are left alone
+    /// Write into the folder even if afu did not make it; other files in it stay
     #[arg(long)]
     force: bool,
     #[command(flatten)]
@@ -140,7 +144,8 @@ impl From<ode::Error> for Failure {
 #[cfg(not(feature = "ode"))]
 pub fn run(_: &Paper) -> Result<(), Failure> {
     let install = contact_afu::tools::ode_install("paper --out DIR");
-    let message =
-        format!("this program was built without the Open Dynamics Engine, which `afu paper` measures; {install}");
+    let message = format!(
+        "this program was built without the Open Dynamics Engine, which `afu paper` measures; to get it: {install}"
+    );
     Err(Failure::new(Kind::Tool, message))
 }

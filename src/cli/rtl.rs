@@ -6,28 +6,35 @@ use clap::{Args, ValueEnum};
 use contact_afu::afu::{Afu, BuildError, Spec};
 use contact_afu::hdl::Reset;
 use contact_afu::report::folder::{self, Folder};
+use contact_afu::report::table::counted;
 use contact_afu::synth::Target;
 
 use super::failure::{Failure, Kind};
 use super::machine::{One, warn_of_unused_scpus};
 use super::output;
 
+/// Write an AFU's Verilog with file list, constraints, port documentation and test bench
+///
+/// An AFU (accelerator functional unit) reads pairs of bodies from memory and writes a contact for each pair. The
+/// folder also holds a FuseSoC core, an instantiation template and manifest.json, which --config reads. The same
+/// options always give the same bytes.
 #[derive(Args, Debug)]
 pub struct Rtl {
-    /// Folder to write: .v files, file list, FuseSoC core, constraints, instantiation template, PORTS.md, test bench,
-    /// manifest.json
+    /// Folder to write
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     /// Replace the folder even if afu did not write it
     #[arg(long)]
     force: bool,
-    /// Reset level, and whether it acts without a clock edge
+    /// Active level of the reset, and whether it is asynchronous
     #[arg(long, value_enum, value_name = "STYLE", default_value_t = Style::High, help_heading = "The AFU")]
     reset: Style,
-    /// Name that all modules and their files begin with, and a _: so that several AFUs fit in one design
+    /// Begin the names of all modules and files with NAME_, so that one design can hold several AFUs
+    ///
+    /// NAME is 1 to 32 letters, digits and underscores, and does not begin with a digit.
     #[arg(long, value_name = "NAME", help_heading = "The AFU")]
     prefix: Option<String>,
-    /// Link that --interval auto is for: ideal, late, shuffled, hostile, harp1, harp2, pcie3x8, or a file of a link
+    /// Link for which --interval auto chooses the interval: a name or file as in `afu cosim`
     #[arg(long, value_name = "NAME|FILE", default_value = "ideal", help_heading = "The AFU")]
     link: String,
     #[command(flatten)]
@@ -36,9 +43,13 @@ pub struct Rtl {
 
 #[derive(ValueEnum, Clone, Copy, Debug)]
 enum Style {
+    /// Synchronous, active high
     High,
+    /// Synchronous, active low
     Low,
+    /// Asynchronous, active high
     AsyncHigh,
+    /// Asynchronous, active low
     AsyncLow,
 }
 
@@ -72,10 +83,10 @@ pub fn run(options: &Rtl) -> Result<(), Failure> {
     let config = &afu.spec().config;
     warn_of_unused_scpus(config);
     let text = format!(
-        "{}: {} files; {} SCPUs, {}, a contact {} cycles after its pair at {} MHz",
+        "{}: {} files; {}, {}, latency of an SCPU {} cycles at {} MHz",
         options.out.display(),
         files.len(),
-        config.scpus,
+        counted(config.scpus.into(), "SCPU"),
         config.profile,
         afu.kernel().latency,
         config.clock_mhz
@@ -83,11 +94,11 @@ pub fn run(options: &Rtl) -> Result<(), Failure> {
     output::show(&text, false)
 }
 
-/// A family for which there is nothing but the Verilog for all of them.
+/// The error for a family that has no Verilog of its own.
 fn no_blocks(target: Target) -> Failure {
     let message = format!(
-        "--target {target}: there is no Verilog for this family alone; without --target it is for any, with --target \
-         ecp5 or ice40 for one, and `afu synth --target {target}` estimates the area"
+        "--target {target}: afu writes Verilog for ecp5, for ice40, or without --target for any family; \
+         `afu synth --target {target}` estimates the area"
     );
     Failure::new(Kind::Usage, message)
 }

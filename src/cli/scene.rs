@@ -1,4 +1,4 @@
-//! `afu scene`: a scene with only what it calls for.
+//! `afu scene`: runs a scene with only the effects that it asks for.
 
 use std::path::PathBuf;
 
@@ -11,53 +11,53 @@ use contact_afu::scene::{self, Cost, Part, Plan, Scene as Story, SceneError, Sce
 use super::failure::{Classify, Failure, Kind};
 use super::{output, progress};
 
-/// Run a scene with only the effects it calls for, or say what it calls for
+/// Run a scene of bodies with an AFU that computes only what the scene needs
 ///
-/// FILE is TOML (see docs/scene.md; examples/scenes has five). Every effect and every field of a contact is off unless
-/// a line of the scene calls for it: it is then not in the Verilog, not in a record, and its part of ODE is never
-/// called.
+/// A scene is a TOML file of bodies, effects such as gravity and friction, and the outputs you want. docs/scene.md
+/// lists its keys; examples/scenes has five scenes. The AFU computes only the fields of a contact that the scene needs,
+/// and only the effects of the scene run in ODE, the Open Dynamics Engine.
 #[derive(Args, Debug)]
 pub struct Scene {
-    /// The scene
+    /// Scene to run, a TOML file
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Say what is on and off, and which line calls for it; run nothing
+    /// Show what is on and off and which line of the scene needs it; run nothing
     #[arg(long)]
     plan: bool,
-    /// With this effect too: what changes, in the plan and in what it costs
+    /// Show how the plan and its cost change with this effect added; run nothing
     #[arg(long, value_name = "EFFECT", conflicts_with = "without")]
     with: Option<String>,
-    /// Without this effect: what changes, in the plan and in what it costs
+    /// Show how the plan and its cost change without this effect; run nothing
     #[arg(long, value_name = "EFFECT")]
     without: Option<String>,
-    /// Who computes contacts: the simulated AFU in ODE's loop, or the same kernel in software
+    /// Engine that computes the contacts
     #[arg(long, value_name = "ENGINE", default_value = "ode")]
     engine: Who,
-    /// Folder to write: report.html, manifest.json, and what is wanted (trajectories.csv, contacts.csv, energy.csv)
+    /// Folder to write: report.html, manifest.json, and the outputs of the scene as CSV
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Write into the folder even if afu did not make it; other files in it are left alone
+    /// Write into the folder even if afu did not make it; other files in it stay
     #[arg(long, requires = "out")]
     force: bool,
-    /// Write the run as JSON too (schema contact-afu/scene/1); - is standard output
+    /// Also write the results as JSON (schema contact-afu/scene/1) to a file, or to standard output for -
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Have trajectories as npy (f64, steps × bodies × 3) instead of CSV
+    /// Write trajectories as npy (f64, steps × bodies × 3) instead of CSV
     #[arg(long)]
     npy: bool,
-    /// Count LUTs with Yosys (a minute a configuration, kept for the next time)
+    /// Count LUTs with Yosys; this takes about a minute per configuration, and the counts are cached
     #[arg(long)]
     luts: bool,
-    /// With --with and --without, which count LUTs where Yosys is installed: leave it
+    /// Do not count LUTs for --with and --without, which otherwise do if Yosys is installed
     #[arg(long, conflicts_with = "luts")]
     no_luts: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Who {
-    /// The Verilated AFU; a scene that moves is stepped by the Open Dynamics Engine
+    /// The AFU, simulated with Verilator; ODE moves the bodies
     Ode,
-    /// The reference kernel in software, of the same arithmetic
+    /// The reference kernel in software, with the same arithmetic; faster
     Reference,
 }
 
@@ -79,7 +79,7 @@ pub fn run(options: &Scene) -> Result<(), Failure> {
         let cost = options.cost(&plan.config)?;
         return output::show(&format!("{}\n\n{}", plan.text(), cost.text()), false);
     }
-    // Before a model is built for nothing.
+    // Fails before a model is built in vain.
     #[cfg(not(feature = "ode"))]
     if Plan::moves(&story) {
         return Err(without_ode());
@@ -117,7 +117,7 @@ impl Scene {
         Ok(cost)
     }
 
-    /// The cost for a comparison, which counts LUTs wherever that can be done.
+    /// The cost for a comparison, with LUTs if Yosys is installed.
     fn compared(&self, config: &Config) -> Result<Cost, Failure> {
         let mut cost = self.cost(config)?;
         if !self.no_luts && cost.luts.is_none() && contact_afu::tools::Program::yosys().is_ok() {
@@ -129,7 +129,7 @@ impl Scene {
         Ok(cost)
     }
 
-    /// The cost of touching alone, then with one effect of the scene after another.
+    /// The cost of a touching-only query, then with one effect of the scene added after another.
     fn ladder(&self, story: &Story) -> Result<Vec<(String, Cost)>, Failure> {
         let rung = |(name, story): (String, Story)| {
             let plan = Plan::of(&story)?;
@@ -156,7 +156,7 @@ impl Scene {
         use contact_afu::verify::{Bench, BenchEngine};
         if !plan.has(Part::Hit) {
             let mut nobody = plan.config.profile.reference(plan.config.contact);
-            return self.go(story, plan, &mut nobody, "nobody: nothing asks who touches whom");
+            return self.go(story, plan, &mut nobody, "none: the scene needs no contacts");
         }
         let spinner = progress::spinner("building the AFU's model");
         let bench = Bench::new(&plan.config);
@@ -170,7 +170,7 @@ impl Scene {
 
     #[cfg(not(feature = "cosim"))]
     fn simulated(&self, _: &Story, _: &Plan) -> Result<SceneRun, Failure> {
-        let message = "this program was built without simulation (feature `cosim`): give --engine reference";
+        let message = "this program was built without simulation (feature `cosim`); use --engine reference";
         Err(Failure::new(Kind::Tool, message))
     }
 
@@ -217,7 +217,7 @@ fn moving(story: &Story, plan: &Plan, engine: &mut dyn Engine, name: &str) -> Re
     Ok(results?)
 }
 
-/// What a step takes on this host, the engine's part left out: the median of the first hundred.
+/// The time of a step on this host in ns, without the engine's part: the median of the first hundred steps.
 #[cfg(feature = "ode")]
 fn host_step(story: &Story, plan: &Plan) -> Result<Option<f64>, Failure> {
     if !Plan::moves(story) {
@@ -245,7 +245,8 @@ fn moving(_: &Story, _: &Plan, _: &mut dyn Engine, _: &str) -> Result<SceneRun, 
 fn without_ode() -> Failure {
     let install = contact_afu::tools::ode_install("scene FILE");
     let message = format!(
-        "this program was built without the Open Dynamics Engine, which moves the bodies of this scene; {install}"
+        "this program was built without the Open Dynamics Engine, which moves the bodies of this scene; to get it: \
+         {install}"
     );
     Failure::new(Kind::Tool, message)
 }

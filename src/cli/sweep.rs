@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use contact_afu::config::Config;
+use contact_afu::report::table::counted;
 use contact_afu::sweep::{SweepError, SweepResults, Swept, Task, fill};
 
 use super::failure::{Failure, Kind};
@@ -11,40 +12,39 @@ use super::list::List;
 use super::machine::{Machine, warn_of_unused_scpus};
 use super::{link, output, progress};
 
-/// Run the same job on AFUs of different sizes and compare them
+/// Run the same job on AFUs of different sizes: throughput, latency and simulation time
 ///
-/// For each: pairs a second at the clock, cycles a pair, latency, mismatches, seconds to build its model from nothing
-/// and to simulate. Rows are written as they come; the same command again resumes, with more SCPUs or intervals if the
-/// lists are longer.
+/// The table has one row per AFU: pairs per second at the clock, cycles per pair, latency, mismatches, and the seconds
+/// to build its model and to simulate. Each row is written when it is measured. If the command is stopped, or the lists
+/// grow, the same command measures only the rows that are missing.
 #[derive(Args, Debug)]
 pub struct Sweep {
-    /// Numbers of SCPUs: 1,2,4 or 1..16 (16 included)
+    /// Numbers of SCPUs (sphere collision processing units), 1 to 64: 1,2,4 or 1..16 (includes 16)
     #[arg(long, value_name = "LIST", default_value = "1,2,3,7,10,16")]
     scpus: List,
-    /// Cycles from one pair to the next in one SCPU, 1 to 64: a list as above
+    /// Initiation intervals, 1 to 64 cycles between two pairs in one SCPU: 1,2,4 or 1..16 (includes 16)
     #[arg(long, value_name = "LIST", default_value = "1")]
     interval: List,
-    /// Pairs: diamond:H, random:N, dense:N, hard:N, or a .csv or .npy file
+    /// Pairs: diamond:H, random:N, dense:N, hard:N (see `afu help pairs`), or a .csv or .npy file
     #[arg(long, value_name = "SET|FILE", default_value = "diamond:10")]
     pairs: String,
-    /// Link between AFU and memory: ideal, late, shuffled, hostile, harp1, harp2, pcie3x8, or a .toml file of a link
+    /// Link between AFU and memory: a name or file as in `afu cosim`
     #[arg(long, value_name = "NAME|FILE", default_value = "ideal")]
     link: String,
-    /// Seed of random pairs, of the link, and of registers that no reset reaches
+    /// Seed of random pairs, of the link, and of the initial values of registers without reset
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = super::usage::seed)]
     seed: u64,
-    /// Folder to write: report.html (table and plot), throughput.svg, manifest.json (JSON of all), sweep.csv, and
-    /// measurements/, from which the same command resumes
+    /// Folder to write: report.html (table and plot), throughput.svg, manifest.json with all results, sweep.csv, and
+    /// measurements/ to resume from
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Write into the folder even if afu did not make it, or if it holds another sweep, whose rows are replaced; other
-    /// files in it are left alone
+    /// Write into a folder that afu did not make, or replace another sweep; other files stay
     #[arg(long)]
     force: bool,
-    /// Write the figures as JSON too (schema contact-afu/sweep/1); - is standard output
+    /// Also write the results as JSON (schema contact-afu/sweep/1) to a file, or to standard output for -
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Count the cells of one SCPU of each AFU too, with Yosys for an ECP5
+    /// Also count the LUTs, flip-flops and DSP blocks of one SCPU of each AFU: Yosys, for an ECP5
     #[arg(long)]
     synth: bool,
     #[command(flatten)]
@@ -63,14 +63,15 @@ pub fn run(options: &Sweep) -> Result<(), Failure> {
     let bar = progress::spinner("");
     let resumed = fill(&mut results, &configs, &task, &options.out, options.force, |config| {
         bar.set_message(format!(
-            "{} SCPUs, interval {}: building the model and running it",
-            config.scpus, config.interval
+            "{}, interval {}: building the model and running it",
+            counted(config.scpus.into(), "SCPU"),
+            config.interval
         ));
     });
     bar.finish_and_clear();
     let resumed = resumed?;
     if resumed > 0 {
-        eprintln!("{resumed} of {} rows are of an earlier run", results.rows.len());
+        eprintln!("{resumed} of {} rows come from an earlier run", results.rows.len());
     }
     let stdout_taken = options.json.as_deref().is_some_and(output::is_stdout);
     output::show(&results.table(), stdout_taken)?;
@@ -81,12 +82,12 @@ pub fn run(options: &Sweep) -> Result<(), Failure> {
     if bad.is_empty() {
         Ok(())
     } else {
-        Err(Failure::new(Kind::Failed, format!("mismatches with {} SCPUs", bad.join(", "))))
+        Err(Failure::new(Kind::Failed, format!("mismatches or failed checks at SCPUs = {}", bad.join(", "))))
     }
 }
 
 impl Sweep {
-    /// The AFUs, each known to be one that can be generated.
+    /// The configurations of the AFUs, each checked.
     fn configs(&self) -> Result<Vec<Config>, Failure> {
         let base = self.machine.config()?;
         let mut configs = Vec::new();

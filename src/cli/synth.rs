@@ -1,4 +1,4 @@
-//! `afu synth`: an operator, an SCPU or an AFU through Yosys and nextpnr.
+//! `afu synth`: runs an operator, an SCPU or an AFU through Yosys and nextpnr.
 
 use std::path::{Path, PathBuf};
 
@@ -19,41 +19,45 @@ use super::list::List;
 use super::machine::{One, warn_of_unused_scpus};
 use super::{output, progress};
 
+/// Report the area and clock of an operator, an SCPU or an AFU on an FPGA
+///
+/// Yosys counts cells, nextpnr places and routes. Without --operator, --kernel or --compare, the whole AFU is measured.
 #[derive(Args, Debug)]
 pub struct Synth {
-    /// Operators, a list: add, sub, add_magnitudes, mul, square, div, recip, sqrt, halve, greater, at_most,
-    /// root_exceeds, from_record, to_record, or all
+    /// Measure operators, a comma-separated list: add, sub, add_magnitudes, mul, square, div, recip, sqrt, halve,
+    /// greater, at_most, root_exceeds, from_record, to_record, or all
     #[arg(long, value_name = "NAMES", value_delimiter = ',', conflicts_with = "kernel")]
     operator: Vec<String>,
-    /// One SCPU: the kernel with detection of invalid pairs. With neither this nor --operator: the whole AFU
+    /// Measure one SCPU (sphere collision processing unit): the kernel and its detection of invalid pairs
     #[arg(long)]
     kernel: bool,
-    /// Fit the target's delay model to routed graphs, and write it and how good it is to FILE
+    /// Fit the target's delay model to routed circuits and write the model and its errors to FILE
     #[arg(long, value_name = "FILE", conflicts_with_all = ["operator", "kernel", "json", "check"])]
     fit: Option<PathBuf>,
-    /// Read figures that --json wrote, and print docs/operators.md: them beside the best public cores
+    /// Print docs/operators.md, operators beside the best public cores, from files that --json wrote
     #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with_all = ["operator", "kernel", "json", "check", "fit"])]
     table: Vec<PathBuf>,
-    /// Read an SCPU's figures at several intervals that --json wrote, and print docs/interval.md
+    /// Print docs/interval.md, an SCPU's area by initiation interval, from files that --json wrote
     #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with_all = ["operator", "kernel", "json", "check", "fit", "table"])]
     intervals: Vec<PathBuf>,
-    /// With --intervals: write the picture, an SVG file
+    /// Also write the picture of --intervals to an SVG file
     #[arg(long, value_name = "FILE", requires = "intervals")]
     picture: Option<PathBuf>,
-    /// Seeds of the placer; the clock is their median
+    /// Seeds of the placer: 1,2,3 or 1..8 (includes 8); the clock is the median over them
     #[arg(long, value_name = "LIST", default_value = "1,2,3")]
     seeds: List,
-    /// Count cells only
+    /// Count cells, without place and route
     #[arg(long)]
     no_route: bool,
-    /// Operators that can be made in several ways, in each of them side by side: roots and reciprocals by table and by
-    /// recurrence. Of all operators these alone, unless --operator names some
+    /// Compare the architectures of an operator: roots and reciprocals by table and digit by digit
+    ///
+    /// Without --operator, only sqrt and recip are measured.
     #[arg(long, conflicts_with_all = ["kernel", "fit", "table", "intervals"])]
     compare: bool,
-    /// Exit with 1 where a clock is below the one asked for
+    /// Exit with status 1 if a clock is below --clock
     #[arg(long)]
     check: bool,
-    /// Write the figures as JSON too; - is standard output
+    /// Also write the figures as JSON to a file, or to standard output for -
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
     #[command(flatten)]
@@ -93,7 +97,7 @@ pub fn run(options: &Synth) -> Result<(), Failure> {
         None => Ok(()),
         Some(slow) => {
             let clock = slow.clock_mhz.unwrap_or_default();
-            let message = format!("{}: {clock:.1} MHz, not {}", report::title(slow), slow.asked_mhz);
+            let message = format!("{}: expected {} MHz, found {clock:.1}", report::title(slow), slow.asked_mhz);
             Err(Failure::new(Kind::Failed, message))
         }
     }
@@ -118,7 +122,7 @@ fn figures_in(files: &[PathBuf]) -> Result<Vec<Figures>, Failure> {
     for file in files {
         let fail = |error: &dyn std::fmt::Display| Failure::new(Kind::Usage, format!("{}: {error}", file.display()));
         let text = std::fs::read_to_string(file).map_err(|error| fail(&error))?;
-        // One unit's figures, or a list of several's.
+        // A file holds the figures of one unit or a list of figures.
         if text.trim_start().starts_with('[') {
             all.extend(serde_json::from_str::<Vec<Figures>>(&text).map_err(|error| fail(&error))?);
         } else {
@@ -133,7 +137,10 @@ fn fit(file: &Path, target: Target, seeds: &[u32]) -> Result<(), Failure> {
     let fit = synth::fit::fit(target, seeds, |what| spinner.set_message(what.to_owned()))?;
     spinner.finish_and_clear();
     let Some(fit) = fit else {
-        return Err(Failure::new(Kind::Usage, format!("--target {target}: there is no router for it here")));
+        return Err(Failure::new(
+            Kind::Usage,
+            format!("--target {target}: --fit needs a router, and afu has none for this family; use ecp5 or ice40"),
+        ));
     };
     output::show(&report::fit(&fit), output::is_stdout(file))?;
     output::json(file, &fit)
@@ -159,7 +166,7 @@ fn units(options: &Synth, config: &Config, target: Target) -> Result<Vec<Unit>, 
     let models = if options.compare { vec![model.clone(), model.with_spared_multipliers(true)] } else { vec![model] };
     let unit = |name: &str, model: &DelayModel| {
         let (operator, profile) = operator(name, config)?;
-        // As the kernel of the profile has it.
+        // The values that the operator sees in the kernel of this profile.
         let values = match name {
             "from_record" => Values::Finite,
             _ if is_normal => Values::Normal,
@@ -172,7 +179,7 @@ fn units(options: &Synth, config: &Config, target: Target) -> Result<Vec<Unit>, 
     for name in names {
         for made in models.iter().map(|model| unit(name, model)) {
             let made = made?;
-            // Where there is one architecture alone both models give it.
+            // An operator with a single architecture comes out of both models alike.
             if !units.iter().any(|unit| (&unit.name, unit.architecture) == (&made.name, made.architecture)) {
                 units.push(made);
             }
@@ -181,7 +188,7 @@ fn units(options: &Synth, config: &Config, target: Target) -> Result<Vec<Unit>, 
     Ok(units)
 }
 
-/// Those that are an operator of one format, in the order of `all`; after them come the conversions.
+/// The operators of one format, in the order of `all`; the conversions follow them.
 const OPERATORS: [Operator; 12] = [
     Operator::Square,
     Operator::AddMagnitudes,
@@ -197,7 +204,7 @@ const OPERATORS: [Operator; 12] = [
     Operator::RootExceeds,
 ];
 
-/// The names of all.
+/// The names of all operators and conversions.
 fn names() -> Vec<&'static str> {
     OPERATORS.iter().map(|operator| operator.name()).chain(["from_record", "to_record"]).collect()
 }

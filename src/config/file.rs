@@ -30,7 +30,7 @@ pub enum ReadError {
         error: serde_json::Error,
     },
     /// JSON, but of something else.
-    #[error("{}: schema is `{found}`; a configuration is read from `{MANIFEST_SCHEMA}`", path.display())]
+    #[error("{}: expected schema `{MANIFEST_SCHEMA}`, found `{found}`", path.display())]
     Schema {
         /// The file.
         path: PathBuf,

@@ -93,43 +93,41 @@ impl Default for Config {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Error {
     /// Outside [`SCPUS`].
-    #[error("{0} SCPUs: an AFU has 1 to 64")]
+    #[error("{0} SCPUs: expected 1 to 64")]
     Scpus(u32),
     /// Outside [`INTERVALS`].
-    #[error("interval {0}: an SCPU takes a pair every 1 to 64 cycles")]
+    #[error("interval {0}: expected 1 to 64 cycles")]
     Interval(u32),
     /// Not a frequency one can cut stages for.
-    #[error("clock {0} MHz: give a frequency from 1 to 2000 MHz")]
+    #[error("clock {0} MHz: expected 1 to 2000 MHz")]
     Clock(f64),
     /// No part of a Verilog name.
-    #[error("prefix `{0}`: give 1 to {LONGEST_PREFIX} letters, digits and `_`, the first no digit")]
+    #[error("prefix `{0}`: expected 1 to {LONGEST_PREFIX} letters, digits and `_`, and no digit at the start")]
     Prefix(String),
     /// A record of one bit has no room for "unsettled".
-    #[error(
-        "profile exact with contact hit alone: a contact of one bit cannot say that a pair is unsettled; ask for the depth too"
-    )]
+    #[error("profile exact with contact hit alone: one bit cannot mark a pair as unsettled; ask for the depth too")]
     ExactHit,
     /// Records that come back only for contacts leave out those that the host would have to settle.
     #[error(
-        "profile exact with results hits: pairs that only the host can settle would not come back; ask for all results"
+        "profile exact with results hits: unsettled pairs would not come back for the host to resolve; use results all"
     )]
     ExactHits,
     /// What is for spheres alone.
-    #[error("query {0} with {1}: {1} is for sphere-sphere alone; leave it out")]
+    #[error("query {0} with {1}: {1} is for sphere-sphere only; leave it out")]
     SpheresAlone(Query, &'static str),
     /// A radius that no sphere has.
-    #[error("radius {0}: give a finite length, not below 0")]
+    #[error("radius {0}: expected a finite length of at least 0")]
     Radius(f32),
     /// A radius beyond the record's numbers.
-    #[error("radius {0}: is infinite in records of {1}; give a smaller one, or record f32")]
+    #[error("radius {0}: infinite in {1} records; use a smaller radius or record f32")]
     RecordRadius(f32, RecordFormat),
     /// A pair that was rounded is another pair.
     #[error(
-        "profile exact with record {0}: what is exact of a rounded pair is not exact of the pair that was given; use record f32"
+        "profile exact with record {0}: results would be exact for the rounded pairs only, not for yours; use record f32"
     )]
     ExactRecord(RecordFormat),
     /// Known to the design, not built yet.
-    #[error("shell axi: not built yet; there are the line port itself (line) and Intel HARP v1 (spl2)")]
+    #[error("shell axi: not implemented; use spl2 (Intel HARP v1) or line (the line port itself)")]
     Axi,
 }
 
@@ -306,7 +304,7 @@ mod tests {
             ),
             (
                 Config { radius: Some(1e6), record: RecordFormat::F16, ..Config::default() },
-                "radius 1000000: is infinite in records of f16",
+                "radius 1000000: infinite in f16 records",
             ),
             (
                 Config { query: Query::SpherePlane, profile: Profile::EXACT, ..Config::default() },

@@ -8,7 +8,7 @@ use super::verilate;
 #[derive(Debug, thiserror::Error)]
 pub enum CosimError {
     /// Verilator or the C++ compiler is missing.
-    #[error("{name} is missing ({found}); install it: {install}")]
+    #[error("{name} is missing ({found}); install it with: {install}")]
     MissingTool {
         /// The tool.
         name: String,
@@ -55,7 +55,7 @@ pub enum SimulationError {
     #[error("the simulated AFU stopped: {0}")]
     Stopped(String),
     /// A port that is not there, or not as expected.
-    #[error("port `{name}`: expected {expected}, the model has {found}")]
+    #[error("port `{name}`: expected {expected}, found {found} in the model")]
     Port {
         /// The port.
         name: String,

@@ -9,7 +9,7 @@ use crate::record::{JobError, OtherRadius};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum HostError {
     /// No workspace is like that.
-    #[error("a workspace of {0} pages of 2 MB: give it 1 to 1024")]
+    #[error("a workspace of {0} pages of 2 MB: expected 1 to 1024 pages")]
     Pages(u64),
     /// Source and destination cannot lie there.
     #[error("the buffers: {0}")]
@@ -35,14 +35,14 @@ pub enum HostError {
     Radius(#[from] OtherRadius),
     /// The device never said who it is.
     #[error(
-        "AFU_ID never seen in the DSM after {0} cycles: see that the FPGA holds this AFU and that its clock runs, then begin a \
-         new transaction"
+        "AFU_ID not in the DSM after {0} cycles: check that the FPGA holds this AFU and that its clock runs, then begin a new \
+         transaction"
     )]
     NoIdentity(u64),
     /// The device is something else.
     #[error(
-        "the FPGA holds AFU_ID {afu_id:032x} version {version}, this host is for {:032x} version {}: load the AFU that the same \
-         version of this program generated",
+        "expected AFU_ID {:032x} version {}, found {afu_id:032x} version {version}: load the AFU that this version of the \
+         program generates",
         map::AFU_ID,
         map::VERSION
     )]
@@ -54,8 +54,8 @@ pub enum HostError {
     },
     /// The device is another AFU of ours.
     #[error(
-        "the FPGA's AFU differs in {what}: it has {found}, this session expects {expected}: load the AFU that was asked for, or make the \
-         session for the configuration that is there"
+        "the FPGA's AFU differs in {what}: expected {expected}, found {found}; load the AFU of this configuration, or create the \
+         session for the one that is loaded"
     )]
     Capability {
         /// Of what.
@@ -81,11 +81,11 @@ pub enum HostError {
     },
     /// A line of the results that was never written.
     #[error(
-        "line {0} of the destination was never written, though the job ended well: the link lost a write; send it again"
+        "line {0} of the destination was never written, although the job succeeded: the link lost a write; send the job again"
     )]
     Unwritten(u64),
     /// Records that cannot be those of the pairs that touch.
-    #[error("{0}, though the job ended well: send it again, or load an AFU of this program's version")]
+    #[error("{0}, although the job succeeded: send it again, or load the AFU of this version of the program")]
     Hit(#[from] HitError),
     /// The device ended the job with an error.
     #[error("the AFU ended the job with error {code} ({what}): {advice}")]
@@ -99,7 +99,7 @@ pub enum HostError {
     },
     /// Pairs that are none.
     #[error(
-        "{count} invalid pairs, the first is pair {first}, whose {field} is, as {record}, NaN, infinite or a negative radius: mend or leave it out"
+        "{count} invalid pairs; the {field} of the first, pair {first}, is in {record} NaN, infinite or a negative radius: correct it or leave it out"
     )]
     InvalidPairs {
         /// How many.

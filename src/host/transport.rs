@@ -66,7 +66,7 @@ pub trait Transport {
 pub enum TransportError {
     /// An address that the page table has no page for.
     #[error(
-        "page fault: a {what} of virtual line {line:#x}, which no page of the workspace holds; end the transaction, the next begins with a new page table"
+        "page fault: a {what} of virtual line {line:#x}, which no page of the workspace holds; end the transaction: the next one begins with a new page table"
     )]
     PageFault {
         /// Read or write.

@@ -39,12 +39,12 @@ pub enum FormatError {
         fraction: u32,
     },
     /// Faithful roots are promised only where every significand was tried.
-    #[error(
-        "{0}: faithful roots are for fractions of up to {FAITHFUL_FRACTION_BITS} bits, of which every one was tried; use correct roots"
-    )]
+    #[error("{0}: faithful roots exist for fractions of up to {FAITHFUL_FRACTION_BITS} bits; use correct roots")]
     Unfaithful(Format),
     /// The proof of the profile `exact` is for its own arithmetic.
-    #[error("profile exact has its own arithmetic: rounding nearest, subnormals flushed, roots correct")]
+    #[error(
+        "profile exact has its own arithmetic (rounding nearest, subnormals flushed, roots correct); leave out other options"
+    )]
     Exact,
     /// Not an option of the arithmetic.
     #[error("unknown option `{0}` of the arithmetic: use nearest or zero, kept or flushed, correct or faithful")]

@@ -8,14 +8,14 @@ use crate::query::Flow;
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The library did not start.
-    #[error("ODE did not start: it could not allocate what it needs for this thread")]
+    #[error("ODE did not start: it could not allocate its memory for this thread")]
     Start,
     /// The library that was found when the program began is not the one it was built with.
-    #[error("the libode of this machine is of single precision; this program needs one of double precision")]
+    #[error("expected a libode of double precision, found one of single precision")]
     SinglePrecision,
     /// ODE has one collider for all spheres of a process, and it is the other one.
     #[error(
-        "ODE runs with {running} on this thread and {wanted} is asked for: first drop every `Ode` and what was made of it"
+        "ODE runs with {running} on this thread, but {wanted} was requested; first drop every `Ode` and its objects"
     )]
     OtherCollider {
         /// The collider that is in use.
@@ -24,7 +24,7 @@ pub enum Error {
         wanted: Collider,
     },
     /// A number that ODE would answer with an assertion, or not at all.
-    #[error("{what} is {value}: must be from {least} to {most}")]
+    #[error("{what} is {value}: expected {least} to {most}")]
     Number {
         /// What it stands for.
         what: &'static str,
@@ -44,10 +44,12 @@ pub enum Error {
         position: [f64; 3],
     },
     /// A contact of a sphere with itself.
-    #[error("sphere {0} can't touch itself")]
+    #[error("sphere {0} cannot touch itself")]
     Itself(usize),
     /// A contact with a number that is beyond any sphere, or none.
-    #[error("the contact of spheres {first} and {second} has a number beyond any sphere: it would end the simulation")]
+    #[error(
+        "the contact of spheres {first} and {second} has a number beyond all limits, which would end the simulation"
+    )]
     Contact {
         /// Number of the first sphere.
         first: usize,
@@ -58,10 +60,10 @@ pub enum Error {
     #[error("ODE could not allocate the memory for a step")]
     Memory,
     /// The engine failed.
-    #[error("the engine in the place of ODE's collider: {0}")]
+    #[error("the engine that replaces ODE's collider: {0}")]
     Engine(#[source] EngineError),
     /// The engine did not answer every pair, or more than every pair.
-    #[error("the engine gave {contacts} contacts for {pairs} pairs")]
+    #[error("expected {pairs} contacts from the engine, found {contacts}")]
     Count {
         /// Pairs it was given.
         pairs: usize,
@@ -69,7 +71,7 @@ pub enum Error {
         contacts: usize,
     },
     /// The engine's flags are neither contact nor no contact.
-    #[error("the engine gave flags {flags:#x} for the pair of spheres {first} and {second}: neither contact nor none")]
+    #[error("the engine returned flags {flags:#x} for spheres {first} and {second}: neither a contact nor no contact")]
     Flags {
         /// Number of the first sphere.
         first: usize,
@@ -79,7 +81,7 @@ pub enum Error {
         flags: u32,
     },
     /// A simulation without enough collisions of a kind.
-    #[error("{found} {flow} collisions in {steps} steps, and {wanted} were asked for")]
+    #[error("expected {wanted} {flow} collisions, found {found} in {steps} steps")]
     TooFew {
         /// The kind.
         flow: Flow,
@@ -91,6 +93,6 @@ pub enum Error {
         steps: usize,
     },
     /// A kind of collision that no simulation has.
-    #[error("there are no {0} collisions of ODE: use fake, real or grazing")]
+    #[error("ODE has no {0} collisions: use fake, real or grazing")]
     Flow(Flow),
 }

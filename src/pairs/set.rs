@@ -35,7 +35,7 @@ pub enum SetError {
         meant: Option<String>,
     },
     /// A set of spheres alone.
-    #[error("set of pairs `{set}`: it has pairs of spheres alone; for {query} use random:N or hard:N")]
+    #[error("set of pairs `{set}`: it has pairs of two spheres only; for {query} use random:N or hard:N")]
     SpheresAlone {
         /// The set.
         set: Set,
@@ -43,7 +43,7 @@ pub enum SetError {
         query: Query,
     },
     /// Not a number, or too large a one.
-    #[error("set of pairs `{name}`: `{size}` must be a number from {least} to {most}{}", tip(meant))]
+    #[error("set of pairs `{name}`: expected a number from {least} to {most}, found `{size}`{}", tip(meant))]
     Size {
         /// The whole name.
         name: String,

@@ -25,7 +25,7 @@ pub struct Layout {
 /// A pair of spheres that an AFU of one radius cannot be given.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "pair {pair}: its {field} is {found}, and this AFU computes with radius {radius} for every sphere (--radius): leave --radius out, or send spheres of that radius"
+    "pair {pair}: expected {field} = {radius}, the radius of all spheres (--radius), found {found}; leave --radius out, or send spheres of that radius"
 )]
 pub struct OtherRadius {
     /// The pair's number.

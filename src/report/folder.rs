@@ -14,14 +14,14 @@ use crate::files;
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// Something is there that this program did not write.
-    #[error("{}: not written by afu (no manifest.json of ours in it); choose another folder, or give --force to replace it", .0.display())]
+    #[error("{}: not written by afu (it holds no manifest.json of afu); choose another folder, or replace it with --force", .0.display())]
     Foreign(PathBuf),
     /// The path names something other than a folder.
     #[error("{}: is not a folder", .0.display())]
     NotAFolder(PathBuf),
     /// The folder holds results of something else.
     #[error(
-        "{}: it holds {}; choose another folder, or give --force to replace what is there",
+        "{}: it holds {}; choose another folder, or replace it with --force",
         folder.display(), differences.join(", and ")
     )]
     Other {
@@ -39,7 +39,7 @@ pub enum Error {
         message: String,
     },
     /// A file inside would leave the folder.
-    #[error("{0}: a file of a result folder has a plain relative path")]
+    #[error("{0}: expected a plain relative path for a file in a result folder")]
     Path(String),
     /// The file system refused.
     #[error("{}: {error}", path.display())]

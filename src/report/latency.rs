@@ -1,18 +1,18 @@
-//! Where the cycles of a small job go: the sum of the parts beside what the Verilog takes.
+//! Where the cycles of a small job go: the sum of the parts beside the measured cycles of the Verilog.
 
-use super::table::table;
+use super::table::{counted, table};
 use crate::afu::{Afu, Spec};
 use crate::link::LinkModel;
 use crate::pairs::Set;
 use crate::verify::{Bench, Part, VerifyError, account};
 
-/// The parts of a job, and the cycles that it takes.
+/// The parts of a job, and its measured cycles.
 type Column = (Vec<Part>, u64);
 
-/// A table of the parts of jobs of these numbers of pairs, seed 1. `None` where one is no sum of parts ([`account`]).
+/// A table of the parts of jobs with these numbers of pairs and seed 1. `None` if [`account`] cannot split one of them.
 ///
 /// # Errors
-/// What generating or running the AFU gives.
+/// If the AFU cannot be generated or run.
 pub fn text(bench: &Bench, link: &LinkModel, numbers: &[u32]) -> Result<Option<String>, VerifyError> {
     let afu = Afu::generate(Spec::from(bench.config().clone()))?;
     let mut columns: Vec<Column> = Vec::new();
@@ -30,8 +30,8 @@ pub fn text(bench: &Bench, link: &LinkModel, numbers: &[u32]) -> Result<Option<S
     let mut rows: Vec<Vec<String>> = named.map(|name| row(name, &|(parts, _)| of(parts, name))).collect();
     rows.push(row("sum", &|(parts, _)| parts.iter().map(|part| part.cycles).sum()));
     rows.push(row("measured", &|(_, measured)| *measured));
-    let plural = |pairs: u32| format!("{pairs} {}", if pairs == 1 { "pair" } else { "pairs" });
-    let heading: Vec<String> =
-        std::iter::once("cycles".to_owned()).chain(numbers.iter().map(|&pairs| plural(pairs))).collect();
+    let heading: Vec<String> = std::iter::once("cycles".to_owned())
+        .chain(numbers.iter().map(|&pairs| counted(pairs.into(), "pair")))
+        .collect();
     Ok(Some(table(&heading.iter().map(String::as_str).collect::<Vec<_>>(), rows)))
 }

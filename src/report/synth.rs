@@ -1,21 +1,21 @@
-//! What `afu synth` says.
+//! The tables of `afu synth`.
 
 use super::table::{figure, grouped, table};
 use crate::synth::fit::{Fit, Point};
 use crate::synth::{Figures, Hop};
 
-/// The figures of units side by side, then each one's critical path.
+/// The figures of the units side by side, then the critical path of each.
 pub fn text(all: &[Figures]) -> String {
     const HEADING: [&str; 11] =
-        ["unit", "asked", "modelled", "MHz", "cycles", "ns", "LUT", "FF", "DSP", "BRAM", "MHz by seed"];
+        ["unit", "asked MHz", "model MHz", "MHz", "cycles", "ns", "LUT", "FF", "DSP", "BRAM", "MHz by seed"];
     let mut out = table(&HEADING, all.iter().map(row));
     for figures in all.iter().filter(|figures| !figures.critical.is_empty()) {
-        out += &format!("\n\n{}: the slowest path\n{}", title(figures), path(&figures.critical));
+        out += &format!("\n\n{}: critical path\n{}", title(figures), path(&figures.critical));
     }
     out
 }
 
-/// Its architecture, where it has one of several: as in ` by table`.
+/// The architecture, as in ` by table`, if the operator has several.
 pub(super) fn by(figures: &Figures) -> String {
     figures.architecture.map_or_else(String::new, |architecture| format!(" by {}", architecture.name()))
 }
@@ -42,19 +42,19 @@ fn row(figures: &Figures) -> [String; 11] {
     ]
 }
 
-/// A path: stage, time in cells, time on wires, signal.
+/// A path, one line per hop: stage, logic delay, routing delay, signal.
 fn path(hops: &[Hop]) -> String {
     let line = |hop: &Hop| {
         let stage = hop.stage.map_or_else(String::new, |stage| format!("stage {stage}"));
-        format!("  {stage:<9} {:5.2} ns in cells {:5.2} on wires  {}", hop.logic_ns, hop.routing_ns, hop.signal)
+        format!("  {stage:<9} {:5.2} ns logic, {:5.2} ns routing  {}", hop.logic_ns, hop.routing_ns, hop.signal)
     };
     let (logic, routing) = hops.iter().fold((0.0, 0.0), |sum, hop| (sum.0 + hop.logic_ns, sum.1 + hop.routing_ns));
     let mut lines: Vec<String> = hops.iter().map(line).collect();
-    lines.push(format!("  {:<9} {logic:5.2} ns in cells {routing:5.2} on wires", "together"));
+    lines.push(format!("  {:<9} {logic:5.2} ns logic, {routing:5.2} ns routing", "total"));
     lines.join("\n")
 }
 
-/// A fitted model's graphs, and how far it is off.
+/// The circuits that a delay model was fitted to and tested on, with its errors.
 pub fn fit(fit: &Fit) -> String {
     let row = |point: &Point| {
         let set = if point.fitted { "fit" } else { "test" };
@@ -66,8 +66,8 @@ pub fn fit(fit: &Fit) -> String {
         100.0 * errors.fold(0.0, f64::max)
     };
     format!(
-        "{}\nworst: {:.1} % over the fit, {:.1} % over the test",
-        table(&["graph", "set", "routed MHz", "modelled MHz", "error"], fit.points.iter().map(row)),
+        "{}\nlargest error: {:.1} % on the fitted circuits, {:.1} % on the test circuits",
+        table(&["circuit", "set", "routed MHz", "model MHz", "error"], fit.points.iter().map(row)),
         worst(true),
         worst(false)
     )

@@ -14,10 +14,10 @@ where
     aligned_from(1, None, heading, rows)
 }
 
-/// The width of a terminal that text is made for.
+/// The width of a terminal that text is made for, in columns.
 pub const WIDTH: u16 = 100;
 
-/// A table of nothing but text, whose cells are wrapped to keep to [`WIDTH`].
+/// A table whose columns are all text, with cells wrapped to keep to [`WIDTH`].
 pub fn words<R, C>(heading: &[&str], rows: R) -> String
 where
     R: IntoIterator<Item = C>,
@@ -26,7 +26,7 @@ where
     aligned_from(usize::MAX, Some(WIDTH), heading, rows)
 }
 
-/// Columns from `figures` on are on the right.
+/// A table whose columns are right-aligned from the column `figures` on.
 fn aligned_from<R, C>(figures: usize, width: Option<u16>, heading: &[&str], rows: R) -> String
 where
     R: IntoIterator<Item = C>,
@@ -61,6 +61,11 @@ pub fn grouped(number: u64) -> String {
     text
 }
 
+/// A count with its noun: `1 SCPU`, `12 354 pairs`.
+pub fn counted(number: u64, noun: &str) -> String {
+    format!("{} {noun}{}", grouped(number), if number == 1 { "" } else { "s" })
+}
+
 /// A figure with `places` decimals, or a dash for `None` (a job without pairs has no cycles per pair).
 pub fn figure(value: Option<f64>, places: usize) -> String {
     value.map_or_else(|| "-".to_owned(), |value| format!("{value:.places$}"))
@@ -74,6 +79,13 @@ mod tests {
     fn digits_are_grouped_in_threes() {
         for (number, text) in [(0, "0"), (999, "999"), (1000, "1 000"), (12_354, "12 354"), (1_234_567, "1 234 567")] {
             assert_eq!(grouped(number), text);
+        }
+    }
+
+    #[test]
+    fn one_is_singular() {
+        for (number, text) in [(0, "0 pairs"), (1, "1 pair"), (12_354, "12 354 pairs")] {
+            assert_eq!(counted(number, "pair"), text);
         }
     }
 

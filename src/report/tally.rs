@@ -1,4 +1,4 @@
-//! What a simulated job came to: counts that add up over jobs, and the figures that follow from them.
+//! The counts of a simulated job, which add up over jobs, and the figures derived from them.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,7 +6,7 @@ use crate::config::Config;
 use crate::query::Flow;
 use crate::verify::Verdict;
 
-/// Contacts and others, as the AFU's own flags tell them.
+/// The number of pairs of each kind, by the flags that the AFU wrote.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Flows {
     /// No contact (Flow 1).
@@ -14,9 +14,9 @@ pub struct Flows {
     /// Contacts of coincident centres (Flow 2).
     #[serde(rename = "grazing")]
     pub coincident: u64,
-    /// Contacts with a normal of their own (Flow 3).
+    /// Contacts with a defined normal (Flow 3).
     pub real: u64,
-    /// Not pairs of spheres.
+    /// Invalid pairs: an infinity, a NaN or a negative radius.
     pub invalid: u64,
 }
 
@@ -32,15 +32,15 @@ impl Flows {
 pub struct Tally {
     /// Pairs sent.
     pub pairs: u64,
-    /// What came back.
+    /// The pairs by kind.
     pub flows: Flows,
-    /// Pairs that the AFU left to the host, which settled them: their flows are the host's.
+    /// Pairs that the AFU left unsettled. The host resolved them, and `flows` counts its answers.
     pub unsettled: u64,
     /// Records that differ from the reference kernel's.
     pub mismatches: u64,
     /// Clock cycles from start to done.
     pub cycles: u64,
-    /// The fewest cycles in which the link can carry the lines that went over it.
+    /// The link limit: the minimum number of cycles for the lines that were transferred.
     pub limit_cycles: f64,
     /// Cycles from the first line of pairs to the first line of contacts; of several jobs, the first one's.
     pub latency_cycles: Option<u64>,
@@ -53,7 +53,7 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Of a job through an AFU of this configuration.
+    /// The counts of a job on an AFU with this configuration.
     pub fn of(verdict: &Verdict, config: &Config) -> Self {
         let flows = verdict.flows(config);
         let of = |flow: Flow| flows[flow as usize];
@@ -77,7 +77,7 @@ impl Tally {
         }
     }
 
-    /// Both together.
+    /// The sum of both.
     #[must_use]
     pub fn plus(&self, other: &Self) -> Self {
         Self {
@@ -104,22 +104,22 @@ impl Tally {
         per(self.cycles as f64, self.pairs)
     }
 
-    /// The link limit, cycles per pair.
+    /// The link limit in cycles per pair; `None` without pairs.
     pub(crate) fn limit_per_pair(&self) -> Option<f64> {
         per(self.limit_cycles, self.pairs)
     }
 
-    /// Bytes read a pair: of the lines, so what the last one has over counts.
+    /// Bytes read per pair. Whole lines count, so the padding of the last line is included.
     pub(crate) fn read_per_pair(&self) -> Option<f64> {
         per(self.bytes_read as f64, self.pairs)
     }
 
-    /// Bytes written a pair.
+    /// Bytes written per pair, with the padding of the last line.
     pub(crate) fn written_per_pair(&self) -> Option<f64> {
         per(self.bytes_written as f64, self.pairs)
     }
 
-    /// The share of the link's limit that was reached, 0 to 1.
+    /// Throughput as a share of the link limit, 0 to 1; `None` without pairs.
     pub fn efficiency(&self) -> Option<f64> {
         (self.pairs > 0 && self.cycles > 0).then(|| self.limit_cycles / self.cycles as f64)
     }
@@ -134,7 +134,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_job_of_no_pairs_has_no_figures_a_pair() {
+    fn a_job_without_pairs_has_no_figures_per_pair() {
         let none = Tally { cycles: 12, ..Tally::default() };
         assert_eq!((none.cycles_per_pair(), none.limit_per_pair(), none.efficiency()), (None, None, None));
         let some = Tally { pairs: 100, cycles: 88, limit_cycles: 50.0, ..Tally::default() };

@@ -175,7 +175,7 @@ impl Scene {
         let time_step = or(source.number("time_step", raw.time_step, 1e-7)?, 0.01);
         let scpus = raw.scpus.map_or(Given::default_of(10), |scpus| source.given(scpus));
         if !crate::config::SCPUS.contains(&scpus.value) {
-            return Err(source.wrong(scpus.line, "scpus", "an AFU has 1 to 64"));
+            return Err(source.wrong(scpus.line, "scpus", "expected 1 to 64"));
         }
         let accuracy = match raw.accuracy.map(|name| source.given(name)) {
             None => None,

@@ -27,11 +27,11 @@ pub struct Row {
     pub failed_checks: u64,
     /// Clock cycles from start to done.
     pub cycles: u64,
-    /// Clock cycles a pair; none without pairs.
+    /// Clock cycles per pair; `None` without pairs.
     pub cycles_per_pair: Option<f64>,
-    /// Pairs a second at the clock.
+    /// Pairs per second at the clock.
     pub pairs_per_second: Option<f64>,
-    /// The share of the link's limit that was reached.
+    /// Throughput as a share of the link limit, 0 to 1.
     pub efficiency: Option<f64>,
     /// Bytes of the lines read.
     pub bytes_read: u64,
@@ -45,7 +45,7 @@ pub struct Row {
     pub build_seconds: f64,
     /// Seconds the simulation took.
     pub simulation_seconds: f64,
-    /// Look-up tables of one SCPU on an ECP5, as Yosys counts them, where it was asked.
+    /// LUTs of one SCPU on an ECP5 as Yosys counts them; `None` if they were not counted.
     #[serde(default)]
     pub scpu_luts: Option<u64>,
     /// Flip-flops of one SCPU, likewise.
@@ -59,7 +59,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// Of what came of a job.
+    /// The row of a job with this verdict.
     pub(super) fn of(config: &Config, rtl_sha256: &str, verdict: &Verdict, build_seconds: f64) -> Self {
         let tally = Tally::of(verdict, config);
         let cycles_per_pair = tally.cycles_per_pair();
@@ -87,13 +87,13 @@ impl Row {
         }
     }
 
-    /// With what one SCPU takes of a device.
+    /// The row with the area of one SCPU.
     pub(super) fn with_area(self, area: Area) -> Self {
         let Area { luts, ffs, dsps, .. } = area;
         Self { scpu_luts: Some(luts), scpu_ffs: Some(ffs), scpu_dsps: Some(dsps), ..self }
     }
 
-    /// Whether every bit was right.
+    /// Whether there was neither a mismatch nor a failed check.
     pub fn passed(&self) -> bool {
         self.mismatches == 0 && self.failed_checks == 0
     }
@@ -105,14 +105,14 @@ impl Row {
         "pairs",
         "mismatches",
         "cycles",
-        "cycles a pair",
+        "cycles per pair",
         "M pairs/s",
-        "of the link",
-        "latency",
-        "LUT an SCPU",
-        "DSP an SCPU",
-        "build s",
-        "simulation s",
+        "of link limit",
+        "latency, cycles",
+        "LUT per SCPU",
+        "DSP per SCPU",
+        "build, s",
+        "simulation, s",
     ];
 
     /// The row of the table for people.

@@ -32,7 +32,7 @@ pub enum SynthError {
         text: String,
     },
     /// A program wrote what is not understood.
-    #[error("{program} wrote something unexpected for {unit}: {what}")]
+    #[error("unexpected output of {program} for {unit}: {what}")]
     Unexpected {
         /// The program.
         program: String,

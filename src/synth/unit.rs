@@ -99,7 +99,7 @@ impl Unit {
 
     fn of(config: &Config, afu: &Afu) -> Self {
         Self {
-            name: format!("afu of {} SCPUs, {}", config.scpus, config.shell),
+            name: format!("afu of {} SCPU{}, {}", config.scpus, if config.scpus == 1 { "" } else { "s" }, config.shell),
             profile: config.profile.clone(),
             architecture: None,
             interval: Some(config.interval),

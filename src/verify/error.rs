@@ -33,7 +33,7 @@ pub enum VerifyError {
     #[error(transparent)]
     Radius(#[from] OtherRadius),
     /// More pairs than a job's count can say.
-    #[error("{0} pairs: a job has at most 4294967295")]
+    #[error("{0} pairs: expected at most 4294967295 in a job")]
     Pairs(usize),
 }
 

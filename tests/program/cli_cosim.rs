@@ -79,8 +79,11 @@ fn wrong_options_are_exit_2_before_anything_is_built() {
         (&["--pairs", "diamond:0"], "diamond:0"),
         (&["--trace", "wave.txt"], ".vcd or .fst"),
         (&["--contacts", "out.txt"], ".csv or .npy"),
-        (&["--pairs", "diamond:2", "--pairs", "diamond:3", "--contacts", "out.csv"], "--contacts is for one job"),
-        (&["--json", "-", "--junit", "-"], "standard output is for one of them"),
+        (
+            &["--pairs", "diamond:2", "--pairs", "diamond:3", "--contacts", "out.csv"],
+            "--contacts works with one job only",
+        ),
+        (&["--json", "-", "--junit", "-"], "only one of them can write to standard output"),
         (&["--rtl", "absent"], "absent"),
         (&["--rtl", "absent", "--profile", "paper"], "--profile does not go with --rtl"),
         (&["--rtl", "absent", "--query", "sphere-plane"], "--query does not go with --rtl"),
@@ -276,9 +279,10 @@ fn a_terminal_sees_what_is_going_on() {
     let shown =
         Command::new("script").args(["-qec", &command, "/dev/null"]).current_dir(room.path()).assert().success();
     let shown = String::from_utf8_lossy(&shown.get_output().stdout).into_owned();
-    for words in
-        ["making the model of the AFU (Verilator and C++ compiler), 0s", "comparing every bit with the reference, 0s"]
-    {
+    for words in [
+        "building the AFU's model with Verilator and the C++ compiler, 0s",
+        "comparing every bit with the reference, 0s",
+    ] {
         assert!(shown.contains(words), "{words}: {shown}");
     }
 }

@@ -116,7 +116,7 @@ fn the_table_says_what_each_engine_is_worth() {
     // The same command again resumes all, and gives the same files.
     let again = hard(room.path(), &["--pairs", &pairs]).success();
     let said = String::from_utf8(again.get_output().stderr.clone()).expect("UTF-8");
-    assert!(said.contains(&format!("{0} of {0} rows are of an earlier run", rows.len())), "{said}");
+    assert!(said.contains(&format!("{0} of {0} rows come from an earlier run", rows.len())), "{said}");
     assert_eq!(read("out/hard.csv"), csv);
     // Another profile keeps the rows that are known.
     let other = hard(room.path(), &["--pairs", &pairs, "--profile", "exact,half"]).success();
@@ -176,7 +176,7 @@ fn planes_are_judged_too_and_exact_is_for_spheres_alone() {
     let said = String::from_utf8(refused.get_output().stderr.clone()).expect("UTF-8");
     assert_eq!(
         said,
-        "afu: query sphere-plane with profile exact: profile exact is for sphere-sphere alone; leave it out\n"
+        "afu: query sphere-plane with profile exact: profile exact is for sphere-sphere only; leave it out\n"
     );
 
     // Another query in the same folder is another study's table; what was measured is kept.
@@ -184,6 +184,6 @@ fn planes_are_judged_too_and_exact_is_for_spheres_alone() {
     hard(room.path(), &["--pairs", "17", "--profile", "wide"]).success();
     let again = hard(room.path(), &planes).success();
     let said = String::from_utf8(again.get_output().stderr.clone()).expect("UTF-8");
-    assert!(said.contains(&format!("{0} of {0} rows are of an earlier run", rows.len())), "{said}");
+    assert!(said.contains(&format!("{0} of {0} rows come from an earlier run", rows.len())), "{said}");
     assert_eq!(read("hard.csv"), csv);
 }

@@ -124,13 +124,13 @@ fn bad_parameters_are_bad_usage() {
     let out = room.path().join("out");
     let out = out.to_str().expect("a path");
     for (options, words) in [
-        (["--h-max", "0"], "the number of layers is 0: must be from 1 to 40"),
-        (["--d-sph", "-2"], "the gap between spheres is -2: must be from -1"),
+        (["--h-max", "0"], "the number of layers is 0: expected 1 to 40"),
+        (["--d-sph", "-2"], "the gap between spheres is -2: expected -1"),
         (["--t-col", "soft"], "possible values: fake, real, grazing"),
         (["--n-col-max", "9"], "9 is not in 10..=1000000"),
         (["--executions", "0"], "0 is not in 1..=10000"),
         (["--link", "wire"], "unknown link `wire`"),
-        (["--query", "sphere-plane"], "the paper's experiment is for sphere-sphere alone"),
+        (["--query", "sphere-plane"], "the paper's experiment is for sphere-sphere only"),
     ] {
         let told = afu(&[&["paper", "--quick", "--out", out][..], &options].concat()).code(2);
         let text = String::from_utf8_lossy(&told.get_output().stderr).into_owned();

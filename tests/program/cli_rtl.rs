@@ -146,7 +146,7 @@ fn what_is_not_built_yet_or_out_of_range_is_one_line_and_exit_2() {
     assert!(said(&refused).contains("unknown input `indexed`: use direct"), "{}", said(&refused));
     for (arguments, word) in [
         (["--profile", "exact", "--record", "f16"], "profile exact with record f16"),
-        (["--radius", "1e6", "--record", "f16"], "radius 1000000: is infinite in records of f16"),
+        (["--radius", "1e6", "--record", "f16"], "radius 1000000: infinite in f16 records"),
     ] {
         let refused = afu(room.path(), &[&["rtl", "--out", "out"][..], &arguments].concat()).code(2);
         let said = said(&refused);

@@ -31,7 +31,7 @@ fn a_sweep_has_a_row_for_each_size_and_is_resumed() {
     let second_rows = rows(&second);
     assert_eq!(second_rows[0], first_rows[0], "the first row is kept, build time and all");
     let said = String::from_utf8(second.get_output().stderr.clone()).expect("UTF-8");
-    assert!(said.contains("1 of 2 rows are of an earlier run"), "{said}");
+    assert!(said.contains("1 of 2 rows come from an earlier run"), "{said}");
     let cycles = second_rows[1]["cycles_per_pair"].as_f64().expect("a number");
     // Half a cycle, and for a job this small a tenth more for its handshake through memory.
     assert!((0.5..0.65).contains(&cycles), "two take two: {cycles}");

@@ -178,7 +178,7 @@ fn a_wrong_mode_is_the_afus_error_and_a_wrong_afu_ours() {
     let job = Job::new(&source, 8, 4);
     assert_eq!(driver.run(&Job { mode: 3, ..job.clone() }).unwrap().job_error(), Some(JobError::Mode));
     let error = driver.run(&Job { scpus: Some(9), ..job.clone() }).unwrap_err();
-    assert_eq!(error.to_string(), "expected an AFU of 9 SCPUs, this one has 10");
+    assert_eq!(error.to_string(), "expected an AFU with SCPUs = 9, found 10");
     let error = driver.run(&Job { destination_address: job.source_address + 3, ..job.clone() }).unwrap_err();
     assert_eq!(error.to_string(), "the job does not fit: source and destination overlap");
     assert_eq!(driver.run(&Job { scpus: Some(10), ..job }).unwrap().job_error(), None);

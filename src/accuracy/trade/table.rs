@@ -1,17 +1,17 @@
-//! The table for people: a row a configuration, every time beside that of `paper`.
+//! The table for people: one row per configuration, with each time relative to that of `paper`.
 
 use super::{Point, Study};
 use crate::report::table::{grouped, table as drawn};
 
-/// What times are compared with.
+/// The profile that times are relative to.
 pub(super) const BASE: &str = "paper";
-/// Times over a link that differ by less than this share are the same: it stalls at random, and at another clock
-/// otherwise.
+/// Times over a link that differ by less than this share count as equal: the link stalls at random, and differently at
+/// another clock.
 const SAME: f64 = 0.05;
-/// The link is what limits where a pair takes no more than this share longer than it allows.
+/// A configuration is link-bound if its time per pair is at most this share above the link limit.
 const LIMITED: f64 = 0.09;
 
-/// The table, and below it what its words mean.
+/// The table, with a legend below it.
 pub fn table(results: &Study) -> String {
     let has_areas = results.has_areas();
     let mut heading = vec!["", "wrong", "gross", "worst error", "typical", "latency, ns", "×", "link, ns", "×"];
@@ -20,13 +20,13 @@ pub fn table(results: &Study) -> String {
     }
     heading.push("at the link");
     let base = results.point(BASE);
-    // What was not routed is compared with what the other was before it was.
+    // A point that was not routed is compared with the base at its own modelled clock.
     let unrouted = base.map(Point::unrouted);
     let alike = |point: &Point| if point.routed_mhz().is_some() { base } else { unrouted.as_ref() };
     let rows = results.points.iter().map(|point| row(results, point, alike(point), has_areas));
     let scenes = results.scenes().join(" and ");
     let (device, luts) = match has_areas {
-        true => (format!("; a pair through a {} full of SCPUs", results.target.device()), " LUT: of an SCPU."),
+        true => (format!("; device: on a {} full of SCPUs", results.target.device()), " LUT: per SCPU."),
         false => (String::new(), ""),
     };
     let mut text = format!(
@@ -38,9 +38,9 @@ pub fn table(results: &Study) -> String {
         results.link,
     );
     text += if results.points.iter().any(|point| point.routed_mhz().is_some()) {
-        "Clocks are those of place and route, or else of the delay model.\n"
+        "Clocks come from place and route, or from the delay model for what was not routed.\n"
     } else {
-        "Clocks are the delay model's: nothing was placed and routed.\n"
+        "Clocks come from the delay model: nothing was placed and routed.\n"
     };
     results.left_out.iter().for_each(|what| text += &format!("left out: {what}\n"));
     text.trim_end().to_owned()
@@ -70,7 +70,7 @@ fn row(results: &Study, point: &Point, base: Option<&Point>, has_areas: bool) ->
     cells
 }
 
-/// What a point costs more than `base` where a link is in the way.
+/// What a point costs compared with `base` over a link.
 pub(super) fn at_the_link(point: &Point, base: &Point) -> String {
     let ratio = point.link_ns() / base.link_ns();
     let hidden = |point: &Point| point.cycles.link <= point.cycles.link_limit * (1.0 + LIMITED);

@@ -21,7 +21,7 @@ pub enum DriveError {
         what: ProtocolError,
     },
     /// The AFU has another number of SCPUs.
-    #[error("expected an AFU of {expected} SCPUs, this one has {found}")]
+    #[error("expected an AFU with SCPUs = {expected}, found {found}")]
     Scpus {
         /// As the job wants it.
         expected: u32,
@@ -29,7 +29,7 @@ pub enum DriveError {
         found: u32,
     },
     /// The AFU gives other results than the job expects.
-    #[error("expected an AFU that gives {expected} results, this one gives {found}")]
+    #[error("expected an AFU with results {expected}, found {found}")]
     Results {
         /// As the job wants it.
         expected: Results,
@@ -43,11 +43,11 @@ pub enum DriveError {
     #[error("the AFU is busy with another job")]
     Busy,
     /// The outcome of a job was asked for that is not done.
-    #[error("no job is done")]
+    #[error("no job has finished")]
     NotDone,
     /// The job does not end.
     #[error(
-        "the job did not finish after {cycles} cycles: waiting for {waiting} ({} lines read of {} asked for, {} lines written of {} sent)",
+        "the job did not finish after {cycles} cycles: waiting for {waiting} ({} of {} requested lines read, {} of {} lines written)",
         reads.1, reads.0, writes.1, writes.0
     )]
     TimedOut {

@@ -16,13 +16,13 @@ const OVERFLOW: u8 = 6;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ProtocolError {
     /// A request changed before it was accepted.
-    #[error("a {} request changed or vanished before it was accepted", direction(*is_read))]
+    #[error("a {} request changed or was withdrawn before it was accepted", direction(*is_read))]
     Unstable {
         /// Whether it is a read.
         is_read: bool,
     },
     /// A tag was used before the response of its last use.
-    #[error("a {} used tag {tag:#05x}, whose last response has not come yet", direction(*is_read))]
+    #[error("a {} used tag {tag:#05x} before the response to its last use", direction(*is_read))]
     TagReused {
         /// Whether it is a read.
         is_read: bool,
@@ -40,7 +40,7 @@ pub enum ProtocolError {
         epoch: u8,
     },
     /// More requests outstanding than agreed.
-    #[error("more than {MAX_OUTSTANDING} {}s outstanding", direction(*is_read))]
+    #[error("more than {MAX_OUTSTANDING} outstanding {}s", direction(*is_read))]
     TooMany {
         /// Whether they are reads.
         is_read: bool,
@@ -55,7 +55,7 @@ pub enum ProtocolError {
     #[error(transparent)]
     Memory(#[from] Violation),
     /// Done while requests were outstanding.
-    #[error("done with {reads} reads and {writes} writes outstanding")]
+    #[error("done is high with {reads} reads and {writes} writes outstanding")]
     DoneEarly {
         /// Reads without a response.
         reads: u32,
@@ -63,10 +63,10 @@ pub enum ProtocolError {
         writes: u32,
     },
     /// Done and still busy.
-    #[error("done and busy at once")]
+    #[error("done and busy are high in the same cycle")]
     DoneAndBusy,
     /// Done, without an error code, but not all was written.
-    #[error("done, but line {0:#x} of the destination was never written")]
+    #[error("done is high, but line {0:#x} of the destination was never written")]
     Unwritten(u64),
 }
 

@@ -4,7 +4,7 @@ mod json;
 
 use std::collections::BTreeMap;
 
-use super::table::{figure, grouped, table};
+use super::table::{counted, figure, grouped, table};
 use super::tally::Tally;
 use crate::config::{Config, Results};
 use crate::query::Flow;
@@ -13,28 +13,28 @@ use crate::verify::Mismatch;
 /// The JSON's schema. Within a number keys are only added: `CHANGELOG.md` has the rule.
 pub const SCHEMA: &str = "contact-afu/cosim/1";
 
-/// One job: what was sent, and what it came to.
+/// One job: its pairs and its results.
 #[derive(Clone, Debug)]
 pub struct Job {
     /// The pairs: a set's name, or a file.
     pub name: String,
     /// The counts.
     pub tally: Tally,
-    /// What else went wrong: failed checks, or why the job did not finish. Empty in a good job.
+    /// Failed checks, or why the job did not finish. Empty if all checks passed.
     pub failures: Vec<String>,
     /// The first records that differ from the reference's.
     pub mismatches: Vec<Mismatch>,
 }
 
 impl Job {
-    /// Everything that went wrong, in words.
+    /// All failures: the number of mismatches, then the other failures.
     pub(crate) fn all_failures(&self) -> Vec<String> {
         let Tally { pairs, mismatches, .. } = self.tally;
         let differ = format!("{mismatches} of {pairs} records differ from the reference");
         Some(differ).filter(|_| mismatches > 0).into_iter().chain(self.failures.iter().cloned()).collect()
     }
 
-    /// Whether every record is right and nothing else went wrong.
+    /// Whether there is neither a mismatch nor another failure.
     pub fn passed(&self) -> bool {
         self.tally.mismatches == 0 && self.failures.is_empty()
     }
@@ -47,9 +47,9 @@ pub struct Run {
     pub config: Config,
     /// Seed of random pairs and of the link.
     pub seed: u64,
-    /// The command that does all of it again.
+    /// The command that repeats the run.
     pub replay: String,
-    /// Tools and what they say of themselves.
+    /// The version that each tool reports, by the tool's name.
     pub tools: BTreeMap<String, String>,
     /// SHA-256 of the Verilog, in hex.
     pub rtl_sha256: String,
@@ -60,7 +60,7 @@ pub struct Run {
 }
 
 impl Run {
-    /// All jobs together.
+    /// The sum over all jobs.
     pub fn total(&self) -> Tally {
         self.jobs.iter().fold(Tally::default(), |sum, job| sum.plus(&job.tally))
     }
@@ -70,26 +70,26 @@ impl Run {
         self.jobs.iter().all(Job::passed)
     }
 
-    /// Everything that went wrong, each with its job's name.
+    /// The failures of all jobs, each with the name of its job.
     fn failures(&self) -> Vec<String> {
         let of =
             |job: &Job| job.all_failures().into_iter().map(|text| format!("{}: {text}", job.name)).collect::<Vec<_>>();
         self.jobs.iter().flat_map(of).collect()
     }
 
-    /// How it went: a line that begins with PASS or FAIL.
+    /// The verdict: a line that begins with PASS or FAIL.
     pub fn verdict(&self) -> String {
-        let (jobs, pairs) = (self.jobs.len(), grouped(self.total().pairs));
+        let jobs = counted(self.jobs.len() as u64, "job");
         let bad: Vec<&str> = self.jobs.iter().filter(|job| !job.passed()).map(|job| job.name.as_str()).collect();
         if bad.is_empty() {
-            let jobs = if jobs == 1 { "1 job".to_owned() } else { format!("{jobs} jobs") };
-            format!("PASS: {jobs}, {pairs} pairs, every bit as in the reference")
+            let pairs = counted(self.total().pairs, "pair");
+            format!("PASS: {jobs}, {pairs}, every bit as in the reference")
         } else {
-            format!("FAIL: {} of {jobs} jobs: {}", bad.len(), bad.join(", "))
+            format!("FAIL: {} of {} jobs: {}", bad.len(), self.jobs.len(), bad.join(", "))
         }
     }
 
-    /// The table for people: what ran, and one column per job.
+    /// The table for people: what ran, then one column per job.
     pub fn table(&self) -> String {
         let heading: Vec<&str> = [""].into_iter().chain(self.jobs.iter().map(|job| job.name.as_str())).collect();
         let ns = self.config.cycle_ns();
@@ -125,8 +125,13 @@ impl Run {
         let only_hits = if c.results == Results::Hits { " of hits" } else { "" };
         let query = if c.query.is_default() { String::new() } else { format!("{}, ", c.query) };
         let title = format!(
-            "{} SCPUs, {query}{} arithmetic, {}{only_hits}, {} MHz; link {}, seed {}",
-            c.scpus, c.profile, c.contact, c.clock_mhz, self.link, self.seed
+            "{}, {query}{} arithmetic, {}{only_hits}, {} MHz; link {}, seed {}",
+            counted(c.scpus.into(), "SCPU"),
+            c.profile,
+            c.contact,
+            c.clock_mhz,
+            self.link,
+            self.seed
         );
         format!("{title}\n{}", table(&heading, rows.into_iter().map(row)))
     }
@@ -177,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn the_table_has_a_column_a_job() {
+    fn the_table_has_one_column_per_job() {
         expect![[r#"
             10 SCPUs, wide arithmetic, hit,depth,normal,position, 200 MHz; link ideal, seed 1
             ───────────────────────────────────────────────────────────────

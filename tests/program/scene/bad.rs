@@ -39,7 +39,7 @@ fn each_is_one_error_with_line_and_key() {
         ),
         ("want", "accuracy = \"superb\"\nwant", "s.toml:2: accuracy:"),
         ("want", "steps = 0\nwant", "s.toml:2: steps: give 1 to 10 million"),
-        ("want", "scpus = 65\nwant", "s.toml:2: scpus: an AFU has 1 to 64"),
+        ("want", "scpus = 65\nwant", "s.toml:2: scpus: expected 1 to 64"),
         ("[[bodies]]\nshape = \"stack\"\ncount = 3\n", "", "s.toml:1: bodies: there are none"),
         (
             "count = 3\n",

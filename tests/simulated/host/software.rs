@@ -68,7 +68,7 @@ fn another_afu_is_refused_by_what_differs() {
         refused(&mut session, &pairs(3)).to_string()
     };
     let scpus = other(Config { scpus: 3, ..config() });
-    assert!(scpus.starts_with("the FPGA's AFU differs in SCPUs: it has 3, this session expects 10: load"), "{scpus}");
+    assert!(scpus.starts_with("the FPGA's AFU differs in SCPUs: expected 10, found 3; load"), "{scpus}");
     let fields = other(Config { contact: "depth".parse().unwrap(), ..config() });
     assert!(fields.contains("the lowest bit up): it has 3, this session expects 15"), "{fields}");
     let profile = other(Config { profile: "paper".parse().unwrap(), ..config() });
@@ -105,7 +105,7 @@ fn a_dead_device_is_a_time_out_that_says_for_what() {
         let text = error.to_string();
         if left < 5 {
             assert!(matches!(error, HostError::NoIdentity(_)), "{left}: {text}");
-            assert!(text.starts_with("AFU_ID never seen in the DSM after "), "{text}");
+            assert!(text.starts_with("AFU_ID not in the DSM after "), "{text}");
         } else {
             assert!(matches!(error, HostError::NoStatus { .. }), "{left}: {text}");
             assert!(
