@@ -1,6 +1,6 @@
-//! Generates, simulates and proves the Verilog of a collision-detection accelerator.
+//! Generates, simulates and checks the Verilog of a collision-detection accelerator.
 //!
-//! A [`Config`] says which AFU: how many SCPUs, which arithmetic, which clock. [`afu::Afu`] generates its Verilog:
+//! A [`Config`] describes the AFU: how many SCPUs, which arithmetic, which clock. [`afu::Afu`] generates its Verilog:
 //!
 //! ```
 //! use contact_afu::Config;
@@ -12,9 +12,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! With the feature `cosim`, `Bench` simulates it. Pairs of spheres ([`PairRecord`]) go through it over a link
-//! ([`LinkModel`]), and every bit that comes back ([`ContactRecord`]) is compared with the reference kernel. A test in
-//! another crate, for which Verilator and a C++ compiler are installed:
+//! With the feature `cosim`, `Bench` simulates the AFU: pairs of spheres ([`PairRecord`]) go through it over a link
+//! ([`LinkModel`]). `Bench` compares every bit of the contacts ([`ContactRecord`]) with the reference kernel. A test in
+//! another crate, which needs Verilator and a C++ compiler:
 //!
 #![cfg_attr(feature = "cosim", doc = "```no_run")]
 #![cfg_attr(not(feature = "cosim"), doc = "```ignore")]
@@ -30,10 +30,10 @@
 //! | `ode` | no | `ode`: the Open Dynamics Engine; with `cosim`, `paper` | libode in double precision, libclang |
 //! | `parry` | no | parry3d beside the other engines in `accuracy` | parry3d |
 //!
-//! A library's user takes `default-features = false, features = ["cosim"]`. Without any feature the crate is pure Rust
+//! A library should use `default-features = false, features = ["cosim"]`. Without any feature the crate is pure Rust
 //! and needs no tool.
 //!
-//! `ARCHITECTURE.md` is the map: which module does what and who may import whom.
+//! `ARCHITECTURE.md` describes the modules and which of them may import which.
 #![warn(missing_docs)]
 
 pub mod accuracy;

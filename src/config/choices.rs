@@ -1,4 +1,4 @@
-//! The options that are one of a few words.
+//! Options whose value is one of a few words.
 
 use std::fmt;
 use std::str::FromStr;
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::kernel::{narrow, widen};
 use crate::number::Format;
 
-/// Not one of an option's words.
+/// The value of an option is not one of its words.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("unknown {what} `{given}`: use {words}")]
 pub struct ChoiceError {
@@ -52,23 +52,23 @@ macro_rules! choice {
 }
 
 choice!(
-    /// How pairs are given to the AFU.
+    /// The form in which the AFU gets pairs.
     Input, "input", default Direct,
-    /// Both spheres of every pair, whole.
+    /// Both spheres of every pair, in full.
     Direct = "direct"
 );
 
 choice!(
-    /// Which pairs come back.
+    /// The pairs for which the AFU returns a record.
     Results, "results", default All,
     /// A record for every pair, in order.
     All = "all",
-    /// Only contacts, each with its pair's number.
+    /// Only pairs that touch, each with its index.
     Hits = "hits"
 );
 
 choice!(
-    /// What stands around the line port.
+    /// The logic around the line port.
     Shell, "shell", default Spl2,
     /// Nothing: the line port is the top.
     Line = "line",
@@ -79,28 +79,28 @@ choice!(
 );
 
 choice!(
-    /// The numbers of records in memory: pairs are rounded to them when they are written, and contacts come back in
-    /// them.
+    /// The number format of records in memory. Pairs are rounded to it when they are written; contacts are returned in
+    /// it.
     RecordFormat, "record", default F32,
-    /// IEEE binary32: a pair is 32 bytes, two a line.
+    /// IEEE binary32: a pair takes 32 bytes, and a line holds two.
     F32 = "f32",
-    /// IEEE binary16: a pair is 16 bytes, four a line.
+    /// IEEE binary16: a pair takes 16 bytes, and a line holds four.
     F16 = "f16",
-    /// bfloat16, the upper half of binary32: as short, with binary32's range and 8 significant bits.
+    /// bfloat16, the upper half of binary32: 16 bits with the range of binary32 and 8 significant bits.
     Bf16 = "bf16"
 );
 
 choice!(
-    /// Whether multiplier blocks serve where logic does as well. It changes no bit of a result.
+    /// Whether to use multiplier blocks where logic would do as well. The results have the same bits either way.
     Multipliers, "multipliers", default Use,
-    /// Roots and reciprocals by table, the fewest cycles.
+    /// Roots and reciprocals by table, with the lowest latency.
     Use = "use",
     /// Roots and reciprocals digit by digit: for a device that runs out of multiplier blocks first.
     Spare = "spare"
 );
 
 impl Multipliers {
-    /// Whether it is the default, which files leave out.
+    /// True for the default, which files leave out.
     pub(super) fn are_used(&self) -> bool {
         *self == Self::Use
     }
@@ -116,12 +116,12 @@ impl RecordFormat {
         }
     }
 
-    /// A number as a word holds it, rounded to the nearest.
+    /// A number rounded to the nearest that a word can hold.
     pub fn round(self, value: f32) -> f32 {
         f32::from_bits(widen(narrow(value.to_bits(), self.format()), self.format()))
     }
 
-    /// Whether it is the default, which files leave out.
+    /// True for the default, which files leave out.
     pub(super) fn is_f32(&self) -> bool {
         *self == Self::F32
     }

@@ -1,4 +1,4 @@
-//! A configuration out of a manifest.
+//! Reads a configuration from a manifest.
 
 use std::path::{Path, PathBuf};
 use std::{fs, io};
@@ -7,34 +7,34 @@ use serde::Deserialize;
 
 use super::Config;
 
-/// The schema of the manifest that stands beside generated Verilog.
+/// The schema of the manifest in a folder of generated Verilog.
 pub const MANIFEST_SCHEMA: &str = "contact-afu/rtl/1";
 
-/// Why a file gave no configuration.
+/// Why no configuration could be read from a file.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
-    /// It could not be read.
+    /// The file could not be read.
     #[error("{}: {error}", path.display())]
     Io {
-        /// The file.
+        /// The file, for the message.
         path: PathBuf,
-        /// What the file system said.
+        /// The error of the file system.
         error: io::Error,
     },
-    /// It is no JSON, or has a key that is wrong; the message names line and key.
+    /// The file is not JSON, or a key is wrong; the message names line and key.
     #[error("{}: {error}", path.display())]
     Json {
-        /// The file.
+        /// The file, for the message.
         path: PathBuf,
-        /// Where and what.
+        /// The error with line and key.
         error: serde_json::Error,
     },
-    /// JSON, but of something else.
+    /// The JSON has another schema.
     #[error("{}: expected schema `{MANIFEST_SCHEMA}`, found `{found}`", path.display())]
     Schema {
-        /// The file.
+        /// The file, for the message.
         path: PathBuf,
-        /// The schema it names.
+        /// The schema in the file.
         found: String,
     },
 }
@@ -45,10 +45,10 @@ struct Manifest {
     config: Config,
 }
 
-/// Reads the configuration of a manifest; `path` is the file, or the folder it stands in.
+/// Reads the configuration from a manifest; `path` is the file or its folder.
 ///
 /// # Errors
-/// With the file, and line and key where there are any.
+/// If the file cannot be read, is not JSON, or is not a manifest of this schema.
 pub fn read(path: &Path) -> Result<Config, ReadError> {
     let path = if path.is_dir() { path.join("manifest.json") } else { path.to_owned() };
     let text = fs::read(&path).map_err(|error| ReadError::Io { path: path.clone(), error })?;

@@ -1,4 +1,4 @@
-//! What an AFU is asked to be: one value, read from flags or a file, that generator, simulation and reports share.
+//! The configuration of an AFU: one value, read from options or a file, that generator, simulation and reports share.
 
 mod choices;
 mod file;
@@ -13,57 +13,57 @@ use serde::{Deserialize, Serialize};
 use crate::kernel::Reference;
 use crate::query::{Fields, Query};
 
-/// The numbers of SCPUs an AFU can have.
+/// The numbers of SCPUs that an AFU can have.
 pub const SCPUS: std::ops::RangeInclusive<u32> = 1..=64;
 
-/// The intervals an SCPU can have, in cycles.
+/// The initiation intervals that an SCPU can have, in cycles.
 pub const INTERVALS: std::ops::RangeInclusive<u32> = 1..=64;
 
-/// Letters of a prefix, at most.
+/// The maximum length of a prefix, in characters.
 const LONGEST_PREFIX: usize = 32;
 
-/// The configuration of an AFU. [`Config::shipped`] is the one whose Verilog lies in `rtl/`.
+/// The configuration of an AFU. [`Config::shipped`] is the configuration of the Verilog in `rtl/`.
 ///
-/// In JSON it is the object `config` of a manifest; a key left out has its default, an unknown key is refused.
+/// In JSON it is the object `config` of a manifest. Missing keys have their defaults; unknown keys are refused.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Config {
-    /// Sphere Collision Processing Units. A Verilog parameter: it changes no other file than the top's default.
+    /// Number of sphere collision processing units. It is a Verilog parameter and changes only the top's default.
     pub scpus: u32,
-    /// Initiation interval: cycles from one pair to the next in one SCPU, which has as few operators as that allows.
-    /// SCPUs beyond a full line of pairs per cycle (at two pairs per line, beyond the largest multiple of twice the
-    /// interval) are not built.
+    /// Initiation interval: the cycles between two pairs in one SCPU, which has as few operators as that permits. At
+    /// most as many SCPUs are built as take a full line of pairs per cycle. (With two pairs per line, that is the
+    /// largest multiple of twice the interval.)
     pub interval: u32,
-    /// What is asked of a pair.
+    /// The kind of pair, such as sphere-sphere.
     #[serde(skip_serializing_if = "Query::is_default")]
     pub query: Query,
-    /// The arithmetic.
+    /// The arithmetic of the kernel.
     pub profile: Profile,
-    /// Which results come back.
+    /// The fields of a contact that are computed.
     #[serde(with = "text")]
     pub contact: Fields,
-    /// How pairs are given.
+    /// The form in which the AFU gets pairs.
     pub input: Input,
-    /// Which pairs come back.
+    /// The pairs for which the AFU returns a record.
     pub results: Results,
-    /// The one radius of every sphere, a length: it is then part of the hardware, and records have no radii. Without it
-    /// each sphere has its own.
+    /// The radius of all spheres, a length, as a constant of the hardware; records then have no radii. `None`: each
+    /// sphere has its own radius.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub radius: Option<f32>,
-    /// The numbers of records in memory.
+    /// The number format of records in memory.
     #[serde(skip_serializing_if = "RecordFormat::is_f32")]
     pub record: RecordFormat,
-    /// Whether multiplier blocks are to be spared.
+    /// Whether to use multiplier blocks or to spare them.
     #[serde(skip_serializing_if = "Multipliers::are_used")]
     pub multipliers: Multipliers,
     /// The shell around the line port.
     pub shell: Shell,
-    /// The clock, in MHz: simulated time is told in it, and stages are cut for it unless `cut_mhz` says another.
+    /// The clock in MHz. It converts cycles into time, and stages are cut for it unless `cut_mhz` is given.
     pub clock_mhz: f64,
-    /// The clock that stages are cut for, in MHz, where it is another than the AFU runs at: a router reached less, say.
+    /// The clock in MHz that stages are cut for, if it differs: place and route may reach less than they were cut for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cut_mhz: Option<f64>,
-    /// What the names of all modules and of their files begin with, and a `_`: so that several AFUs fit in one design.
+    /// The prefix of the names of all modules and files, before a `_`, so that one design can hold several AFUs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub prefix: Option<String>,
 }
@@ -98,44 +98,44 @@ pub enum Error {
     /// Outside [`INTERVALS`].
     #[error("interval {0}: expected 1 to 64 cycles")]
     Interval(u32),
-    /// Not a frequency one can cut stages for.
+    /// A clock out of range.
     #[error("clock {0} MHz: expected 1 to 2000 MHz")]
     Clock(f64),
-    /// No part of a Verilog name.
+    /// A prefix that cannot begin a Verilog name.
     #[error("prefix `{0}`: expected 1 to {LONGEST_PREFIX} letters, digits and `_`, and no digit at the start")]
     Prefix(String),
-    /// A record of one bit has no room for "unsettled".
+    /// A record of one bit cannot mark a pair as unsettled.
     #[error("profile exact with contact hit alone: one bit cannot mark a pair as unsettled; ask for the depth too")]
     ExactHit,
-    /// Records that come back only for contacts leave out those that the host would have to settle.
+    /// If records come back only for contacts, unsettled pairs would be lost.
     #[error(
         "profile exact with results hits: unsettled pairs would not come back for the host to resolve; use results all"
     )]
     ExactHits,
-    /// What is for spheres alone.
+    /// An option that exists for sphere-sphere only.
     #[error("query {0} with {1}: {1} is for sphere-sphere only; leave it out")]
     SpheresAlone(Query, &'static str),
-    /// A radius that no sphere has.
+    /// A radius that is negative, infinite or a NaN.
     #[error("radius {0}: expected a finite length of at least 0")]
     Radius(f32),
-    /// A radius beyond the record's numbers.
+    /// A radius that overflows in the records' format.
     #[error("radius {0}: infinite in {1} records; use a smaller radius or record f32")]
     RecordRadius(f32, RecordFormat),
-    /// A pair that was rounded is another pair.
+    /// The profile `exact` would be exact for rounded pairs only.
     #[error(
         "profile exact with record {0}: results would be exact for the rounded pairs only, not for yours; use record f32"
     )]
     ExactRecord(RecordFormat),
-    /// Known to the design, not built yet.
+    /// A shell that is not implemented.
     #[error("shell axi: not implemented; use spl2 (Intel HARP v1) or line (the line port itself)")]
     Axi,
 }
 
 impl Config {
-    /// Whether such an AFU can be generated.
+    /// Checks that an AFU of this configuration can be generated.
     ///
     /// # Errors
-    /// What is out of range, or not built yet.
+    /// If a value is out of range, or a combination is not supported.
     pub fn check(&self) -> Result<(), Error> {
         if !SCPUS.contains(&self.scpus) {
             return Err(Error::Scpus(self.scpus));
@@ -179,7 +179,7 @@ impl Config {
         Ok(())
     }
 
-    /// The reference kernel: what every other implementation of this configuration is compared with.
+    /// The reference kernel, with which every implementation of this configuration is compared.
     pub fn reference(&self) -> Reference {
         self.profile.reference(self.contact).of_query(self.query).with_record(self.record.format())
     }
@@ -189,25 +189,24 @@ impl Config {
         self.cut_mhz.unwrap_or(self.clock_mhz)
     }
 
-    /// The name of a module or file with the prefix before it.
+    /// The name of a module or file, with the prefix if there is one.
     pub(crate) fn prefixed(&self, name: &str) -> String {
         self.prefix.as_ref().map_or_else(|| name.to_owned(), |prefix| format!("{prefix}_{name}"))
     }
 
-    /// One clock cycle, in nanoseconds.
+    /// The clock period in nanoseconds.
     pub fn cycle_ns(&self) -> f64 {
         1000.0 / self.clock_mhz
     }
 
-    /// The AFU whose Verilog lies in `rtl/`, and whose model is built in: the default, but for an interval at which its
-    /// ten SCPUs still take a full line of pairs a cycle and none waits for work. It is what `afu rtl` writes without
-    /// options.
+    /// The configuration of the Verilog in `rtl/` and of the built-in model, which `afu rtl` writes without options. It
+    /// is the default, but with the longest interval at which ten SCPUs still take a full line of pairs per cycle.
     pub fn shipped() -> Self {
         Self { interval: 5, ..Self::default() }
     }
 
-    /// The options that give this configuration, those of the default left out. The interval is always among them: on
-    /// the command line its default depends on SCPUs and link.
+    /// The options that give this configuration, without those at their defaults. The interval is always included,
+    /// because its default on the command line depends on SCPUs and link.
     pub fn flags(&self) -> Vec<String> {
         let default = Self::default();
         let radius = |config: &Self| config.radius.map_or(String::new(), |radius| radius.to_string());
@@ -238,7 +237,7 @@ fn is_prefix(text: &str) -> bool {
     is_word && (1..=LONGEST_PREFIX).contains(&text.len()) && !text.starts_with(|c: char| c.is_ascii_digit())
 }
 
-/// Values that are a line of text in JSON.
+/// Values that JSON holds as text.
 mod text {
     use std::fmt::Display;
     use std::str::FromStr;

@@ -1,4 +1,4 @@
-//! The arithmetic by its name.
+//! The arithmetic, by name.
 
 use std::fmt;
 use std::str::FromStr;
@@ -9,16 +9,17 @@ use crate::kernel::{Arithmetic, Reference};
 use crate::number::{Format, FormatError, Roots, Rounding, Subnormals};
 use crate::query::Fields;
 
-/// A named arithmetic (`paper`, `wide`, `exact`, `half`, `bfloat`) or one given by its widths (`eXfY`, `eXfYz`).
+/// An arithmetic with a name (`paper`, `wide`, `exact`, `half`, `bfloat`) or given by its widths (`eXfY`, `eXfYz`).
 ///
-/// Behind the name stand the options in which it differs: `wide+zero`, `paper+flushed`, `wide+kept+faithful`.
+/// Options that differ from the named arithmetic follow the name: `wide+zero`, `paper+flushed`,
+/// `wide+kept+faithful`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Profile {
     name: &'static str,
     format: Format,
 }
 
-/// The named ones.
+/// The profiles that have a name.
 const NAMED: [Profile; 5] = [
     Profile { name: "paper", format: Format::BINARY32 },
     Profile::WIDE,
@@ -28,39 +29,39 @@ const NAMED: [Profile; 5] = [
 ];
 
 impl Profile {
-    /// The default: binary32's significand, and exponents no finite pair exhausts.
+    /// The default: the significand of binary32, with an exponent that no finite pair overflows.
     pub const WIDE: Self = Self { name: "wide", format: Format::WIDE };
 
-    /// Exact squares and a host that settles what they cannot: a kernel of its own.
+    /// Exact squares in a kernel of its own; the host resolves the pairs that this kernel cannot decide.
     pub const EXACT: Self = Self { name: "exact", format: Format::TAIL };
 
-    /// Whether its kernel is the one of exact squares.
+    /// True if the profile uses the kernel of exact squares.
     pub fn is_exact(&self) -> bool {
         *self == Self::EXACT
     }
 
-    /// The same with another rounding.
+    /// This profile with another rounding mode.
     ///
     /// # Errors
-    /// [`FormatError::Exact`] where the profile's proof is for the rounding it has.
+    /// [`FormatError::Exact`] for the profile `exact`, whose proof holds for its own rounding only.
     pub fn with_rounding(self, rounding: Rounding) -> Result<Self, FormatError> {
         let format = self.format.with_rounding(rounding);
         self.with_format(format)
     }
 
-    /// The same with subnormals kept or flushed.
+    /// This profile with subnormals kept or flushed.
     ///
     /// # Errors
-    /// As of [`Profile::with_rounding`].
+    /// As [`Profile::with_rounding`].
     pub fn with_subnormals(self, subnormals: Subnormals) -> Result<Self, FormatError> {
         let format = self.format.with_subnormals(subnormals);
         self.with_format(format)
     }
 
-    /// The same with roots and reciprocals of the other kind.
+    /// This profile with correct or faithful roots and reciprocals.
     ///
     /// # Errors
-    /// As of [`Profile::with_rounding`]; [`FormatError::Unfaithful`] where the fraction is too long for a promise.
+    /// As [`Profile::with_rounding`]; [`FormatError::Unfaithful`] if the fraction is too long for faithful roots.
     pub fn with_roots(self, roots: Roots) -> Result<Self, FormatError> {
         if self.is_exact() && roots != self.format.roots() {
             return Err(FormatError::Exact);
@@ -73,17 +74,17 @@ impl Profile {
         if self.is_exact() && format != self.format { Err(FormatError::Exact) } else { Ok(Self { format, ..self }) }
     }
 
-    /// Its kernel and numbers.
+    /// The kernel and the number format.
     pub fn arithmetic(&self) -> Arithmetic {
         if self.is_exact() { Arithmetic::Exact } else { Arithmetic::Rounded(self.format) }
     }
 
-    /// Its reference kernel.
+    /// The reference kernel of this arithmetic, for these fields of a contact.
     pub fn reference(&self, fields: Fields) -> Reference {
         Reference::of(self.arithmetic(), fields)
     }
 
-    /// The number format of its arithmetic; of `exact`, that of depth, normal and position.
+    /// The number format; for `exact`, the format of depth, normal and position.
     pub const fn format(&self) -> Format {
         self.format
     }

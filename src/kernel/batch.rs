@@ -1,19 +1,20 @@
-//! The binary32 kernel over many pairs at once: structure of arrays, as wide as the processor allows.
+//! The binary32 kernel over many pairs at once: a structure of arrays, as wide as the processor's SIMD registers.
 //!
-//! The same [`contact`](super::contact) again, read with `f32` in a loop without branches, which the compiler turns
-//! into SIMD code. It is compiled once for each instruction set; which one runs is chosen when the program runs.
-//! None of them fuses or reorders operations, so all give the same bits.
+//! It runs the same [`contact`](super::contact) with `f32` in a loop without branches, which the compiler turns into
+//! SIMD code. The loop is compiled for several instruction sets, and the program selects one when it runs. None of them
+//! fuses or reorders operations, so all give the same bits.
 
 use super::reference::native;
 use crate::query::{CONTACT_WORDS, ContactRecord, Fields, PAIR_WORDS, PairRecord, Query};
 
-/// Records side by side in a block: whole registers of every level, and a block of pairs with its block of contacts
-/// is 4 KiB.
+/// Records per block. A column fills whole registers at every level, and a block of pairs with its block of contacts
+/// takes 4 KiB.
 const LANES: usize = 64;
 
-/// Records by column: all first words of a block, then all its second words, and so on.
+/// A block of records by column: all first words, then all second words, and so on.
 ///
-/// A column of a whole batch would be simpler, but sixteen streams through memory evict one another from a cache.
+/// A column over the whole batch would be simpler, but its sixteen streams through memory evict one another from the
+/// cache.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[repr(align(64))]
 struct Block([[u32; LANES]; WORDS]);
@@ -21,7 +22,7 @@ struct Block([[u32; LANES]; WORDS]);
 /// Words of a record of either kind.
 const WORDS: usize = if PAIR_WORDS > CONTACT_WORDS { PAIR_WORDS } else { CONTACT_WORDS };
 
-/// A batch of records, structure of arrays. What the last block has over is zero words.
+/// A batch of records as a structure of arrays. The padding of the last block is zero.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Batch {
     blocks: Vec<Block>,
@@ -29,12 +30,12 @@ pub struct Batch {
 }
 
 impl Batch {
-    /// `count` records of zero words: room for contacts.
+    /// `count` records of zeros: room for contacts.
     pub fn zeros(count: usize) -> Self {
         Self { blocks: vec![Block([[0; LANES]; WORDS]); count.div_ceil(LANES)], count }
     }
 
-    /// The batch of some pairs.
+    /// The batch that holds these pairs.
     pub fn from_pairs(pairs: &[PairRecord]) -> Self {
         let mut batch = Self::zeros(pairs.len());
         for (block, pairs) in batch.blocks.iter_mut().zip(pairs.chunks(LANES)) {
@@ -47,35 +48,35 @@ impl Batch {
         batch
     }
 
-    /// The contacts in a batch of contacts, in their order.
+    /// The contacts in a batch of contacts, in order.
     pub fn contacts(&self) -> impl Iterator<Item = ContactRecord> + '_ {
         let record = |block: &Block, lane: usize| ContactRecord(std::array::from_fn(|word| block.0[word][lane]));
         (0..self.count).map(move |i| record(&self.blocks[i / LANES], i % LANES))
     }
 
-    /// How many records there are.
+    /// The number of records.
     pub fn len(&self) -> usize {
         self.count
     }
 
-    /// Whether there are none.
+    /// True if there are no records.
     pub fn is_empty(&self) -> bool {
         self.count == 0
     }
 }
 
-/// An instruction set the kernel is compiled for.
+/// An instruction set that the kernel is compiled for.
 #[derive(Clone, Copy, Debug)]
 pub struct Level {
     name: &'static str,
     run: Run,
 }
 
-/// Contacts of pairs, block by block. Unsafe where the processor must have an instruction set.
+/// Computes the contacts of pairs, block by block. Unsafe if the processor lacks the instruction set.
 type Run = unsafe fn(&[Block], &mut [Block], Fields);
 
 impl Level {
-    /// What every processor of the target has.
+    /// The level that every processor of the target can run.
     pub(crate) const PORTABLE: Self = Self { name: "portable", run: portable };
 
     /// The levels of this processor, slowest first.
@@ -99,18 +100,18 @@ impl Level {
         Self::available().pop().unwrap_or(Self::PORTABLE)
     }
 
-    /// The name people use.
+    /// The usual name of the instruction set.
     pub const fn name(self) -> &'static str {
         self.name
     }
 
-    /// Puts the contacts of `pairs` into `contacts`: the bits of the binary32 [`Reference`](super::Reference).
+    /// Writes the contacts of `pairs` to `contacts`, with the bits of the binary32 [`Reference`](super::Reference).
     ///
     /// # Panics
-    /// When the two differ in length.
+    /// If the two batches differ in length.
     pub fn run(self, pairs: &Batch, contacts: &mut Batch, fields: Fields) {
         assert_eq!(pairs.len(), contacts.len(), "as many contacts as pairs");
-        // SAFETY: a level exists only where `available` found its instruction set, or needs none.
+        // SAFETY: `available` returns a level only if the processor has its instruction set.
         unsafe { (self.run)(&pairs.blocks, &mut contacts.blocks, fields) }
     }
 }
@@ -131,11 +132,11 @@ fn avx512(pairs: &[Block], contacts: &mut [Block], fields: Fields) {
     blocks(pairs, contacts, fields);
 }
 
-/// The loop that is compiled for each level. A field's bits do not depend on what else is asked for, so two bodies
-/// are enough: with and without a root.
+/// The loop that is compiled for each level. The bits of a field do not depend on the other fields, so two versions are
+/// enough: with and without a root.
 #[inline(always)]
 fn blocks(pairs: &[Block], contacts: &mut [Block], fields: Fields) {
-    // Once, since a block takes no longer than this.
+    // Computed once, because it takes as long as a block.
     let mut is_asked = [false; WORDS];
     ContactRecord::words(fields).for_each(|word| is_asked[word] = true);
     for (pairs, contacts) in pairs.iter().zip(contacts) {

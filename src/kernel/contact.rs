@@ -1,26 +1,26 @@
-//! What a kernel gives, and what all kernels do alike with it.
+//! The contact that a kernel computes, and the steps that all kernels share.
 
 use crate::number::{Format, Number};
 use crate::query::{Fields, NUMBERS};
 use nalgebra::Vector3;
 
-/// What a pair gives. Without a hit every number is zero.
+/// A contact in the arithmetic of the kernel. Without a hit every number is zero.
 #[derive(Clone, Copy, Debug)]
 pub struct Contact<T: Number> {
-    /// Whether the bodies touch.
+    /// True if the bodies touch.
     pub hit: T::Bool,
-    /// Whether they touch with coincident centres, so that the normal is chosen and not computed.
+    /// True if they touch with coincident centres. The normal is then chosen, not computed.
     pub coincident: T::Bool,
-    /// Where they touch.
+    /// The point of contact.
     pub position: Vector3<T>,
-    /// The direction that parts them, pointing into the first.
+    /// The unit normal, pointing into the first body.
     pub normal: Vector3<T>,
-    /// How deep they overlap.
+    /// The penetration depth.
     pub depth: T,
 }
 
 impl<T: Number> Contact<T> {
-    /// No number, only the decision.
+    /// The decision only: every number is zero.
     #[inline(always)]
     pub(super) fn decision(hit: T::Bool, coincident: T::Bool, unasked: T) -> Self {
         let nowhere = Vector3::new(unasked, unasked, unasked);
@@ -35,14 +35,14 @@ impl<T: Number> Contact<T> {
     }
 }
 
-/// What becomes of a kernel's numbers: zero without a hit, then converted to the record; nothing at all if not asked
-/// for.
+/// How a kernel's numbers become those of a record: zero without a hit, then converted to the record's format. Numbers
+/// that are not asked for are not computed.
 #[derive(Clone, Copy)]
 pub(super) struct Delivery<T: Number> {
     pub hit: T::Bool,
-    /// In the kernel's own format.
+    /// Zero in the kernel's own format.
     pub zero: T,
-    /// Zero in the record's.
+    /// Zero in the record's format, for numbers that are not asked for.
     pub unasked: T,
     pub record: Format,
     pub fields: Fields,
@@ -82,13 +82,13 @@ pub(super) fn named<T: Number>(v: Vector3<T>, [x, y, z]: [&str; 3]) -> Vector3<T
     Vector3::new(v.x.named(x), v.y.named(y), v.z.named(z))
 }
 
-/// The sizes that the errors of a true contact are judged by.
+/// The magnitudes relative to which the errors of a contact are judged.
 #[derive(Clone, Copy, Debug)]
 pub struct Scale {
-    /// Of the depth: the sum of the sizes that it is made of.
+    /// For the depth: the sum of the magnitudes that it is computed from.
     pub depth: f64,
-    /// Of the position: the largest number that it is made of.
+    /// For the position: the largest magnitude that it is computed from.
     pub position: f64,
-    /// Of each component of the position: the largest number that it is made of.
+    /// For each component of the position: the largest magnitude that it is computed from.
     pub axes: [f32; 3],
 }

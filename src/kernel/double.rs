@@ -1,11 +1,11 @@
-//! The same formula in binary64 over many pairs at once: what software does that wants more than binary32.
+//! The same formula in binary64 over many pairs at once: what software would do for more accuracy than binary32.
 //!
-//! For comparison only: its decision is that of the rounded root, its input and output are `f64`, and no hardware is
-//! held against it.
+//! For comparison only: it decides by the rounded root, its input and output are `f64`, and no hardware is compared
+//! with it.
 
 use crate::query::PairRecord;
 
-/// Pairs side by side in a block.
+/// Pairs per block.
 const LANES: usize = 32;
 
 /// Numbers by column: x y z r of both spheres, or position, normal, depth and 1 for a contact.
@@ -13,7 +13,7 @@ const LANES: usize = 32;
 #[repr(align(64))]
 struct Block([[f64; LANES]; 8]);
 
-/// Pairs in binary64, structure of arrays, and room for their contacts.
+/// Pairs in binary64 as a structure of arrays, with room for their contacts.
 #[derive(Clone, Debug)]
 pub struct Doubles {
     pairs: Vec<Block>,
@@ -22,7 +22,7 @@ pub struct Doubles {
 }
 
 impl Doubles {
-    /// Some pairs, each number as it is.
+    /// These pairs, converted without rounding.
     pub fn from_pairs(pairs: &[PairRecord]) -> Self {
         let empty = vec![Block([[0.0; LANES]; 8]); pairs.len().div_ceil(LANES)];
         let mut doubles = Self { contacts: empty.clone(), pairs: empty, count: pairs.len() };
@@ -34,17 +34,17 @@ impl Doubles {
         doubles
     }
 
-    /// Computes all contacts with the widest instructions of this processor, and says which.
+    /// Computes all contacts with the widest SIMD instructions of this processor, and returns their name.
     pub fn run(&mut self) -> &'static str {
         #[cfg(target_arch = "x86_64")]
         {
             if is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq") {
-                // SAFETY: the processor has them.
+                // SAFETY: the processor was found to have AVX-512.
                 unsafe { avx512(&self.pairs, &mut self.contacts) };
                 return "AVX-512";
             }
             if is_x86_feature_detected!("avx2") {
-                // SAFETY: the processor has them.
+                // SAFETY: the processor was found to have AVX2.
                 unsafe { avx2(&self.pairs, &mut self.contacts) };
                 return "AVX2";
             }
@@ -53,7 +53,7 @@ impl Doubles {
         "portable"
     }
 
-    /// The contacts: position, normal and depth, or nothing where spheres are apart.
+    /// The contacts: position, normal and depth, or `None` if the spheres do not touch.
     pub fn contacts(&self) -> impl Iterator<Item = Option<[f64; 7]>> + '_ {
         (0..self.count).map(|i| {
             let [x, y, z, nx, ny, nz, depth, hit] =

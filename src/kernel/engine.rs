@@ -1,20 +1,20 @@
-//! What computes contacts in batches: the seam between those who have pairs and those who can do them.
+//! Engines: anything that computes contacts in batches, such as a kernel in software or an AFU.
 
 use super::Reference;
 use super::batch::{Batch, Level};
 use crate::query::{ContactRecord, Fields, PairRecord};
 
-/// Why an engine gave no contacts: whatever its own error is.
+/// The error of an engine, of any type.
 pub type EngineError = Box<dyn std::error::Error + Send + Sync>;
 
-/// A batch of pairs in, as many contacts out, in their order: a kernel in software, or an AFU behind its host.
+/// Computes one contact per pair, in order: a kernel in software, or an AFU behind its host.
 ///
-/// A batch and not a pair, because an AFU needs a transaction for each call.
+/// The unit is a batch, because an AFU needs a transaction for each call.
 pub trait Engine {
-    /// The contacts of `pairs`, one each, in their order.
+    /// The contacts of `pairs`, one each, in order.
     ///
     /// # Errors
-    /// When the engine could not do its work; there are no contacts then.
+    /// If the engine fails; it then returns no contacts.
     fn contacts(&mut self, pairs: &[PairRecord]) -> Result<Vec<ContactRecord>, EngineError>;
 }
 
@@ -30,7 +30,7 @@ impl Engine for Reference {
     }
 }
 
-/// Every field of every contact, by the batch kernel at this level.
+/// Computes every field of every contact with the batch kernel at this level.
 impl Engine for Level {
     fn contacts(&mut self, pairs: &[PairRecord]) -> Result<Vec<ContactRecord>, EngineError> {
         let pairs = Batch::from_pairs(pairs);

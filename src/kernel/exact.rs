@@ -1,4 +1,5 @@
-//! The kernel of the profile `exact`: a decision and a depth from exact squares, or the admission that they need more.
+//! The kernel of the profile `exact`: it decides and computes the depth from exact squares, or reports the pair as
+//! unsettled.
 
 use super::contact::{Contact, Delivery};
 use super::sphere_sphere::Spheres;
@@ -6,21 +7,21 @@ use crate::number::{Format, Window};
 use crate::query::Fields;
 use nalgebra::Vector3;
 
-/// A contact as far as the kernel can tell.
+/// A contact, or an unsettled pair.
 #[derive(Clone, Copy, Debug)]
 pub struct Filtered<T: Window> {
-    /// The contact; no hit where it is unsettled.
+    /// The contact; no hit if the pair is unsettled.
     pub contact: Contact<T>,
-    /// Whether the pair is valid but its decision, or the leading bits of its depth, need more than the window.
+    /// True if the pair is valid, but its decision or the leading bits of its depth need more than the window.
     pub unsettled: T::Bool,
 }
 
-/// The contact of two spheres that are `valid`, their words by their places in the record; the words and the contact's
-/// numbers are in the format `record`. Fields that are not asked for are zero.
+/// The contact of two spheres that are `valid`. Words are given by their index in the record; words and results are in
+/// the format `record`. Fields that are not asked for are zero.
 ///
-/// With T = (r1+r2)² − |p1−p2|² the spheres touch where T ≥ 0, and their depth is T / ((r1+r2) + |p1−p2|), in which
-/// nothing cancels. Differences are in [`Format::DIFFERENCE`], T in a window of exact squares ([`Window`]), and what
-/// follows in [`Format::TAIL`]. `docs/exact.md` proves that every number is within a unit in the last place.
+/// With T = (r1+r2)² − |p1−p2|² the spheres touch if T ≥ 0, and their depth is T / ((r1+r2) + |p1−p2|), in which
+/// nothing cancels. Differences are in [`Format::DIFFERENCE`], T is in a window of exact squares ([`Window`]), and the
+/// rest is in [`Format::TAIL`]. `docs/exact.md` proves that every number is within one unit in the last place.
 pub fn exact<T: Window>(word: impl Fn(usize) -> T, valid: T::Bool, record: Format, fields: Fields) -> Filtered<T> {
     let pair = Spheres::read(word);
     let (difference, tail) = (Format::DIFFERENCE, Format::TAIL);
@@ -32,7 +33,7 @@ pub fn exact<T: Window>(word: impl Fn(usize) -> T, valid: T::Bool, record: Forma
     let excess = sum.square_excess([x, y, z], tail).named("excess");
 
     let zero = excess.constant(0.0);
-    // In doubt the excess is a NaN, of which nothing holds.
+    // If the window does not suffice, the excess is a NaN, for which every comparison is false.
     let unsettled = valid & !(excess.gt(zero) | excess.le(zero));
     let hit = valid & zero.le(excess);
 
@@ -47,7 +48,7 @@ pub fn exact<T: Window>(word: impl Fn(usize) -> T, valid: T::Bool, record: Forma
     let inverse = d.recip().named("inverse_distance");
     let [nx, ny, nz] = [(x, "nx"), (y, "ny"), (z, "nz")].map(|(v, name)| (v * inverse).named(name));
     let s = sum.to(tail).named("tail_radius_sum");
-    // Coincident centres: the depth is the sum of the radii as it is, and nothing is divided by zero.
+    // Coincident centres: the depth is the sum of the radii itself, and nothing is divided by zero.
     let depth = T::select(coincident, s, excess / (s + d)).named("overlap");
     let r1 = pair.r1.to(tail);
     let k = (depth * depth.constant(0.5) - r1).named("offset");

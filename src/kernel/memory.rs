@@ -1,18 +1,18 @@
-//! Words of records in memory that are shorter than binary32: pairs are rounded to them on their way in, and what comes
-//! back is widened, which loses nothing.
+//! Record formats that are shorter than binary32: pairs are rounded to them when they are written, and results are
+//! widened, which is exact.
 
 use crate::number::{Format, Number, Rounding, Soft};
 use crate::query::PairRecord;
 
-/// Whether records in this format are the binary32 words themselves.
+/// True if records in this format are the binary32 words themselves.
 #[inline]
 const fn is_binary32(record: Format) -> bool {
     record.exponent_bits() == 8 && record.fraction_bits() == 23
 }
 
 /// The word of `record` for a binary32 word: rounded to the nearest, ties to even, whatever the format's own rounding
-/// (IEEE 754-2019, clause 5.4.2). What is too large becomes infinite; a NaN becomes the canonical one. Words of
-/// binary32 are left as they are.
+/// (IEEE 754-2019, clause 5.4.2). Overflow gives an infinity; a NaN becomes the canonical one. Words of binary32 stay
+/// as they are.
 pub fn narrow(word: u32, record: Format) -> u32 {
     if is_binary32(record) {
         return word;
@@ -20,8 +20,8 @@ pub fn narrow(word: u32, record: Format) -> u32 {
     Soft::from_bits(Format::BINARY32, word.into()).to(record.with_rounding(Rounding::Nearest)).bits() as u32
 }
 
-/// The binary32 word of a word of `record`, which has no more exponent or fraction bits: the same number. No two words
-/// become one: a NaN keeps its fraction, in the leading bits.
+/// The binary32 word of a word of `record`, which has no more exponent or fraction bits: the same number. The mapping
+/// is one-to-one: a NaN keeps its fraction in the leading bits.
 pub fn widen(word: u32, record: Format) -> u32 {
     if is_binary32(record) {
         return word;
@@ -36,8 +36,8 @@ pub fn widen(word: u32, record: Format) -> u32 {
 }
 
 impl PairRecord {
-    /// The pair as records in `record` hold it: each word [`narrow`]ed, and [`widen`]ed again. A coordinate that is
-    /// finite here can be infinite there, and the pair so invalid; a negative radius can be −0, which is one.
+    /// The pair as records in `record` hold it: each word [`narrow`]ed and [`widen`]ed again. A finite coordinate can
+    /// become infinite, which makes the pair invalid; a negative radius can become −0, which is valid.
     #[must_use]
     pub fn rounded(self, record: Format) -> Self {
         if is_binary32(record) { self } else { Self(self.0.map(|word| widen(narrow(word, record), record))) }
@@ -71,7 +71,7 @@ mod tests {
     #[test]
     fn pairs_are_rounded_to_the_nearest_even() {
         let to = |record, value: f32| f32::from_bits(widen(narrow(value.to_bits(), record), record));
-        // Of f16: a tie down and a tie up, the largest, what rounds beyond it, the smallest, half of that.
+        // For f16: a tie down and a tie up, the largest number, an overflow, the smallest number, half of it.
         for (value, expected) in [
             (1.0 + 1.0 / 2048.0, 1.0),
             (1.0 + 3.0 / 2048.0, 1.0 + 2.0 / 1024.0),
@@ -89,7 +89,7 @@ mod tests {
             let expected = (word + 0x7FFF + (word >> 16 & 1)) >> 16;
             assert_eq!(narrow(word, Format::BFLOAT), expected);
         }
-        // A rounding that the arithmetic has is not that of the host.
+        // The host rounds to the nearest, whatever the rounding of the arithmetic.
         let toward_zero = Format::HALF.with_rounding(Rounding::TowardZero);
         assert_eq!(to(toward_zero, 1.0 + 3.0 / 2048.0), 1.0 + 2.0 / 1024.0);
     }

@@ -1,5 +1,5 @@
 //! The mathematics of every query, written once for every [`Number`]: the reference kernel, its exact twins and the
-//! netlist are readings of [`contact()`].
+//! netlist all instantiate [`contact()`].
 
 pub mod batch;
 mod contact;
@@ -24,7 +24,7 @@ pub use truth::{Truth, UlpErrors, ulp};
 use crate::number::{Format, Number, Precise};
 use crate::query::{Fields, PairRecord, Query};
 
-/// The one place that knows which file has a query's mathematics.
+/// The only place that maps a query to the file with its mathematics.
 macro_rules! of_query {
     ($query:expr, $function:ident($($argument:expr),*)) => {
         match $query {
@@ -34,11 +34,11 @@ macro_rules! of_query {
     };
 }
 
-/// The contact of a pair that is `valid`, computed in the format `arithmetic`; the pair's words, by their places in its
-/// record, and the contact's numbers are in the format `record`. Fields that are not asked for are zero.
+/// The contact of a pair that is `valid`, computed in the format `arithmetic`. Words are given by their index in the
+/// record; words and results are in the format `record`. Fields that are not asked for are zero.
 ///
-/// The order of every sum and product is part of the contract: each rounds once, and hardware, reference and peers
-/// must round alike. Touching counts as contact.
+/// The order of every sum and product is part of the contract: each rounds once, and hardware, reference and other
+/// engines must round alike. Touching counts as contact.
 #[inline(always)]
 pub fn contact<T: Number>(
     query: Query,
@@ -51,12 +51,12 @@ pub fn contact<T: Number>(
     of_query!(query, contact(word, valid, arithmetic, record, fields))
 }
 
-/// How far the decision about a valid pair is from being the other one, as a share of what it is made of: 0 to 1.
+/// The margin of the decision about a valid pair, relative to the magnitudes that it depends on: 0 to 1.
 fn margin(query: Query, word: impl Fn(usize) -> Precise) -> f64 {
     of_query!(query, margin(word))
 }
 
-/// What the errors of a contact are judged by.
+/// The magnitudes relative to which the errors of a contact are judged.
 fn scale(query: Query, pair: &PairRecord) -> Scale {
     of_query!(query, scale(pair))
 }

@@ -4,14 +4,14 @@ use super::{Contact, Filtered, contact, exact, narrow, settle, widen};
 use crate::number::{Format, Number, Soft};
 use crate::query::{ContactRecord, Fields, Flow, PairRecord, Query};
 
-/// The only NaN in any record that this crate computes.
+/// The only NaN that this crate computes in any record.
 const NAN: u32 = 0x7FC0_0000;
 
-/// What every other implementation is compared with, bit for bit.
+/// The reference kernel, with which every implementation is compared bit by bit.
 ///
-/// In binary32 it computes with the machine's `f32`, in any other format with [`Soft`]. Pairs and contacts are given as
-/// binary32; where records in memory are shorter ([`Reference::with_record`]), pairs are rounded to them first, and the
-/// contact's words are those of memory, widened.
+/// In binary32 it computes with the machine's `f32`, in any other format with [`Soft`]. Pairs and contacts are in
+/// binary32. If records in memory are shorter ([`Reference::with_record`]), pairs are rounded to them first, and the
+/// words of a contact are those of memory, widened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reference {
     query: Query,
@@ -20,17 +20,17 @@ pub struct Reference {
     record: Format,
 }
 
-/// Which kernel, in which numbers.
+/// The kernel and its number format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Arithmetic {
-    /// [`contact`], in one format.
+    /// [`contact`] in one format.
     Rounded(Format),
-    /// [`exact`], in its own formats.
+    /// [`exact`] in its own formats.
     Exact,
 }
 
 impl Arithmetic {
-    /// The format of the pair's and the contact's words, of the widths of `record`: written by the same rounding.
+    /// The format of the words of pairs and contacts: the widths of `record`, with the rounding of this arithmetic.
     pub const fn record(self, record: Format) -> Format {
         match self {
             Self::Rounded(format) => format.record(record),
@@ -40,7 +40,8 @@ impl Arithmetic {
 }
 
 impl Reference {
-    /// The kernel of two spheres that computes in `arithmetic` and gives `fields`; the others are zero words.
+    /// The kernel of two spheres that computes in `arithmetic` and returns `fields`; words of the other fields are
+    /// zero.
     pub const fn new(arithmetic: Format, fields: Fields) -> Self {
         Self::of(Arithmetic::Rounded(arithmetic), fields)
     }
@@ -50,24 +51,24 @@ impl Reference {
         Self::of(Arithmetic::Exact, fields)
     }
 
-    /// Either of them.
+    /// The kernel of this arithmetic.
     pub const fn of(arithmetic: Arithmetic, fields: Fields) -> Self {
         Self { query: Query::SphereSphere, arithmetic, fields, record: Format::BINARY32 }
     }
 
-    /// The same for another query. The kernel of `exact` is for spheres alone.
+    /// The same kernel for another query. The kernel of `exact` exists for spheres only.
     #[must_use]
     pub const fn of_query(self, query: Query) -> Self {
         Self { query, ..self }
     }
 
-    /// The same over records in memory of the widths of `record`.
+    /// The same kernel for records in memory that have the widths of `record`.
     #[must_use]
     pub const fn with_record(self, record: Format) -> Self {
         Self { record, ..self }
     }
 
-    /// What the kernel gives for one pair. That of `exact` leaves some pairs unsettled: see [`settle`].
+    /// The contact of one pair. The kernel of `exact` leaves some pairs unsettled: see [`settle`].
     pub fn run(&self, pair: &PairRecord) -> ContactRecord {
         if self.arithmetic == Arithmetic::Rounded(Format::BINARY32) && self.record == Format::BINARY32 {
             native(self.query, pair, self.fields)
@@ -76,19 +77,19 @@ impl Reference {
         }
     }
 
-    /// The contacts of many pairs, in their order, and how many of them the kernel itself did not settle.
+    /// The contacts of many pairs in order, and how many of them the kernel left to [`settle`].
     pub fn settled(&self, pairs: &[PairRecord]) -> (Vec<ContactRecord>, u64) {
         let mut contacts = self.run_all(pairs);
         let unsettled = settle(pairs, &mut contacts, self.fields);
         (contacts, unsettled)
     }
 
-    /// What the kernel gives for many pairs, in their order: [`Reference::run`] of each.
+    /// The contacts of many pairs in order: [`Reference::run`] of each.
     pub fn run_all(&self, pairs: &[PairRecord]) -> Vec<ContactRecord> {
         pairs.iter().map(|pair| self.run(pair)).collect()
     }
 
-    /// [`Reference::run`] by way of [`Soft`] in every format: the twin that checks `f32`, and is checked by it.
+    /// [`Reference::run`] with [`Soft`] in every format. In binary32 it checks `f32`, and `f32` checks it.
     pub fn run_soft(&self, pair: &PairRecord) -> ContactRecord {
         let record = self.arithmetic.record(self.record);
         let pair = pair.rounded(record);
@@ -107,20 +108,20 @@ impl Reference {
     }
 }
 
-/// The contact of one pair, in the machine's own arithmetic.
+/// The contact of one pair in the machine's own arithmetic.
 #[inline(always)]
 pub(super) fn native(query: Query, pair: &PairRecord, fields: Fields) -> ContactRecord {
     let valid = pair.is_valid(query);
     let word = |i: usize| f32::from_bits(pair.0[i]);
     let contact = contact(query, word, valid, Format::BINARY32, Format::BINARY32, fields);
-    // Whatever NaN the machine made, it is the canonical one.
+    // Any NaN of the machine becomes the canonical one.
     write(contact, valid, |value: f32| if value.is_nan() { NAN } else { value.to_bits() })
 }
 
 /// The record of a contact.
 #[inline(always)]
 fn write<T: Number<Bool = bool>>(contact: Contact<T>, valid: bool, bits: impl Fn(T) -> u32) -> ContactRecord {
-    // Selections rather than a `match`: the batch kernel is made of this, without branches.
+    // Selections instead of a `match`, because the batch kernel needs code without branches.
     let touching = if contact.coincident { Flow::Coincident.flags() } else { Flow::Real.flags() };
     let apart = if valid { Flow::Fake.flags() } else { Flow::Invalid.flags() };
     let flags = if contact.hit { touching } else { apart };

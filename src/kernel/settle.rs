@@ -1,10 +1,10 @@
-//! What the host does with pairs that the kernel of the profile `exact` leaves unsettled.
+//! How the host resolves pairs that the kernel of the profile `exact` leaves unsettled.
 
 use super::Truth;
 use crate::query::{ContactRecord, Fields, PairRecord};
 
-/// Replaces the unsettled records among the `contacts` of `pairs` by the truth, correctly rounded, and says how many
-/// there were. Fields that are not asked for are zero words.
+/// Replaces the unsettled records among the `contacts` of `pairs` by the correctly rounded truth, and returns their
+/// number. Fields that are not asked for are zero.
 pub fn settle(pairs: &[PairRecord], contacts: &mut [ContactRecord], fields: Fields) -> u64 {
     let mut count = 0;
     for (pair, contact) in pairs.iter().zip(contacts) {
@@ -24,7 +24,7 @@ mod tests {
 
     #[test]
     fn the_unsettled_are_settled_and_the_others_left_alone() {
-        // The two of the facts: on both sides of "1 and a little more", a contact 2^-141 deep.
+        // Two pairs that no window decides: on both sides of "1 and a little more", a contact 2^-141 deep.
         let tiny = f32::from_bits(1 << 8);
         let pair = PairRecord::from_spheres([1.0, 0.0, 0.0, 1.0], [-tiny, 0.0, 0.0, 2.0 * tiny]);
         let plain = PairRecord::from_spheres([1.0, 0.0, 0.0, 0.5], [0.0, 0.0, 0.0, 1.0]);

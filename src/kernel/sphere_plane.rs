@@ -21,8 +21,8 @@ impl<T: Number> SpherePlane<T> {
     }
 }
 
-/// See [`contact`](super::contact()). A NaN depth is none that is at least 0, and so no contact; valid words have one
-/// only in arithmetic in which a product becomes infinite.
+/// See [`contact`](super::contact()). A NaN depth is not at least 0, and so no contact; valid words lead to one only in
+/// an arithmetic in which a product overflows to infinity.
 #[inline(always)]
 pub(super) fn contact<T: Number>(
     word: impl Fn(usize) -> T,
@@ -54,7 +54,7 @@ pub(super) fn contact<T: Number>(
     }
 }
 
-/// How far the decision is from being the other one: |depth| over the sum of the sizes that it is made of; 0 to 1.
+/// The margin of the decision: |depth| over the sum of the magnitudes that it is computed from; 0 to 1.
 pub(super) fn margin(word: impl Fn(usize) -> Precise) -> f64 {
     let SpherePlane { c, r, n, d } = SpherePlane::read(word);
     let products = [n.x * c.x, n.y * c.y, n.z * c.z];
@@ -63,7 +63,7 @@ pub(super) fn margin(word: impl Fn(usize) -> Precise) -> f64 {
     if size.is_zero() { 0.0 } else { (depth.abs() / size).to_f64() }
 }
 
-/// The depth is made of three products, the plane's distance and the radius; the position of the centre and the radius.
+/// The depth is computed from three products, the plane's distance and the radius; the position from centre and radius.
 pub(super) fn scale(pair: &PairRecord) -> Scale {
     let [x, y, z, r, nx, ny, nz, d] = pair.values();
     let product = |a: f32, b: f32| (f64::from(a) * f64::from(b)).abs();

@@ -15,7 +15,7 @@ pub(super) struct Spheres<T> {
 }
 
 impl<T: Number> Spheres<T> {
-    /// The words of a pair, by their places in the record.
+    /// Reads the words of a pair, given by their index in the record.
     #[inline(always)]
     pub fn read(word: impl Fn(usize) -> T) -> Self {
         let [x1, y1, z1, r1, x2, y2, z2, r2] = std::array::from_fn(word);
@@ -29,8 +29,8 @@ impl<T: Number> Spheres<T> {
     }
 }
 
-/// See [`contact`](super::contact()). A NaN distance is greater than nothing, and so a contact; valid spheres have one
-/// only in arithmetic so narrow that a coordinate of both becomes infinite.
+/// See [`contact`](super::contact()). With a NaN distance no comparison holds, so the pair counts as a contact; valid
+/// spheres lead to one only in formats so narrow that a coordinate of both overflows.
 #[inline(always)]
 pub(super) fn contact<T: Number>(
     word: impl Fn(usize) -> T,
@@ -49,7 +49,7 @@ pub(super) fn contact<T: Number>(
     let s = (r1 + r2).named("radius_sum");
 
     if fields == Fields::HIT {
-        // The same decisions as below, without the root: q is 0 exactly when its rounded root is.
+        // The same decision as below without the root: q is 0 exactly if its rounded root is 0.
         let hit = valid & !q.root_exceeds(s);
         return Contact::decision(hit, hit & q.le(zero), unasked);
     }
@@ -58,7 +58,7 @@ pub(super) fn contact<T: Number>(
     let hit = valid & !d.gt(s);
     let coincident = hit & d.le(zero);
 
-    // Division by a coincident pair's zero does no harm: its results are not selected.
+    // A coincident pair divides by zero here, but these results are not selected.
     let n = named(apart * d.recip().named("inverse_distance"), ["nx", "ny", "nz"]);
     let k = (((r2 - r1) - d) * d.constant(0.5)).named("offset");
     let x_axis = Vector3::new(zero.constant(1.0), zero, zero);
@@ -70,13 +70,13 @@ pub(super) fn contact<T: Number>(
         coincident,
         position: deliver.position(|axis| T::select(coincident, p1[axis], position[axis])),
         normal: deliver.normal(|axis| T::select(coincident, x_axis[axis], n[axis])),
-        // A coincident pair's depth is s: its d is +0, so the difference is that already.
+        // For a coincident pair d is +0, so the difference is s as required.
         depth: deliver.depth(s - d),
     }
 }
 
-/// How far the decision is from being the other one: |s − d| over the larger of the two, with the distance d and the
-/// sum of the radii s; 0 to 1.
+/// The margin of the decision: |s − d| over the larger of the two, with the distance d and the sum of the radii s; 0 to
+/// 1.
 pub(super) fn margin(word: impl Fn(usize) -> Precise) -> f64 {
     let pair = Spheres::read(word);
     let apart: Vector3<Precise> = pair.p1 - pair.p2;
@@ -86,7 +86,7 @@ pub(super) fn margin(word: impl Fn(usize) -> Precise) -> f64 {
     if larger.is_zero() { 0.0 } else { ((distance - sum).abs() / larger).to_f64() }
 }
 
-/// The depth is made of the radii, the position of the first centre and the radii.
+/// The depth is computed from the radii, the position from the first centre and the radii.
 pub(super) fn scale(pair: &PairRecord) -> Scale {
     let values = pair.values();
     let [x, y, z, r1, _, _, _, r2] = values;

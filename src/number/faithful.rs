@@ -1,53 +1,53 @@
-//! Reciprocal and square root by a table and a polynomial of second degree: the numbers that hardware and twin share.
+//! Reciprocal and square root by table and a polynomial of second degree: the constants that hardware and twin share.
 //!
-//! A piece of the argument's range is chosen by the fraction's upper bits; in it, of the lower bits t,
+//! The upper bits of the fraction select a piece of the argument's range. Within it, with the lower bits t,
 //!
 //! ```text
 //! value = c0 ± (c1 − (c2 · t_high >> inner_shift)) · t >> outer_shift
 //! ```
 //!
-//! in integers, minus for the reciprocal and plus for the root. Half a unit of the last place is contained in c0, so
-//! the value's upper bits are rounded to nearest by being cut off. The value before that is less than half a unit from
-//! the exact one, which makes the result less than one unit wrong, and right where it is a number of the format.
+//! in integers, with minus for the reciprocal and plus for the root. c0 includes half a unit in the last place, so
+//! truncation rounds the value to nearest. Before that, the value is less than half a unit from the exact one. So the
+//! result is less than one unit wrong, and right if the exact value is a number of the format.
 //!
-//! Cut off without that half, the value is a number of which the exact one is less than half a unit below or less than
-//! one and a half above ([`Faithful::lower`]): what is nearest is that number or the next, and the sign of what their
-//! middle leaves tells which ([`Faithful::nearest`]). So one table serves both kinds of root.
+//! Truncated without that half, the result is a lower neighbour ([`Faithful::lower`]): the exact value is less than
+//! half a unit below it, or less than one and a half units above it. The nearest number is this one or the next, and
+//! the sign of a remainder at their middle decides ([`Faithful::nearest`]). So one table serves both kinds of root.
 //!
-//! `tests/numbers/faithful.rs` holds all of it for every significand of every fraction length there is.
+//! `tests/numbers/faithful.rs` checks all of it for every significand of every supported fraction length.
 
 use std::sync::OnceLock;
 
 use super::format::FAITHFUL_FRACTION_BITS;
 
-/// What is computed, of a significand m in [1, 2).
+/// The function of a significand m in [1, 2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Function {
     /// 2/m, in (1, 2].
     Reciprocal,
-    /// √m, or √2m where the exponent is odd: in [1, 2).
+    /// √m, or √2m if the exponent is odd: in [1, 2).
     Root,
 }
 
-/// One polynomial.
+/// The polynomial of one piece.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Piece {
-    /// The value where the piece begins, and half a unit of the result's last place.
+    /// The value at the start of the piece, plus half a unit in the result's last place.
     pub c0: u64,
-    /// The slope there, without its sign.
+    /// The magnitude of the slope there.
     pub c1: u64,
-    /// How much less the slope becomes.
+    /// The decrease of the slope.
     pub c2: u64,
 }
 
-/// A function's table for one length of the fraction, and the shifts between its terms.
+/// The table of a function for one fraction length, and the shifts between its terms.
 #[derive(Clone, Debug)]
 pub struct Faithful {
     function: Function,
     fraction_bits: u32,
-    /// Upper bits of the fraction that choose a piece.
+    /// Upper bits of the fraction that select a piece.
     index_bits: u32,
-    /// Upper bits of t that the second degree looks at.
+    /// Upper bits of t that the second-degree term uses.
     high_bits: u32,
     inner_shift: u32,
     outer_shift: u32,
@@ -56,16 +56,15 @@ pub struct Faithful {
 
 /// Bits of a value below the result's last place.
 const GUARD_BITS: u32 = 3;
-/// Half a unit of that place, which is contained in c0.
+/// Half a unit in that place, which c0 includes.
 const HALF: u64 = 1 << (GUARD_BITS - 1);
-/// Fractions up to this length have every result in the table.
+/// Up to this fraction length the table holds every result.
 const LONGEST_WHOLE: u32 = 6;
-/// Places at which a piece's error is looked at before its c0 is chosen.
+/// Points at which the error of a piece is sampled to choose its c0.
 const SAMPLES: u64 = 512;
 
 impl Faithful {
-    /// The table for fractions of `fraction_bits`, 1 to [`FAITHFUL_FRACTION_BITS`]; longer ones have that of the
-    /// longest.
+    /// The table for fractions of 1 to [`FAITHFUL_FRACTION_BITS`] bits; longer fractions get the table of the longest.
     pub fn of(function: Function, fraction_bits: u32) -> &'static Self {
         static TABLES: [[OnceLock<Faithful>; FAITHFUL_FRACTION_BITS as usize + 1]; 2] =
             [const { [const { OnceLock::new() }; FAITHFUL_FRACTION_BITS as usize + 1] }; 2];
@@ -73,7 +72,7 @@ impl Faithful {
         TABLES[function as usize][fraction_bits as usize].get_or_init(|| Self::make(function, fraction_bits))
     }
 
-    /// The function's value for a fraction, in units of the result's last place: 2^F to 2^(F+1). `odd` is 1 for the
+    /// The function's value for a fraction, in units in the result's last place: 2^F to 2^(F+1). `odd` is 1 for the
     /// root of 2m, else 0.
     #[inline]
     pub fn value(&self, odd: u32, fraction: u64) -> u64 {
@@ -87,24 +86,25 @@ impl Faithful {
         self.unrounded(piece, fraction & ((1 << t_bits) - 1))
     }
 
-    /// The same cut off without the half: the exact value is nearest to this or to the next one. At least 2^F and less
-    /// than 2^(F+1).
+    /// The value truncated without the half: this number or the next is nearest to the exact value. At least 2^F and
+    /// less than 2^(F+1).
     #[inline]
     pub fn lower(&self, odd: u32, fraction: u64) -> u64 {
         (self.before_cut(odd, fraction) - HALF) >> GUARD_BITS
     }
 
-    /// The value rounded to nearest, by the low bits of one product alone as hardware has them. With the lower number
-    /// y, 2y + 1 is twice the middle, which no exact value is; what it leaves is small, so its sign is the top one of
-    /// the low F + 3 bits of m · (2y + 1), or is found from the low F + 5 of (2y + 1)².
+    /// The value rounded to nearest, from the low bits of one product, as in hardware. With the lower neighbour y, 2y +
+    /// 1 is twice the middle, which is never the exact value. The remainder is small, so its sign is the top bit of the
+    /// low F + 3 bits of m · (2y + 1), or follows from the low F + 5 bits of (2y + 1)².
     #[inline]
     pub fn nearest(&self, odd: u32, fraction: u64) -> u64 {
         let lower = self.lower(odd, fraction);
         let (m, twice) = (fraction | 1 << self.fraction_bits, 2 * lower + 1);
         let is_above = match self.function {
-            // 2^(2F+2), of which these bits know nothing, less the product.
+            // 2^(2F+2), which lies above these bits, minus the product.
             Function::Reciprocal => m.wrapping_mul(twice) >> (self.fraction_bits + 2) & 1 == 1,
-            // 4m · 2^(F + odd) less the square. That is odd, so it borrows from the three bits they have in common.
+            // 4m · 2^(F + odd) minus the square. The square is odd, so the difference borrows from the three bits
+            // below.
             Function::Root => {
                 let square = twice.wrapping_mul(twice) >> (self.fraction_bits + 2);
                 (m << odd).wrapping_add(!square) >> 2 & 1 == 0
@@ -124,22 +124,22 @@ impl Faithful {
         }
     }
 
-    /// Bits of the fraction below those that choose a piece; none where the table holds every result.
+    /// Bits of the fraction below those that select a piece; 0 if the table holds every result.
     pub(crate) fn t_bits(&self) -> u32 {
         self.fraction_bits - self.index_bits
     }
 
-    /// How many of them, from the top, the second degree looks at.
+    /// Upper bits of t that the second-degree term uses.
     pub(crate) fn high_bits(&self) -> u32 {
         self.high_bits
     }
 
-    /// The shift behind c2 · t_high.
+    /// The shift after c2 · t_high.
     pub(crate) fn inner_shift(&self) -> u32 {
         self.inner_shift
     }
 
-    /// The shift behind slope · t.
+    /// The shift after slope · t.
     pub(crate) fn outer_shift(&self) -> u32 {
         self.outer_shift
     }
@@ -149,19 +149,19 @@ impl Faithful {
         GUARD_BITS
     }
 
-    /// Half a unit of the last place, as it is contained in c0.
+    /// Half a unit in the last place, as c0 includes it.
     pub fn half(&self) -> u64 {
         HALF
     }
 
-    /// The pieces, by the fraction's upper bits; for the root, those of odd exponents behind the others.
+    /// The pieces by the upper bits of the fraction; for the root, those of odd exponents follow the others.
     pub fn pieces(&self) -> &[Piece] {
         &self.pieces
     }
 
     fn make(function: Function, fraction_bits: u32) -> Self {
-        // A parabola in a piece of width h is wrong by h³/16 (reciprocal) or h³/360 (root): a quarter of a unit or
-        // less.
+        // In a piece of width h a parabola is wrong by h³/16 (reciprocal) or h³/360 (root): at most a quarter of a
+        // unit.
         let index_bits = match function {
             _ if fraction_bits <= LONGEST_WHOLE => fraction_bits,
             Function::Reciprocal => (fraction_bits - 2).div_ceil(3),
@@ -188,7 +188,7 @@ impl Faithful {
         this
     }
 
-    /// The exact function, but for the roundings of binary64.
+    /// The exact function, up to the rounding errors of binary64.
     fn exact(&self, odd: u64, m: f64) -> f64 {
         match self.function {
             Function::Reciprocal => 2.0 / m,
@@ -204,8 +204,8 @@ impl Faithful {
         let sign = if self.function == Function::Reciprocal { -1.0 } else { 1.0 };
         let (mut c1, mut c2) = (0, 0);
         if self.t_bits() > 0 {
-            // The parabola through three Chebyshev points. Where its second degree is rounded, the slope makes up for
-            // it.
+            // The parabola through three Chebyshev points. The slope compensates for the rounding of the second-degree
+            // term.
             let [a, b, c] = [-0.75_f64.sqrt(), 0.0, 0.75_f64.sqrt()].map(|x| 0.5 * width * (1.0 + x));
             let slope = (f(b) - f(a)) / (b - a);
             let curve = ((f(c) - f(b)) / (c - b) - slope) / (c - a);
@@ -214,7 +214,7 @@ impl Faithful {
             let slope = slope - curve * (a + b) + lost * width;
             c1 = (sign * slope * power(slope_bits as i32)).round() as u64;
         }
-        // What the integers make of it without c0, as far from the exact value above as below.
+        // The integer result without c0; c0 centres its error.
         let unit = power((self.fraction_bits + GUARD_BITS) as i32);
         let base = 1_u64 << 40;
         let last = (1_u64 << self.t_bits()) - 1;
@@ -231,7 +231,7 @@ impl Faithful {
         while is_last && self.unrounded(piece, last) >= two {
             piece.c0 -= 1;
         }
-        // That of 1 is at least 1, and its reciprocal, 2, comes from below: the leading bit is known.
+        // The value for 1 is at least 1, and its reciprocal, 2, is approached from below: the leading bit is known.
         match self.function {
             Function::Root if (odd, index) == (0, 0) => piece.c0 = piece.c0.max(one + HALF),
             Function::Reciprocal if index == 0 => piece.c0 = piece.c0.min(two + HALF - 1),

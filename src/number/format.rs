@@ -1,20 +1,20 @@
-//! Floating-point formats: how wide, and how the ends of the range behave.
+//! Floating-point formats: widths, rounding, and behaviour at the ends of the range.
 
 use std::fmt;
 use std::str::FromStr;
 
 use super::options::{Roots, Rounding, Subnormals};
 
-/// Smallest and largest exponent width, in bits, a [`Format`] can have.
+/// The exponent widths, in bits, that a [`Format`] can have.
 pub const EXPONENT_BITS: std::ops::RangeInclusive<u32> = 5..=15;
-/// Smallest and largest fraction width, in bits, a [`Format`] can have.
+/// The fraction widths, in bits, that a [`Format`] can have.
 pub const FRACTION_BITS: std::ops::RangeInclusive<u32> = 2..=52;
 
 /// A binary floating-point format in the layout of IEEE 754-2019, clause 3.4: sign, biased exponent, fraction.
 ///
-/// With it go the ways of its arithmetic: rounding, subnormals, and how exact roots are. The largest biased exponent
-/// encodes infinities and NaN; the only NaN ever produced is the canonical quiet one (sign 0, leading fraction bit 1,
-/// all others 0).
+/// It includes the options of the arithmetic: rounding, subnormals, and the accuracy of roots. The largest biased
+/// exponent encodes infinities and NaN. Every NaN produced is the canonical quiet one: sign 0, leading fraction bit 1,
+/// all others 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Format {
     exponent_bits: u8,
@@ -24,7 +24,7 @@ pub struct Format {
     roots: Roots,
 }
 
-/// The longest fraction, in bits, for which faithful roots were tried with every significand.
+/// The longest fraction, in bits, for which faithful roots were checked with every significand.
 pub const FAITHFUL_FRACTION_BITS: u32 = 23;
 
 /// Why a format was refused.
@@ -33,15 +33,15 @@ pub enum FormatError {
     /// A width outside [`EXPONENT_BITS`] or [`FRACTION_BITS`].
     #[error("format e{exponent}f{fraction} is out of range: exponent 5 to 15 bits, fraction 2 to 52 bits")]
     Range {
-        /// The exponent bits asked for.
+        /// The requested exponent bits.
         exponent: u32,
-        /// The fraction bits asked for.
+        /// The requested fraction bits.
         fraction: u32,
     },
-    /// Faithful roots are promised only where every significand was tried.
+    /// Faithful roots exist only for fractions that were checked completely.
     #[error("{0}: faithful roots exist for fractions of up to {FAITHFUL_FRACTION_BITS} bits; use correct roots")]
     Unfaithful(Format),
-    /// The proof of the profile `exact` is for its own arithmetic.
+    /// The proof of the profile `exact` holds only for its own arithmetic.
     #[error(
         "profile exact has its own arithmetic (rounding nearest, subnormals flushed, roots correct); leave out other options"
     )]
@@ -59,12 +59,12 @@ impl Format {
     pub const BINARY32: Self = Self::fixed(8, 23, Subnormals::Kept);
     /// IEEE binary64 with subnormals.
     pub const BINARY64: Self = Self::fixed(11, 52, Subnormals::Kept);
-    /// The default arithmetic: binary32's significand under a 10-bit exponent, in which no finite binary32 pair
-    /// reaches either end of the range.
+    /// The default arithmetic: the significand of binary32 with a 10-bit exponent, which no finite binary32 pair
+    /// overflows or underflows.
     pub const WIDE: Self = Self::fixed(10, 23, Subnormals::Flushed);
     /// Differences of coordinates and sums of radii in the profile `exact`.
     pub const DIFFERENCE: Self = Self::fixed(10, 47, Subnormals::Flushed);
-    /// What follows the differences in the profile `exact`: distance, depth, normal, position.
+    /// The numbers after the differences in the profile `exact`: distance, depth, normal, position.
     pub const TAIL: Self = Self::fixed(10, 31, Subnormals::Flushed);
     /// IEEE binary16.
     pub const HALF: Self = Self::fixed(5, 10, Subnormals::Kept);
@@ -75,10 +75,10 @@ impl Format {
         Self { exponent_bits, fraction_bits, subnormals, rounding: Rounding::Nearest, roots: Roots::Correct }
     }
 
-    /// A format of `exponent` (5 to 15) and `fraction` (2 to 52) bits, that rounds to nearest and has correct roots.
+    /// A format of `exponent` (5 to 15) and `fraction` (2 to 52) bits that rounds to nearest and has correct roots.
     ///
     /// # Errors
-    /// [`FormatError::Range`] when a width is outside those.
+    /// [`FormatError::Range`] if a width is out of range.
     pub fn new(exponent: u32, fraction: u32, subnormals: Subnormals) -> Result<Self, FormatError> {
         if !EXPONENT_BITS.contains(&exponent) || !FRACTION_BITS.contains(&fraction) {
             return Err(FormatError::Range { exponent, fraction });
@@ -86,7 +86,7 @@ impl Format {
         Ok(Self::fixed(exponent as u8, fraction as u8, subnormals))
     }
 
-    /// The same format with another rounding.
+    /// The same format with another rounding mode.
     #[must_use]
     pub const fn with_rounding(self, rounding: Rounding) -> Self {
         Self { rounding, ..self }
@@ -98,7 +98,7 @@ impl Format {
         Self { subnormals, ..self }
     }
 
-    /// The same format with roots and reciprocals of the other kind.
+    /// The same format with correct or faithful roots and reciprocals.
     ///
     /// # Errors
     /// [`FormatError::Unfaithful`] for faithful roots of a fraction longer than [`FAITHFUL_FRACTION_BITS`].
@@ -109,25 +109,25 @@ impl Format {
         }
     }
 
-    /// The format of records of the widths of `record` beside arithmetic in this one: written by the same rounding.
+    /// The format of records with the widths of `record` and the rounding of this arithmetic.
     #[must_use]
     pub const fn record(self, record: Self) -> Self {
         Self { rounding: self.rounding, roots: self.roots, ..record }
     }
 
-    /// How results are rounded.
+    /// The rounding mode of results.
     #[inline]
     pub const fn rounding(self) -> Rounding {
         self.rounding
     }
 
-    /// What happens below the smallest normal number.
+    /// The handling of subnormal numbers.
     #[inline]
     pub const fn subnormals(self) -> Subnormals {
         self.subnormals
     }
 
-    /// How exact roots and reciprocals are.
+    /// The accuracy of roots and reciprocals.
     #[inline]
     pub const fn roots(self) -> Roots {
         self.roots
@@ -169,7 +169,7 @@ impl Format {
         1 - self.bias()
     }
 
-    /// Whether gradual underflow is kept.
+    /// True if subnormals are kept (gradual underflow).
     #[inline]
     pub(crate) const fn keeps_subnormals(self) -> bool {
         matches!(self.subnormals, Subnormals::Kept)
@@ -207,8 +207,8 @@ impl Format {
 }
 
 impl fmt::Display for Format {
-    /// Writes `e8f23`; behind it `z` where subnormals are flushed to zero, `t` where results are truncated (rounded
-    /// toward zero) and `r` where roots are faithful.
+    /// Writes `e8f23`, followed by `z` if subnormals are flushed to zero, `t` if results are truncated (rounded toward
+    /// zero) and `r` if roots are faithful.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let flush = if self.keeps_subnormals() { "" } else { "z" };
         let truncate = if self.rounding == Rounding::TowardZero { "t" } else { "" };
@@ -220,8 +220,8 @@ impl fmt::Display for Format {
 impl FromStr for Format {
     type Err = FormatError;
 
-    /// Reads a profile name (`paper`, `wide`, `half`, `bfloat`) or `eXfY` (subnormals kept, nearest, correct
-    /// roots), with `z`, `t` and `r` behind it for flushed subnormals, truncation and faithful roots.
+    /// Reads a profile name (`paper`, `wide`, `half`, `bfloat`) or `eXfY` (subnormals kept, nearest, correct roots),
+    /// followed by `z`, `t` and `r` for flushed subnormals, truncation and faithful roots.
     fn from_str(text: &str) -> Result<Self, FormatError> {
         match text {
             "paper" => return Ok(Self::BINARY32),
@@ -247,7 +247,7 @@ impl FromStr for Format {
     }
 }
 
-/// A letter at the end of a format's text, and what it stands for.
+/// Splits an option letter off the end of a format's text.
 fn option<T>(text: &str, letter: char, meaning: T) -> (&str, Option<T>) {
     match text.strip_suffix(letter) {
         Some(rest) => (rest, Some(meaning)),

@@ -1,5 +1,5 @@
-//! Numbers the kernel can be read with: `f32`, [`Soft`] (any format, exact integer arithmetic inside), [`Precise`]
-//! (the truth), and outside this module the netlist's wires. Imports nothing of ours.
+//! The numbers of the kernel: `f32`, [`Soft`] (any format, exact integer arithmetic inside), [`Precise`] (the truth)
+//! and, outside this module, the wires of the netlist. Imports nothing of ours.
 
 mod faithful;
 mod format;
@@ -26,9 +26,9 @@ impl Boolean for bool {}
 
 /// A number that carries its own context (format, graph), so that one kernel serves software and hardware.
 ///
-/// There is no Zero and no One: a constant is made from a neighbour. Every operation rounds once, as its format says
-/// (IEEE 754-2019, clause 4.3); only roots and reciprocals may be faithful instead. Mixing formats is a mistake of the
-/// kernel's author: `Soft` panics with both formats' names, a wire records an error in its graph.
+/// There is no Zero and no One: a constant is made from another number. Every operation rounds once, as its format says
+/// (IEEE 754-2019, clause 4.3); only roots and reciprocals may be faithful instead. Mixing formats is a programming
+/// error in the kernel: `Soft` panics with both formats' names, a wire records an error in its graph.
 pub trait Number:
     Copy
     + Debug
@@ -43,7 +43,7 @@ pub trait Number:
     + MulAssign
     + DivAssign
 {
-    /// What a comparison gives.
+    /// The result of a comparison.
     type Bool: Boolean;
 
     /// `value`, in this number's format. `value` must be representable there.

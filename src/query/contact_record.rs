@@ -2,20 +2,20 @@
 
 use super::{Fields, Flow, PairRecord};
 
-/// Numbers that are asked for together.
+/// A group of numbers that an option asks for together.
 #[derive(Clone, Copy, Debug)]
 pub struct Group {
-    /// What it is called in options.
+    /// The name in options.
     pub name: &'static str,
-    /// Whether it is among the fields asked for.
+    /// True if the group is among these fields.
     pub is_asked: fn(Fields) -> bool,
-    /// The names of its words in files and hardware.
+    /// The names of the words in files and hardware.
     pub words: &'static [&'static str],
-    /// What they are.
+    /// The meaning, for documentation.
     pub meaning: &'static str,
 }
 
-/// The numbers of a contact, in the order of its record.
+/// The groups of a contact's numbers, in the order of its record.
 pub const GROUPS: [Group; 3] = [
     Group {
         name: "position",
@@ -32,11 +32,11 @@ pub const GROUPS: [Group; 3] = [
     Group { name: "depth", is_asked: |fields| fields.depth, words: &["depth"], meaning: "penetration depth" },
 ];
 
-/// Numbers of a contact.
+/// The number of numbers in a contact.
 pub const NUMBERS: usize = GROUPS[0].words.len() + GROUPS[1].words.len() + GROUPS[2].words.len();
-/// The word after them: the [flags](Flow::flags).
+/// The index of the word after them: the [flags](Flow::flags).
 pub const FLAGS: usize = NUMBERS;
-/// Words of a contact.
+/// The number of words in a contact.
 pub const CONTACT_WORDS: usize = NUMBERS + 1;
 
 /// A contact: position x y z, normal x y z, depth, flags.
@@ -44,8 +44,8 @@ pub const CONTACT_WORDS: usize = NUMBERS + 1;
 pub struct ContactRecord(pub [u32; CONTACT_WORDS]);
 
 impl ContactRecord {
-    /// What the kernel of the profile `exact` writes for a pair that needs more than its window: bit 4 of the flags,
-    /// and nothing else. The host puts the contact in its place before anyone reads it.
+    /// Bit 4 of the flags and nothing else: the profile `exact` writes this record for a pair that it cannot decide in
+    /// its window. The host replaces it with the contact before anyone reads it.
     pub const UNSETTLED: Self = Self::of_flags(16);
 
     /// The names of its words, in order.
@@ -63,20 +63,21 @@ impl ContactRecord {
         names
     };
 
-    /// Which words are in the record of these fields, in order. None but the flags has no record: that is one bit.
+    /// The indices of the words in the record of these fields, in order. With only the hit there are none: that record
+    /// is one bit.
     pub fn words(fields: Fields) -> impl Iterator<Item = usize> {
         let asked = GROUPS.iter().flat_map(move |group| group.words.iter().map(move |_| (group.is_asked)(fields)));
         asked.chain([fields != Fields::HIT]).enumerate().filter(|(_, asked)| *asked).map(|(word, _)| word)
     }
 
-    /// The record of these flags and no number.
+    /// The record with these flags, whose numbers are zero.
     pub const fn of_flags(flags: u32) -> Self {
         let mut words = [0; CONTACT_WORDS];
         words[FLAGS] = flags;
         Self(words)
     }
 
-    /// The record with zero words for what is not asked for.
+    /// The record in which the words that are not asked for are zero.
     #[must_use]
     pub fn only(self, fields: Fields) -> Self {
         let mut record = Self::of_flags(self.flags());
@@ -84,7 +85,7 @@ impl ContactRecord {
         record
     }
 
-    /// Whether it is no contact yet, but the admission that the pair needs more.
+    /// True if the pair is unsettled: this is not yet a contact.
     pub const fn is_unsettled(self) -> bool {
         self.flags() & 16 != 0
     }
@@ -94,12 +95,12 @@ impl ContactRecord {
         self.0[FLAGS]
     }
 
-    /// Whether the pair touches.
+    /// True if the pair touches.
     pub const fn is_contact(self) -> bool {
         self.flags() & 1 == 1
     }
 
-    /// Which way the pair went; nothing when the flags are none that a kernel writes.
+    /// The outcome of the pair; `None` if no kernel writes these flags.
     pub fn flow(self) -> Option<Flow> {
         Flow::ALL.into_iter().find(|flow| flow.flags() == self.flags())
     }
@@ -116,19 +117,19 @@ impl ContactRecord {
         self
     }
 
-    /// Where the bodies touch.
+    /// The point of contact.
     pub fn position(self) -> [f32; 3] {
         let [x, y, z, ..] = self.numbers();
         [x, y, z]
     }
 
-    /// The direction that parts them, pointing into the first.
+    /// The unit normal, pointing into the first body.
     pub fn normal(self) -> [f32; 3] {
         let [_, _, _, x, y, z, _] = self.numbers();
         [x, y, z]
     }
 
-    /// How deep they overlap.
+    /// The penetration depth, a length.
     pub fn depth(self) -> f32 {
         let [.., depth] = self.numbers();
         depth

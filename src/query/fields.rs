@@ -1,27 +1,27 @@
-//! Which results of a pair are asked for.
+//! The fields of a contact that are asked for.
 
 use std::fmt;
 use std::str::FromStr;
 
-/// The outputs a kernel is read for. The hit itself always is one; what is not asked for is neither computed in
-/// hardware nor written: its words are absent, or zero in a [`super::ContactRecord`].
+/// The fields of a contact to compute. The hit itself is always computed. Fields that are not asked for have no
+/// hardware and no words in memory; in a [`super::ContactRecord`] their words are zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Fields {
-    /// How far the spheres reach into each other.
+    /// The penetration depth.
     pub depth: bool,
-    /// The unit vector from body 2 to body 1.
+    /// The unit normal from body 2 to body 1.
     pub normal: bool,
     /// The point of contact.
     pub position: bool,
 }
 
 impl Fields {
-    /// Everything Algorithm 1 computes.
+    /// Every field.
     pub const ALL: Self = Self { depth: true, normal: true, position: true };
-    /// Contact or not, nothing else.
+    /// The hit only.
     pub const HIT: Self = Self { depth: false, normal: false, position: false };
 
-    /// Whether the distance itself is needed, and so a square root. Which pairs touch is decided without one.
+    /// True if the distance itself is needed, and so a square root. The hit is decided without one.
     pub const fn need_distance(self) -> bool {
         self.depth || self.normal || self.position
     }
@@ -34,7 +34,7 @@ impl Default for Fields {
 }
 
 impl fmt::Display for Fields {
-    /// Writes `hit,depth,normal,position`, or those of them that are asked for.
+    /// Writes the fields as in `hit,depth,normal,position`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("hit")?;
         for (asked, name) in [(self.depth, "depth"), (self.normal, "normal"), (self.position, "position")] {
@@ -46,7 +46,7 @@ impl fmt::Display for Fields {
     }
 }
 
-/// Not a list of field names.
+/// A list with an unknown field name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("unknown contact field `{0}`: list some of hit,depth,normal,position")]
 pub struct FieldsError(String);

@@ -1,17 +1,17 @@
-//! Which way a pair went.
+//! The outcome of a pair.
 
 use std::fmt;
 
-/// Which way a pair went through the kernel.
+/// The outcome of a pair in the kernel; the paper calls it a flow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Flow {
-    /// Not a pair of the query's bodies: an infinity, a NaN or a negative radius.
+    /// An invalid pair: an infinity, a NaN or a negative radius.
     Invalid = 0,
     /// No contact (Flow 1 of the paper).
     Fake = 1,
-    /// A contact of coincident centres (Flow 2; the paper and the files call it grazing).
+    /// A contact with coincident centres (Flow 2 of the paper; the paper and the files call it grazing).
     Coincident = 2,
-    /// A contact with a normal of its own (Flow 3).
+    /// A contact with a computed normal (Flow 3 of the paper).
     Real = 3,
 }
 
@@ -30,7 +30,7 @@ impl Flow {
         }
     }
 
-    /// The name files and reports use.
+    /// The name in files and reports.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Invalid => "invalid",
@@ -40,7 +40,7 @@ impl Flow {
         }
     }
 
-    /// What it says of a pair.
+    /// A description for documentation.
     pub const fn meaning(self) -> &'static str {
         match self {
             Self::Invalid => "invalid pair",
@@ -50,7 +50,7 @@ impl Flow {
         }
     }
 
-    /// Whether it is a contact.
+    /// True for a contact.
     pub const fn is_contact(self) -> bool {
         self.flags() & 1 == 1
     }

@@ -1,5 +1,5 @@
-//! What is asked of a pair: its shape, as data. Hardware, reference, files, checks and documentation read the same
-//! [`Shape`]; only the mathematics, in [`crate::kernel`], is code.
+//! Queries: the kinds of pairs, as data. Hardware, reference, files, checks and documentation read the same [`Shape`];
+//! only the mathematics, in [`crate::kernel`], is code.
 
 mod contact_record;
 mod fields;
@@ -20,14 +20,15 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-/// Which two bodies a pair is of. A new one is a file beside this with its [`Shape`], a line here, and its mathematics.
+/// The two bodies of a pair. A new query is a file beside this one with its [`Shape`], a line here, and its
+/// mathematics.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Query {
     /// Two spheres, as in the paper.
     #[default]
     SphereSphere,
-    /// A sphere and a plane, whose solid side is the one that its normal points away from.
+    /// A sphere and a plane. The normal of the plane points away from its solid side.
     SpherePlane,
 }
 
@@ -35,7 +36,7 @@ impl Query {
     /// Every query.
     pub const ALL: [Self; 2] = [Self::SphereSphere, Self::SpherePlane];
 
-    /// What it is, as data.
+    /// The query as data.
     pub const fn shape(self) -> &'static Shape {
         match self {
             Self::SphereSphere => &sphere_sphere::SHAPE,
@@ -43,7 +44,7 @@ impl Query {
         }
     }
 
-    /// Whether it is the default, which files leave out.
+    /// True for the default, which files leave out.
     pub(crate) fn is_default(&self) -> bool {
         *self == Self::default()
     }
@@ -55,7 +56,7 @@ impl fmt::Display for Query {
     }
 }
 
-/// Not a query's name.
+/// An unknown name of a query.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("unknown query `{0}`: use {queries}", queries = Query::ALL.map(|query| query.shape().name).join(", "))]
 pub struct QueryError(String);
@@ -82,7 +83,7 @@ mod tests {
         assert_eq!(error, "unknown query `box`: use sphere-sphere, sphere-plane");
     }
 
-    /// The capability word tells queries apart by four bits, and each pair fits a record.
+    /// The capability word has four bits for the query, and each pair fits a record.
     #[test]
     fn shapes_fit_their_records() {
         for (query, code) in Query::ALL.into_iter().zip(0..) {

@@ -2,7 +2,7 @@
 
 use super::{Input, Query, Rule};
 
-/// Words that a pair of any query has at most. A record has room for sixteen.
+/// The number of words in the largest pair of any query. A record has room for sixteen.
 pub const PAIR_WORDS: usize = {
     let (mut most, mut i) = (0, 0);
     while i < Query::ALL.len() {
@@ -15,7 +15,7 @@ pub const PAIR_WORDS: usize = {
     most
 };
 
-/// The largest word that keeps its rule, for each place of each query.
+/// The largest word that keeps its rule, for each word of each query.
 const LARGEST: [[u32; PAIR_WORDS]; Query::ALL.len()] = {
     let mut largest = [[u32::MAX; PAIR_WORDS]; Query::ALL.len()];
     let mut query = 0;
@@ -36,7 +36,7 @@ const LARGEST: [[u32; PAIR_WORDS]; Query::ALL.len()] = {
 pub struct PairRecord(pub [u32; PAIR_WORDS]);
 
 impl PairRecord {
-    /// The pair of these numbers, in order; words beyond them are zero.
+    /// The pair of these numbers, in order; the remaining words are zero.
     pub(crate) fn of_values(values: impl IntoIterator<Item = f32>) -> Self {
         let mut pair = Self::default();
         pair.0.iter_mut().zip(values).for_each(|(word, value)| *word = value.to_bits());
@@ -53,10 +53,10 @@ impl PairRecord {
         Self::of_values(sphere.into_iter().chain(plane))
     }
 
-    /// Whether every word keeps its [rule](super::Rule).
+    /// True if every word keeps its [rule](super::Rule).
     #[inline(always)]
     pub fn is_valid(&self, query: Query) -> bool {
-        // Without branches and of a known length, for the batch kernel: all words of a block at a time.
+        // Without branches and of constant length, so that the batch kernel checks a whole block at a time.
         let largest = &LARGEST[query as usize];
         (0..PAIR_WORDS).fold(true, |all, word| all & Rule::holds_below(self.0[word], largest[word]))
     }

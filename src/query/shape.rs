@@ -2,14 +2,14 @@
 
 use super::Flow;
 
-/// What a word of a pair must be. A pair that breaks a rule is invalid, which hardware sees in the raw words.
+/// The rule for a word of a pair. A pair that breaks a rule is invalid; the hardware checks the raw words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rule {
     /// Neither an infinity nor a NaN.
     Finite,
-    /// Finite, and not below zero (−0 is not).
+    /// Finite and not below zero (−0 is valid).
     NotNegative,
-    /// Finite, and a component of a vector of length 1: that is the caller's promise, which nobody checks.
+    /// Finite, and a component of a vector of length 1. The caller promises the length; it is not checked.
     UnitLength,
 }
 
@@ -17,17 +17,17 @@ impl Rule {
     const SIGN: u32 = 0x8000_0000;
     const INFINITY: u32 = 0x7F80_0000;
 
-    /// Whether a binary32 word keeps it.
+    /// True if a binary32 word keeps this rule.
     pub const fn holds(self, word: u32) -> bool {
         Self::holds_below(word, self.largest())
     }
 
-    /// The largest word that keeps it, if it is finite.
+    /// The largest finite word that keeps this rule.
     pub(super) const fn largest(self) -> u32 {
         if matches!(self, Self::NotNegative) { Self::SIGN } else { u32::MAX }
     }
 
-    /// Whether a word keeps the rule that has this largest word.
+    /// True if a word keeps the rule with this largest word.
     #[inline(always)]
     pub(super) const fn holds_below(word: u32, largest: u32) -> bool {
         (word & Self::INFINITY != Self::INFINITY) & (word <= largest)
@@ -37,13 +37,13 @@ impl Rule {
 /// A word of a pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Input {
-    /// Its name in files, messages and hardware.
+    /// The name in files, messages and hardware.
     pub name: &'static str,
-    /// What it is.
+    /// The meaning, for documentation.
     pub meaning: &'static str,
-    /// What it must be.
+    /// The rule that a valid pair keeps.
     pub rule: Rule,
-    /// Whether it is a sphere's radius, which `--radius` makes part of the hardware.
+    /// True for a sphere's radius, which `--radius` makes a constant of the hardware.
     pub is_radius: bool,
 }
 
@@ -57,22 +57,22 @@ impl Input {
     }
 }
 
-/// A query as data: what hardware, files, checks and documentation must know of it.
+/// A query as data: everything that hardware, files, checks and documentation need to know about it.
 #[derive(Debug)]
 pub struct Shape {
-    /// Its name in options, files and reports.
+    /// The name in options, files and reports.
     pub name: &'static str,
-    /// Its number in the capability word.
+    /// The code in the capability word.
     pub code: u32,
     /// The Verilog module of its kernel.
     pub kernel: &'static str,
-    /// What a pair is, in the plural: "two spheres".
+    /// The two bodies in the plural: "two spheres".
     pub bodies: &'static str,
     /// The words of a pair, in the order of its record.
     pub inputs: &'static [Input],
-    /// Which ways a valid pair can go.
+    /// The outcomes of a valid pair.
     pub flows: &'static [Flow],
-    /// What is computed, in the notation of [`Shape::inputs`]: a paragraph of PORTS.md.
+    /// The computation in the notation of [`Shape::inputs`]: a paragraph of PORTS.md.
     pub computes: &'static str,
     /// Pairs of every flow, and invalid ones, for the generated test bench.
     pub examples: &'static [&'static [f32]],

@@ -23,7 +23,7 @@ pub(super) const SHAPE: Shape = Shape {
     flows: &[Flow::Fake, Flow::Real],
     computes: "The plane is all points p with n · p = d. With c the sphere's centre, depth = (d − n · c) + r: contact if \
                depth ≥ 0; then normal n, position c − n · r. That n has length 1 is not checked.",
-    // Before the plane, through it, touching it, behind it; a point; and what is no such pair.
+    // In front of the plane, through it, touching it, behind it; a point; and invalid pairs.
     examples: &[
         &[0.0, 0.0, 3.0, 1.0, 0.0, 0.0, 1.0, 0.0],
         &[0.0, 0.0, 0.5, 1.0, 0.0, 0.0, 1.0, 0.0],

@@ -23,7 +23,7 @@ pub(super) const SHAPE: Shape = Shape {
     flows: &[Flow::Fake, Flow::Coincident, Flow::Real],
     computes: "With d the distance of the centres p1 and p2: contact if d ≤ r1 + r2; then normal n = (p1 − p2) / d, position \
                p1 + n · ((r2 − r1) − d) / 2, depth (r1 + r2) − d. If d = 0: position p1, normal (1, 0, 0), depth r1 + r2.",
-    // One in the other, beside each other, touching, far apart, coincident; and what is no pair of spheres.
+    // One inside the other, overlapping, touching, far apart, coincident; and invalid pairs.
     examples: &[
         &[0.0, 0.0, 0.0, 1.0, 1.5, 0.0, 0.0, 1.0],
         &[0.0, 0.0, 0.0, 1.0, 3.0, 0.0, 0.0, 1.0],

@@ -1,4 +1,4 @@
-//! The capability word: what an AFU says of itself, declared once.
+//! The capability word, in which an AFU describes itself; declared once.
 
 use crate::config::{Config, RecordFormat, Results};
 use crate::query::{Fields, GROUPS, Query};
@@ -8,13 +8,13 @@ use super::Layout;
 /// A part of the word.
 #[derive(Clone, Copy, Debug)]
 pub struct Part {
-    /// Its lowest bit.
+    /// The lowest bit.
     pub low: u32,
-    /// How many bits it has.
+    /// The number of bits.
     pub bits: u32,
-    /// What it says.
+    /// The meaning, for documentation.
     pub meaning: &'static str,
-    /// Whether every AFU of the first versions had it: the others are told of only where they are not 0.
+    /// True if every version has this part. The other parts are described only if they are not 0.
     always: bool,
 }
 
@@ -30,21 +30,21 @@ const RECORD: Part = part(26, 2, "words of records (0: f32, 1: f16, 2: bf16)", f
 const QUERY: Part = part(28, 4, "query", false);
 const LATENCY: Part = part(32, 12, "SCPU latency (of profile and clock), in cycles", true);
 
-/// Cycles that a pair spends outside its SCPU, from the line port and back: far above those of any configuration.
+/// A bound on the cycles that a pair spends outside its SCPU, far above those of any configuration.
 pub(crate) const AROUND_CYCLES: u64 = 128;
 
 impl Part {
     /// The number of SCPUs.
     pub const SCPUS: Self = part(0, 8, "SCPUs", true);
-    /// Every part, from the lowest bit up. The bits between them are zero.
+    /// All parts, from the lowest bit up. The bits between them are zero.
     pub const ALL: [Self; 8] = [Self::SCPUS, INTERVAL, FIELDS, HITS, ONE_RADIUS, RECORD, QUERY, LATENCY];
 
-    /// Its value in a word.
+    /// The value of this part in a word.
     pub const fn of(self, word: u64) -> u64 {
         word >> self.low & self.most()
     }
 
-    /// The bits of it in a word.
+    /// The bits of this part in a word.
     pub const fn mask(self) -> u64 {
         self.most() << self.low
     }
@@ -53,35 +53,35 @@ impl Part {
         (1 << self.bits) - 1
     }
 
-    /// The word of this part alone; the largest value that it holds if the value is larger.
+    /// The word with this part only. A value that is too large is replaced by the largest possible.
     fn word(self, value: u32) -> u64 {
         u64::from(value).min(self.most()) << self.low
     }
 }
 
-/// What an AFU says of itself.
+/// What an AFU says about itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Capability {
-    /// Sphere Collision Processing Units.
+    /// Number of sphere collision processing units.
     pub scpus: u32,
-    /// Cycles from one pair to the next in an SCPU.
+    /// Initiation interval of an SCPU, in cycles.
     pub interval: u32,
-    /// Which results of a pair are given.
+    /// The fields of a contact that are computed.
     pub fields: Fields,
-    /// Which pairs come back.
+    /// The pairs for which the AFU returns a record.
     pub results: Results,
-    /// Whether all spheres have one radius, which is not in the records.
+    /// True if all spheres have one radius, which is not in the records.
     pub one_radius: bool,
-    /// The numbers of the records.
+    /// The number format of the records.
     pub record: RecordFormat,
-    /// What is asked of a pair; none that this version knows: `None`.
+    /// The kind of pair; `None` if this version does not know it.
     pub query: Option<Query>,
-    /// Cycles of a pair in an SCPU.
+    /// The latency of an SCPU, in cycles.
     pub scpu_cycles: u32,
 }
 
 impl Capability {
-    /// Of an AFU whose SCPUs take so many cycles.
+    /// The capability of an AFU whose SCPUs have this latency in cycles.
     pub fn new(config: &Config, scpu_cycles: u32) -> Self {
         Self {
             scpus: config.scpus,
@@ -95,7 +95,7 @@ impl Capability {
         }
     }
 
-    /// As a word.
+    /// Encodes the capability as a word.
     pub fn bits(&self) -> u64 {
         let asked = GROUPS.iter().fold(0, |mask, group| mask << 1 | u32::from((group.is_asked)(self.fields)));
         let query = self.query.map_or(u32::MAX, |query| query.shape().code);
@@ -109,7 +109,7 @@ impl Capability {
             | LATENCY.word(self.scpu_cycles)
     }
 
-    /// Takes a word apart.
+    /// Decodes a word.
     pub fn from_bits(bits: u64) -> Self {
         let part = |part: Part| part.of(bits) as u32;
         let asked = |bit: u32| part(FIELDS) >> bit & 1 == 1;
@@ -129,7 +129,7 @@ impl Capability {
         }
     }
 
-    /// The parts of a word in prose, each with its bits; of those that not every AFU has, the ones that are set.
+    /// Describes the parts of a word in prose, each with its bits. Optional parts are described only if they are set.
     pub fn describe(word: u64) -> String {
         let said = Self::from_bits(word);
         let query = said.query.map_or("unknown", |query| query.shape().name);
@@ -162,16 +162,16 @@ impl Capability {
         Layout::of(super::LINE_BITS, &config).pairs_per_line()
     }
 
-    /// Cycles that the SCPUs take for so many pairs if none waits for memory. In an interval each SCPU takes one pair,
-    /// and all together no more than one line per cycle. The first turn may come a whole interval late, and the last
-    /// round may be of a single pair.
+    /// Cycles that the SCPUs take for `pairs` pairs if none waits for memory. In an interval each SCPU takes one pair,
+    /// and all together take at most one line per cycle. The first turn may come a whole interval late, and the last
+    /// round may hold a single pair.
     pub fn computing_cycles(&self, pairs: u64) -> u64 {
         let interval = u64::from(self.interval.max(1));
         let each_interval = u64::from(self.scpus).clamp(1, u64::from(self.pairs_per_line()) * interval);
         (pairs.div_ceil(each_interval) + 1) * interval
     }
 
-    /// A bound on the cycles from a line of pairs in to their contacts out, for an AFU that waits for nothing.
+    /// A bound on the cycles from a line of pairs in to their contacts out, if the AFU waits for nothing.
     pub fn latency_cycles(&self) -> u64 {
         AROUND_CYCLES + u64::from(self.scpu_cycles) + u64::from(self.interval)
     }
@@ -197,7 +197,7 @@ mod tests {
             assert_eq!(is_told, said.query == Some(Query::SpherePlane));
             assert_eq!(said.pairs_per_line(), Layout::of(512, &config).pairs_per_line());
         }
-        // Every part has bits of its own, and those between are zero.
+        // The parts do not overlap, and the bits between them are zero.
         let all = Part::ALL.iter().fold(0_u64, |all, part| {
             assert_eq!(all & part.mask(), 0, "{part:?}");
             all | part.mask()

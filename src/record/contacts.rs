@@ -1,12 +1,12 @@
-//! Contacts out of lines, by the layout: what [`pack`](super::pack) puts in. Here records have words of binary32; in
-//! lines they have those of the layout's numbers, from which they are widened.
+//! Reads contacts from lines by the layout: the reverse of [`pack`](super::pack). Records here have binary32 words;
+//! lines hold the layout's number format, from which the words are widened.
 
 use super::Layout;
 use super::pack::{DWORD, Line, get};
 use crate::kernel::widen;
 use crate::query::{ContactRecord, FLAGS, Flow};
 
-/// Destination lines as records.
+/// Destination lines, read as records.
 pub(crate) struct Contacts<'a> {
     layout: &'a Layout,
     words: Vec<usize>,
@@ -18,26 +18,25 @@ impl<'a> Contacts<'a> {
         Self { layout, words: layout.contact_words(), lines }
     }
 
-    /// The line and the place in it of the record with this index.
+    /// The line of the record with this index, and its slot in the line.
     fn place(&self, index: usize) -> (usize, usize) {
         let per_line = self.layout.contacts_per_line() as usize;
         (index / per_line, index % per_line)
     }
 
-    /// The line of the record with this index: a pair's number, or, where only contacts come back, how many come
-    /// before.
+    /// The line of the record with this index: the index of its pair or, with `Results::Hits`, of its hit.
     #[cfg_attr(not(feature = "cosim"), allow(dead_code))] // for `verify` alone
     pub(crate) fn line(&self, index: usize) -> usize {
         self.place(index).0
     }
 
-    /// The contact with this index; nothing if its line was never written. Words that are not in the record are zero.
-    /// Of records without words of the contact only the contact is known: it reads as real or fake.
+    /// The contact with this index; `None` if its line was never written. Words that are not in the record are zero. A
+    /// record without words of a contact only tells whether the pair touches: it reads as real or fake.
     pub(crate) fn get(&self, index: usize) -> Option<ContactRecord> {
         self.record(index).map(|(_, contact)| contact)
     }
 
-    /// The contact with this index where only contacts come back, with its pair's number before it.
+    /// With `Results::Hits`, the contact with this index and the index of its pair.
     #[cfg_attr(not(feature = "cosim"), allow(dead_code))] // for `verify` alone
     pub(crate) fn hit(&self, index: usize) -> Option<(u32, ContactRecord)> {
         let (number, contact) = self.record(index)?;
@@ -62,7 +61,7 @@ impl<'a> Contacts<'a> {
         Some((number, record))
     }
 
-    /// The part of the reference's record that destination memory holds, as [`Contacts::get`] gives it.
+    /// The part of the reference's record that destination memory holds, in the form of [`Contacts::get`].
     #[cfg_attr(not(feature = "cosim"), allow(dead_code))] // for `verify` alone
     pub(crate) fn as_stored(&self, record: ContactRecord) -> ContactRecord {
         let mut stored = ContactRecord::default();
@@ -75,7 +74,7 @@ impl<'a> Contacts<'a> {
         stored
     }
 
-    /// Whether everything behind the last of `count` contacts is zero, in each slot and at the end of the last line.
+    /// True if the padding is zero: after `count` contacts, in each slot and at the end of the last line.
     #[cfg_attr(not(feature = "cosim"), allow(dead_code))] // for `verify` alone
     pub(crate) fn rest_is_zero(&self, count: usize) -> bool {
         let bits = self.layout.contact_bits() as usize;
@@ -108,7 +107,7 @@ mod tests {
         (0..count).map(|i| ContactRecord([i, i + 1, i + 2, i + 3, i + 4, i + 5, i + 6, flow(i)])).collect()
     }
 
-    /// Lines written word by word and bit by bit, as the design words it.
+    /// Lines written word by word and bit by bit, as the design defines them.
     fn lines(layout: &Layout, fields: Fields, records: &[ContactRecord]) -> Vec<Option<Line>> {
         let mut lines = vec![[0; 16]; records.len().div_ceil(layout.contacts_per_line() as usize)];
         let bits = layout.contact_bits() as usize;
@@ -158,7 +157,7 @@ mod tests {
             let layout = Layout::of(512, &config);
             let words = layout.contact_words();
             let per_line = layout.contacts_per_line() as usize;
-            // Numbers with gaps, then the words asked for, then nothing up to the next power of two.
+            // Indices with gaps, then the requested words, then padding to the next power of two.
             let mut lines: Vec<Option<Line>> = vec![Some([0; 16]); 33_usize.div_ceil(per_line)];
             let records = records(33);
             for (i, record) in records.iter().enumerate() {
@@ -190,7 +189,7 @@ mod tests {
         assert_eq!(unpack_pairs(&layout, &lines, 3), pairs);
     }
 
-    /// Four pairs and four contacts a line, word by word of 16 bits, the number of a hit in two of them.
+    /// Four pairs and four contacts per line, in words of 16 bits; the index of a hit takes two of them.
     #[test]
     fn words_of_16_bits_read_back_what_was_rounded_to_them() {
         let halves =

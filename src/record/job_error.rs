@@ -1,6 +1,6 @@
-//! How a job failed: the codes, by which hardware, hosts and documentation know each other.
+//! The error codes of a job, shared by hardware, hosts and documentation.
 
-/// How a job ended, as the port `error` and the status tell it.
+/// The error of a job, in the port `error` and in the status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JobError {
     /// Stopped by `abort`.
@@ -9,20 +9,21 @@ pub enum JobError {
     Read = 2,
     /// A write was answered with an error.
     Write = 3,
-    /// No response for as many cycles as `watchdog` says, with some outstanding.
+    /// No response for as many cycles as `watchdog` says, with requests outstanding.
     Watchdog = 4,
-    /// A `mode` this AFU does not have.
+    /// The job asked for a `mode` that this AFU does not have.
     Mode = 5,
-    /// More lines of contacts than the destination has room for: those beyond were not written, but all were counted.
+    /// The job has more lines of contacts than its destination. The others were not written, but all contacts were
+    /// counted.
     Overflow = 6,
-    /// A response that no request of this job waits for.
+    /// A response came that no request of this job waits for.
     Response = 7,
-    /// More pairs than the host's buffers have lines for: told by a shell that knows their length.
+    /// The job has more pairs than the host's buffers have lines; reported by a shell that knows their length.
     Room = 8,
 }
 
 impl JobError {
-    /// All of them, by code.
+    /// All errors in the order of their codes.
     pub const ALL: [Self; 8] = [
         Self::Aborted,
         Self::Read,
@@ -33,10 +34,10 @@ impl JobError {
         Self::Response,
         Self::Room,
     ];
-    /// Bits of a code. Code 0 is no error.
+    /// The number of bits of a code. Code 0 means no error.
     pub const BITS: u32 = 4;
 
-    /// Its code.
+    /// The code in the port and in the status.
     pub const fn code(self) -> u8 {
         self as u8
     }
@@ -46,12 +47,12 @@ impl JobError {
         Self::ALL.into_iter().find(|error| error.code() == code)
     }
 
-    /// What it is.
+    /// A description of the error.
     pub const fn what(self) -> &'static str {
         self.texts().0
     }
 
-    /// What a user can do about it.
+    /// Advice for the user.
     pub const fn advice(self) -> &'static str {
         self.texts().1
     }

@@ -1,4 +1,4 @@
-//! Where records lie in lines: computed once, read by hardware, host and files alike.
+//! Where records lie in lines: computed once, and used by hardware, host and files.
 
 use crate::config::{Config, RecordFormat, Results};
 use crate::query::{ContactRecord, Fields, Input, PairRecord, Query};
@@ -6,35 +6,35 @@ use crate::query::{ContactRecord, Fields, Input, PairRecord, Query};
 use super::COUNT_BITS;
 
 /// The record layout of a configuration. A record is its words in use, padded to a power of two; a line holds as many
-/// as fit. With no field asked for, a contact is one bit. Where only contacts come back, each begins with its pair's
-/// number of 32 bits, and with no field asked for it is that number alone.
+/// records as fit. If no field is asked for, a contact is one bit. With `Results::Hits` each record begins with the
+/// 32-bit index of its pair; without fields it is that index only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout {
     line_bits: u32,
     query: Query,
-    /// The words of a pair: those of the query.
+    /// The words of a pair, from its query.
     inputs: &'static [Input],
     record: RecordFormat,
     word_bits: u32,
     fields: Fields,
     results: Results,
-    /// The word that every radius is, where records have none.
+    /// The word of all radii if records have no radii.
     radius: Option<u32>,
 }
 
-/// A pair of spheres that an AFU of one radius cannot be given.
+/// A pair of spheres with another radius than the hardware's.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
     "pair {pair}: expected {field} = {radius}, the radius of all spheres (--radius), found {found}; leave --radius out, or send spheres of that radius"
 )]
 pub struct OtherRadius {
-    /// The pair's number.
+    /// The index of the pair.
     pub pair: usize,
-    /// r1 or r2.
+    /// The field, r1 or r2.
     pub field: &'static str,
-    /// What it is.
+    /// The radius of the pair.
     pub found: f32,
-    /// What it is taken for.
+    /// The radius of the hardware.
     pub radius: f32,
 }
 
@@ -52,7 +52,7 @@ impl Layout {
         Self { line_bits, query, inputs, record, word_bits: record.format().width(), fields, results, radius }
     }
 
-    /// What is asked of a pair.
+    /// The kind of pair.
     pub fn query(&self) -> Query {
         self.query
     }
@@ -62,17 +62,17 @@ impl Layout {
         self.fields
     }
 
-    /// The numbers of the records.
+    /// The number format of the records.
     pub fn record(&self) -> RecordFormat {
         self.record
     }
 
-    /// Bits of a record's word.
+    /// Bits of a word of a record.
     pub fn word_bits(&self) -> u32 {
         self.word_bits
     }
 
-    /// The same records in words of `word_bits` bits. Only proofs have other than the record's.
+    /// The same records in words of `word_bits` bits. Only proofs use other widths than the record's.
     pub(crate) fn with_words_of(self, word_bits: u32) -> Self {
         Self { word_bits, ..self }
     }
@@ -82,25 +82,25 @@ impl Layout {
         self.line_bits
     }
 
-    /// The words of a pair that are in the record, in order, each with its place in a [`PairRecord`]: all but radii
-    /// that are the hardware's.
+    /// The words of a pair that are in the record, in order, each with its place in a [`PairRecord`]. Radii that are
+    /// constants of the hardware are left out.
     pub fn inputs(&self) -> impl Iterator<Item = (usize, &'static Input)> + Clone {
         let fixed = self.radius.is_some();
         self.inputs.iter().enumerate().filter(move |(_, input)| !(fixed && input.is_radius))
     }
 
-    /// The pair whose words of the record are these; a radius that is the hardware's is put in its place.
+    /// The pair with these words of the record; radii that are constants of the hardware are filled in.
     pub fn pair(&self, words: impl IntoIterator<Item = u32>) -> PairRecord {
         let mut pair = PairRecord::default();
         if let Some(radius) = self.radius {
-            // Of all words, since those of the record follow.
+            // All words: those of the record are overwritten below.
             pair.0.fill(radius);
         }
         self.inputs().zip(words).for_each(|((place, _), value)| pair.0[place] = value);
         pair
     }
 
-    /// Whether records say everything of these pairs.
+    /// Checks that records can represent these pairs.
     ///
     /// # Errors
     /// The first pair with another radius than the hardware's.
@@ -116,38 +116,38 @@ impl Layout {
         Ok(())
     }
 
-    /// Bits a pair takes in a line.
+    /// Bits of a pair in a line.
     pub fn pair_bits(&self) -> u32 {
         (self.inputs().count() as u32 * self.word_bits).next_power_of_two()
     }
 
-    /// Pairs a source line.
+    /// Pairs per source line.
     pub fn pairs_per_line(&self) -> u32 {
         self.line_bits / self.pair_bits()
     }
 
-    /// Which words of a [`ContactRecord`] are in the record, in order; empty where only the hit is asked for.
+    /// The words of a [`ContactRecord`] that are in the record, in order; empty if only the hit is asked for.
     pub fn contact_words(&self) -> Vec<usize> {
         ContactRecord::words(self.fields).collect()
     }
 
-    /// Bits of a record before those of the contact: the pair's number, where only contacts come back.
+    /// Bits of a record before the words of its contact: the index of its pair with `Results::Hits`, else 0.
     pub(crate) fn number_bits(&self) -> u32 {
         if self.results == Results::Hits { COUNT_BITS } else { 0 }
     }
 
-    /// Bits of a record in use: without what pads it to a power of two.
+    /// Bits of a record in use, without the padding to a power of two.
     pub(crate) fn used_bits(&self) -> u32 {
         (self.number_bits() + self.contact_words().len() as u32 * self.word_bits).max(1)
     }
 
-    /// Bits a contact takes in a line.
+    /// Bits of a contact in a line, with padding.
     pub(crate) fn contact_bits(&self) -> u32 {
         self.used_bits().next_power_of_two()
     }
 
-    /// Bits of a result as an SCPU gives it: the record in its line, or, where only contacts come back, the words that
-    /// follow the number, of which there may be none.
+    /// Bits of a result at the output of an SCPU: the record in its line or, with `Results::Hits`, the words after the
+    /// index, which may be none.
     pub(crate) fn result_bits(&self) -> u32 {
         match self.results {
             Results::All => self.contact_bits(),
@@ -155,7 +155,7 @@ impl Layout {
         }
     }
 
-    /// Contacts a destination line.
+    /// Contacts per destination line.
     pub(crate) fn contacts_per_line(&self) -> u32 {
         self.line_bits / self.contact_bits()
     }
@@ -165,7 +165,7 @@ impl Layout {
         pairs.div_ceil(u64::from(self.pairs_per_line()))
     }
 
-    /// Destination lines of `contacts` records: where all come back, as many as there are pairs.
+    /// Destination lines of `contacts` records. With `Results::All` there is one record per pair.
     pub fn destination_lines(&self, contacts: u64) -> u64 {
         contacts.div_ceil(u64::from(self.contacts_per_line()))
     }
@@ -183,9 +183,9 @@ mod tests {
             let layout = Layout::of(512, &config);
             (layout.contact_bits(), layout.contacts_per_line())
         };
-        // Words in use: all eight, depth and flags, normal and flags; none.
+        // All eight words, depth and flags, normal and flags, only the hit.
         let all = [("hit,depth,normal,position", 256), ("depth", 64), ("normal", 128), ("hit", 1)];
-        // One more.
+        // With the index, one word more.
         let hits = [("hit,depth,normal,position", 512), ("depth", 128), ("normal", 256), ("hit", 32)];
         for (contact, bits) in all {
             assert_eq!(per_line(contact, Results::All), (bits, 512 / bits), "{contact}");
@@ -195,7 +195,7 @@ mod tests {
         }
     }
 
-    /// Queries to come have up to sixteen words: then a pair fills a line, or half of one.
+    /// Later queries may have up to sixteen words: then a pair fills a line, or half of one.
     #[test]
     fn a_pair_of_sixteen_words_fills_a_line() {
         static INPUTS: [Input; 16] = [Input::new("word", "any", Rule::Finite); 16];

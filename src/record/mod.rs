@@ -1,5 +1,5 @@
-//! Records: where the words of pairs and contacts lie in lines of memory, and what an AFU says of itself. Declared
-//! once, and read by hardware, host, checks and documentation.
+//! Records: where the words of pairs and contacts lie in lines of memory, and how an AFU describes itself. Declared
+//! once, and used by hardware, host, checks and documentation.
 
 mod capability;
 mod contacts;
@@ -17,5 +17,5 @@ pub(crate) use pack::{Line, pack, pack_contacts, unpack_pairs};
 
 /// Bits of a line of memory.
 pub(crate) const LINE_BITS: u32 = 512;
-/// Bits of a pair count or number.
+/// Bits of a number of pairs or of an index.
 pub const COUNT_BITS: u32 = 32;

@@ -1,5 +1,5 @@
-//! Records into lines, and pairs out of them, by the layout. Here records have words of binary32; in lines they have
-//! those of the layout's numbers, to which they are rounded.
+//! Packs records into lines and reads pairs from lines, by the layout. Records here have binary32 words; lines hold the
+//! layout's number format, to which the words are rounded.
 
 use crate::kernel::{narrow, widen};
 use crate::query::{ContactRecord, FLAGS, PairRecord};
@@ -12,18 +12,18 @@ pub(crate) type Line = [u32; 16];
 /// Bits of a dword of a line.
 pub(super) const DWORD: usize = 32;
 
-/// Puts a word of `bits` bits, which lies in one dword, into zero bits of a line.
+/// Puts a word of `bits` bits into zero bits of a line. The word lies within one dword.
 fn put(line: &mut Line, at: usize, bits: u32, word: u32) {
     let mask = u32::MAX >> (DWORD as u32 - bits);
     line[at / DWORD] |= (word & mask) << (at % DWORD);
 }
 
-/// A word of `bits` bits, which lies in one dword.
+/// Reads a word of `bits` bits, which lies within one dword.
 pub(super) fn get(line: &Line, at: usize, bits: u32) -> u32 {
     line[at / DWORD] >> (at % DWORD) & u32::MAX >> (DWORD as u32 - bits)
 }
 
-/// The source lines of pairs; what is unused of the last is zero.
+/// The source lines of pairs; the padding of the last line is zero.
 pub(crate) fn pack(layout: &Layout, pairs: &[PairRecord]) -> Vec<Line> {
     let (room, bits, record) = (layout.pair_bits() as usize, layout.word_bits(), layout.record().format());
     let line = |pairs: &[PairRecord]| {
@@ -54,8 +54,8 @@ pub(crate) fn unpack_pairs(layout: &Layout, lines: &[Line], count: usize) -> Vec
         .collect()
 }
 
-/// The destination lines of the contacts of all pairs, of which only hits are there where only contacts come back; what
-/// is unused of the last line is zero.
+/// The destination lines of the contacts; with `Results::Hits` only those of pairs that touch. The padding of the last
+/// line is zero.
 pub(crate) fn pack_contacts(layout: &Layout, records: &[ContactRecord]) -> Vec<Line> {
     let (words, bits, numbers) = (layout.contact_words(), layout.contact_bits() as usize, layout.record().format());
     let number_bits = layout.number_bits();

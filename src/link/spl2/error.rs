@@ -4,14 +4,14 @@
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Spl2Error {
     /// More requests than are accepted after almost-full.
-    #[error("a {what} {after} cycles of requests after almost-full: SPL accepts 4")]
+    #[error("a {what} as request {after} after almost-full: SPL accepts at most 4")]
     Overshoot {
         /// Read or write.
         what: &'static str,
         /// Requests since almost-full rose.
         after: u32,
     },
-    /// A header that says nothing SPL knows.
+    /// A header that SPL does not know.
     #[error("a {what} header {header:#027x}: {why}")]
     Header {
         /// Read or write.
@@ -21,8 +21,8 @@ pub enum Spl2Error {
         /// What is wrong with it.
         why: &'static str,
     },
-    /// `mdata` of a request that is still to be answered.
-    #[error("a {what} used mdata {mdata:#06x}, whose last response has not come yet")]
+    /// The `mdata` of a request that is still outstanding.
+    #[error("a {what} used mdata {mdata:#06x} before the response to its last use")]
     MdataReused {
         /// Read or write.
         what: &'static str,
@@ -30,15 +30,15 @@ pub enum Spl2Error {
         mdata: u16,
     },
     /// A request long after SPL was disabled or reset.
-    #[error("a {what} with SPL disabled or in reset for {cycles} cycles")]
+    #[error("a {what} although SPL has been disabled or in reset for {cycles} cycles")]
     Disabled {
         /// Read or write.
         what: &'static str,
         /// For how long.
         cycles: u64,
     },
-    /// An interrupt, which this AFU has none of.
-    #[error("an interrupt")]
+    /// An interrupt: this AFU raises none.
+    #[error("an interrupt, which this AFU never raises")]
     Interrupt,
     /// An address outside of the page table.
     #[error("page fault: a {what} of virtual line {line:#x}")]
@@ -48,8 +48,8 @@ pub enum Spl2Error {
         /// The line address.
         line: u64,
     },
-    /// A line that the job has no business with.
-    #[error("a {what} of virtual line {line:#x}, which is not the job's")]
+    /// A line outside the job's source, destination and status.
+    #[error("a {what} of virtual line {line:#x}, which the job does not own")]
     Outside {
         /// Read or write.
         what: &'static str,
@@ -59,7 +59,7 @@ pub enum Spl2Error {
     /// A second write to a line of the results.
     #[error("a second write to virtual line {0:#x}")]
     WrittenTwice(u64),
-    /// The host enabled SPL with a context that is none.
+    /// The host enabled SPL with an invalid context.
     #[error("SPL2 context: {0}")]
     Context(&'static str),
 }
