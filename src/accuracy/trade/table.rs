@@ -14,7 +14,7 @@ const LIMITED: f64 = 0.09;
 /// The table, with a legend below it.
 pub fn table(results: &Study) -> String {
     let has_areas = results.has_areas();
-    let mut heading = vec!["", "wrong", "gross", "worst error", "typical", "latency, ns", "×", "link, ns", "×"];
+    let mut heading = vec!["", "wrong", "gross", "worst error", "mean error", "latency, ns", "×", "link, ns", "×"];
     if has_areas {
         heading.extend(["device, ns", "×", "LUT"]);
     }
