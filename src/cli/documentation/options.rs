@@ -78,7 +78,7 @@ fn section(command: &Command, shared: &[&Arg]) -> String {
         .collect();
     if all.iter().any(|option| is_shared(option)) {
         let but = if missing.is_empty() { String::new() } else { format!(" except {}", missing.join(", ")) };
-        _ = write!(text, "- all [options of an AFU](#options-of-an-afu){but}\n");
+        _ = writeln!(text, "- all [options of an AFU](#options-of-an-afu){but}");
     }
     text
 }
@@ -107,15 +107,15 @@ fn definition(option: &Arg) -> String {
     let default = told.or_else(|| Some(of_clap.join(",")).filter(|text| !text.is_empty()));
     let mut text = format!("- **`{name}`**{required}  \n  {}.\n", sentence(first));
     if let Some(default) = default {
-        _ = write!(text, "  Default: {default}.\n");
+        _ = writeln!(text, "  Default: {default}.");
     }
     if !rest.is_empty() {
-        _ = write!(text, "  {}\n", rest.replace("\n\n", "\n  ").trim_end());
+        _ = writeln!(text, "  {}", rest.replace("\n\n", "\n  ").trim_end());
     }
     for value in option.get_possible_values() {
         if option.get_action().takes_values() && !value.is_hide_set() {
             let about = value.get_help().map(|help| format!(": {help}")).unwrap_or_default();
-            _ = write!(text, "  - `{}`{about}\n", value.get_name());
+            _ = writeln!(text, "  - `{}`{about}", value.get_name());
         }
     }
     text
