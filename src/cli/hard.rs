@@ -31,7 +31,8 @@ pub struct Hard {
     /// also exact]
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     profile: Vec<Profile>,
-    /// Folder to write: manifest.json with all results, hard.csv, hard.svg (gross failures), measurements/ to resume from
+    /// Folder to write: manifest.json with all results, hard.csv, hard.svg (gross failures), measurements/ to resume
+    /// from
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Write into the folder even if afu did not make it; other files in it stay

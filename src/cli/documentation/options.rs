@@ -1,5 +1,5 @@
-//! `docs/options.md` is made from the help texts. `UPDATE_EXPECT=1 cargo test --features ode --bin afu options` rewrites
-//! it.
+//! `docs/options.md` is made from the help texts.
+//! `UPDATE_EXPECT=1 cargo test --features ode --bin afu options` rewrites it.
 
 use std::fmt::Write;
 
