@@ -16,10 +16,10 @@ pub fn page(results: &Experiment, claims: &[Claim], paper: &Published) -> String
         @if let Some(summary) = results.summary() { (sums(&summary, &results.settings, paper)) }
         h2 { "Figures" }
         (legend(&results.settings))
-        figure { (figure6(results).figure()) }
+        (page::figure(&figure6(results)))
         // A run of a thousand collisions ends where this figure begins.
-        @if results.figure7().len() > 1 { figure { (figure7(results).figure()) } }
-        figure { (per_collision(results).figure()) }
+        @if results.figure7().len() > 1 { (page::figure(&figure7(results))) }
+        (page::figure(&per_collision(results)))
         h2 { "What in the paper’s text is inconsistent" }
         (doubts(claims))
         h2 { "How it was done" }

@@ -8,7 +8,7 @@ use super::results::SceneRun;
 use super::text::cost_rows;
 use super::viewer;
 use crate::plot::{Axis, Line, Marker, Plot, Scale, Series};
-use crate::report::page::{scripted, table};
+use crate::report::page::{self, scripted, table};
 
 /// The page of a run; `ladder` is the cost with one effect after another, from [`Cost`]s by name.
 pub fn page(results: &SceneRun, ladder: &[(String, Cost)]) -> String {
@@ -89,9 +89,6 @@ fn ladder_of(ladder: &[(String, Cost)]) -> Markup {
     );
     html! {
         (table("", &heading, 1, &ladder.iter().map(row).collect::<Vec<_>>()))
-        figure {
-            div.broad { (plot.figure()) }
-            div.narrow { (plot.narrow().figure()) }
-        }
+        (page::figure(&plot))
     }
 }

@@ -97,12 +97,13 @@ fn seen(out: &std::path::Path) {
     let page = crate::browser::open(&out.join("report.html"));
     assert!(page.console.is_empty(), "{:#?}", page.console);
     assert!(page.fetched.is_empty(), "{:#?}", page.fetched);
-    // Without Figure 7, which begins where a run of at most a thousand collisions ends.
-    assert_eq!(page.dom.matches("<svg class=\"plot\"").count(), 2);
-    // Six series in each figure, and each drawn, of eleven points.
-    assert_eq!(page.dom.matches("data-series=").count(), 12);
+    // Two figures, each drawn for a wide and for a narrow screen. Figure 7 is left out: it begins where a run of at most
+    // a thousand collisions ends.
+    assert_eq!(page.dom.matches("<svg class=\"plot\"").count(), 4);
+    // Each plot has six series, each drawn with eleven points.
+    assert_eq!(page.dom.matches("data-series=").count(), 24);
     let longest = page.dom.split(" d=\"M").skip(1).filter_map(|rest| rest.split('"').next());
-    assert!(longest.filter(|path| path.matches('L').count() == 10).count() >= 12);
+    assert!(longest.filter(|path| path.matches('L').count() == 10).count() >= 24);
     for text in
         ["Figure 6: time for 10 to 1000 real collisions", "measured here", "simulated, harp1", "15.7 % less time"]
     {

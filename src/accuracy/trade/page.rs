@@ -16,7 +16,7 @@ pub fn page(results: &Study) -> String {
         p { "Each point is a configuration of the AFU: its error, measured against the truth in arbitrary precision, over "
             "its time, counted by simulating its Verilog. Down is more accurate, left is faster. A hollow one is at the delay "
             "model’s clock, which place and route would lower. Hover over a point to see its row." }
-        @for time in results.times() { figure { (picture(results, time).figure()) } }
+        @for time in results.times() { (page::figure(&picture(results, time))) }
         aside #row aria-live="polite" { span { small { "Hover over a point to see its row." } } }
         (sentences(results))
         h2 { "Points" }
