@@ -12,7 +12,7 @@ use tempfile::TempDir;
 /// byte.
 ///
 /// # Errors
-/// When the file system refuses, or `content` fails; an old file is then as it was.
+/// Returns an error if the file system refuses, or `content` fails; an old file is then as it was.
 pub fn replace(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
     if is_device(path)? {
         let mut out = BufWriter::new(OpenOptions::new().write(true).open(path)?);
@@ -27,7 +27,8 @@ pub fn replace(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<(
     aside.finish()
 }
 
-/// Whether `path` is there and no file. (A folder is none either: who opens it to write is told so.)
+/// True if `path` exists and is not a regular file. (A folder is not one either; opening it for writing gives its
+/// error.)
 fn is_device(path: &Path) -> io::Result<bool> {
     match fs::metadata(path) {
         Ok(there) => Ok(!there.is_file()),
@@ -60,7 +61,7 @@ impl Aside {
     /// An empty file that will take the place of `path`.
     ///
     /// # Errors
-    /// When the file system refuses.
+    /// Returns an error if the file system refuses.
     pub fn new(path: &Path) -> io::Result<Self> {
         if is_device(path)? {
             return Self::within(&std::env::temp_dir(), To::Device(path.to_owned()));
@@ -90,7 +91,7 @@ impl Aside {
     /// Puts it in its place.
     ///
     /// # Errors
-    /// When the file system refuses; an old file is then as it was.
+    /// Returns an error if the file system refuses; an old file is then as it was.
     pub fn finish(self) -> io::Result<()> {
         match self.to {
             To::File(named, old) => {

@@ -114,13 +114,13 @@ fn cycles(afu: &Capability, link: &LinkModel, work: &Work, of_reads: &[Stalls], 
     computing + lines(work.reads, &link.read, of_reads) + lines(work.writes, &link.write, of_writes)
 }
 
-/// Cycles of refusal that so many open cycles meet, but for a chance of [`RARE`].
+/// The largest number of refused cycles among this number of open cycles, except with probability [`RARE`].
 fn refused(stalls: &Stalls, open: f64) -> f64 {
     let Stalls { chance: c, longest } = *stalls;
     if c <= 0.0 || longest == 0 {
         return 0.0;
     }
-    // Each s gives a bound, of which the smallest counts.
+    // Each s gives a bound; the smallest counts.
     let bound = |power: i32| {
         let s = c.powf(-f64::from(power) / 64.0);
         (open * ((1.0 - c) / (1.0 - c * s)).ln() - RARE.ln()) / s.ln()

@@ -33,7 +33,7 @@ impl Key {
     /// another value.
     ///
     /// # Errors
-    /// If `of` has no JSON.
+    /// Returns an error if `of` has no JSON.
     pub fn new(kind: &str, of: &impl Serialize) -> Result<Self, StoreError> {
         let of = serde_json::to_value(of).map_err(|error| StoreError::Json(error.to_string()))?;
         Ok(Self { kind: kind.to_owned(), of })
@@ -95,7 +95,7 @@ impl Store {
     /// A store of this user's, by its name in the [`user_folder`].
     ///
     /// # Errors
-    /// If the environment names no such folder.
+    /// Returns an error if the environment names no such folder.
     pub(crate) fn of_user(name: &str) -> Result<Self, StoreError> {
         Ok(Self::open(&user_folder().ok_or(StoreError::NoFolder)?.join(name)))
     }
@@ -103,7 +103,7 @@ impl Store {
     /// A store that is gone when it is dropped.
     ///
     /// # Errors
-    /// If there can be no temporary folder.
+    /// Returns an error if there can be no temporary folder.
     pub fn temporary() -> Result<Self, StoreError> {
         let room = tempfile::Builder::new().prefix("afu-").tempdir();
         let room = room.map_err(|error| StoreError::io("create a folder in", &env::temp_dir(), error))?;
@@ -119,7 +119,7 @@ impl Store {
     /// then measured again, and the file replaced.
     ///
     /// # Errors
-    /// If the file is there and cannot be read.
+    /// Returns an error if the file is there and cannot be read.
     pub fn get<T: DeserializeOwned>(&self, key: &Key) -> Result<Option<T>, StoreError> {
         let path = self.file(key, "json");
         match fs::read(&path) {
@@ -135,7 +135,7 @@ impl Store {
     /// Keeps a measurement. Whoever reads the file meanwhile finds the old one or the new one, whole.
     ///
     /// # Errors
-    /// If the value has no JSON, or the file system refuses.
+    /// Returns an error if the value has no JSON, or the file system refuses.
     pub fn put(&self, key: &Key, value: &impl Serialize) -> Result<(), StoreError> {
         let text = serde_json::to_vec(&Measurement { key, value }).map_err(|e| StoreError::Json(e.to_string()))?;
         self.create()?;
@@ -146,7 +146,7 @@ impl Store {
     /// The measurement that is kept under a key, or else the one that `make` makes, which is then kept.
     ///
     /// # Errors
-    /// As [`Store::get`] and [`Store::put`], or if `make` fails.
+    /// Returns the errors of [`Store::get`] and [`Store::put`], or an error if `make` fails.
     pub(crate) fn get_or_make<T, E>(&self, key: &Key, make: impl FnOnce() -> Result<T, E>) -> Result<T, E>
     where
         T: Serialize + DeserializeOwned,
@@ -163,7 +163,7 @@ impl Store {
     /// The keys of everything that is kept, in the order of their hashes.
     ///
     /// # Errors
-    /// If the folder is there and cannot be read.
+    /// Returns an error if the folder is there and cannot be read.
     pub fn list(&self) -> Result<Vec<Key>, StoreError> {
         let fail = |error| StoreError::io("read", &self.folder, error);
         let entries = match fs::read_dir(&self.folder) {
@@ -189,7 +189,7 @@ impl Store {
     /// A folder to work in, on the store's file system; it is gone when dropped.
     ///
     /// # Errors
-    /// If the file system refuses.
+    /// Returns an error if the file system refuses.
     pub fn scratch(&self) -> Result<TempDir, StoreError> {
         self.create()?;
         let made = tempfile::Builder::new().prefix("work-").tempdir_in(&self.folder);

@@ -1,11 +1,11 @@
-//! What an engine says of a pair, in numbers wide enough for any of them.
+//! The answer of an engine to a pair, in numbers that are wide enough for every engine.
 
 use crate::query::ContactRecord;
 
 /// An engine's answer to a pair. Without a hit its numbers mean nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Answer {
-    /// Whether the bodies touch.
+    /// True if the bodies touch.
     pub hit: bool,
     /// Where.
     pub position: [f64; 3],
@@ -13,7 +13,7 @@ pub struct Answer {
     pub normal: [f64; 3],
     /// How deep they overlap.
     pub depth: f64,
-    /// Whether the engine's own arithmetic did not settle the pair, so that this answer was had otherwise.
+    /// True if the engine's own arithmetic did not decide the pair, so that this answer came from the fallback.
     pub unsettled: bool,
 }
 

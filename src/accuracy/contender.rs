@@ -14,7 +14,7 @@ pub trait Contender {
     /// The answers to `pairs`, one each, in their order.
     ///
     /// # Errors
-    /// When the engine could not do its work.
+    /// Returns an error if the engine could not do its work.
     fn answers(&mut self, pairs: &[PairRecord]) -> Result<Vec<Answer>, EngineError>;
 }
 
@@ -69,7 +69,7 @@ pub type Contenders = Vec<Box<dyn Contender>>;
 /// each with what would bring it.
 ///
 /// # Errors
-/// If a peer does not start.
+/// Returns an error if a peer does not start.
 pub fn contenders(query: Query, profiles: &[Profile]) -> Result<(Contenders, Vec<&'static str>), EngineError> {
     let mut all = Contenders::new();
     for profile in profiles {

@@ -1,4 +1,4 @@
-//! What is wrong with an answer.
+//! Compares an answer with the truth.
 
 use super::Answer;
 use crate::kernel::{Truth, ulp};
@@ -9,7 +9,7 @@ const HALF_ULP: f64 = 1.0 / (1 << 24) as f64;
 /// The smallest binary32 number, which every tolerance grants.
 const SMALLEST: f64 = f32::from_bits(1) as f64;
 
-/// The truth about a pair, in numbers that answers are compared with: `f64` is 2^29 times finer than what is judged.
+/// The truth about a pair as `f64`, which is 2^29 times finer than the judged numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct Standard {
     truth: Truth,
@@ -31,13 +31,13 @@ impl Standard {
         Self { truth, rounded, exact }
     }
 
-    /// Whether the bodies truly touch.
+    /// True if the bodies touch in truth.
     pub fn is_contact(&self) -> bool {
         self.exact.hit
     }
 }
 
-/// What is wrong with an answer: which limits of gross failure (BAD) it breaks, and its errors.
+/// The verdict on an answer: the limits of gross failure (BAD) that it breaks, and its errors.
 ///
 /// The limits: a wrong decision is gross if its [`margin`](Truth::margin) is more than 2^−20 (below that it is wrong,
 /// but not gross); an infinity or a NaN; a normal whose length differs from 1 by more than 10^−6, or whose direction by
@@ -49,7 +49,7 @@ impl Standard {
 pub struct Judgement {
     /// A contact that was not found.
     pub missed: bool,
-    /// A contact that is none.
+    /// A false positive.
     pub false_hit: bool,
     /// An infinity or a NaN where the truth is finite.
     pub non_finite: bool,

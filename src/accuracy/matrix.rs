@@ -1,4 +1,4 @@
-//! Gross failures as a picture: a row per category, a column per contender.
+//! Gross failures as a picture: one row per category, one column per contender.
 
 use super::HardResults;
 use maud::html;

@@ -15,9 +15,9 @@ const BATCH: usize = 4096;
 #[derive(Debug, thiserror::Error)]
 #[error("{contender}: {error}")]
 pub struct ContenderError {
-    /// Which.
+    /// The contender.
     pub contender: String,
-    /// Its own error.
+    /// The contender's error.
     pub error: EngineError,
 }
 
@@ -26,7 +26,7 @@ pub struct ContenderError {
 /// store held.
 ///
 /// # Errors
-/// If a contender fails, or a row cannot be read or kept.
+/// Returns an error if a contender fails, or if a row cannot be read or stored.
 pub fn measure(
     query: Query,
     set: &str,
@@ -73,7 +73,7 @@ pub fn measure(
     Ok((rows, resumed))
 }
 
-/// What is kept of a row: the rest of it is asked for.
+/// The stored part of a row; the rest is known from the request.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Judged {

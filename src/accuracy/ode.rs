@@ -15,7 +15,7 @@ impl OdeDouble {
     /// Starts ODE.
     ///
     /// # Errors
-    /// When it cannot be started.
+    /// Returns an error if it cannot be started.
     pub fn new(query: Query) -> Result<Self, EngineError> {
         let ode = Ode::start(Collider::Own)?;
         Ok(Self { pair: SpherePair::of_query(query, &ode)? })

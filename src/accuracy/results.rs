@@ -1,4 +1,4 @@
-//! What contenders came to on the hard pairs: a row for each category and contender, in a folder that grows.
+//! Results of contenders on hard pairs: one row per category and contender, in a folder that grows.
 
 use super::{ErrorStatistics, Tally, Task, matrix};
 use crate::query::Query;
@@ -22,7 +22,7 @@ pub struct Row {
     pub contender: String,
     /// SHA-256 of what went in: version, contender, pairs.
     pub key: String,
-    /// What came out.
+    /// The counts of wrong answers.
     pub tally: Tally,
     /// How large the errors are.
     pub errors: ErrorStatistics,
@@ -42,14 +42,14 @@ impl Row {
 pub struct HardResults {
     schema: String,
     version: String,
-    /// What is asked of the pairs.
+    /// The query of the pairs.
     #[serde(default, skip_serializing_if = "Query::is_default")]
     pub query: Query,
     /// Pairs of all categories together.
     pub pairs: u64,
-    /// Their seed.
+    /// Seed of the pairs.
     pub seed: u64,
-    /// What is missing, and what would bring it.
+    /// Contenders that are missing, and what installs them.
     pub absent: Vec<String>,
     /// The rows, category by category.
     pub rows: Vec<Row>,
@@ -89,7 +89,7 @@ impl HardResults {
         Ok(())
     }
 
-    /// What a contender came to in all categories together.
+    /// The tally of a contender over all categories.
     pub fn total(&self, contender: &str) -> Tally {
         let rows = self.rows.iter().filter(|row| row.contender == contender);
         rows.fold(Tally::default(), |sum, row| sum.plus(&row.tally))

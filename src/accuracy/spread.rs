@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 pub struct Spread {
     /// Errors, zeros among them: contacts that were found.
     pub count: u64,
-    /// Their mean.
+    /// The mean.
     pub mean: f64,
     /// What 99.9 % of them do not exceed, from above and to 3 %; of several sets together, the largest of theirs.
     pub p999: f64,
@@ -19,7 +19,7 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Of both together.
+    /// The statistics of both together.
     #[must_use]
     pub fn plus(self, other: &Self) -> Self {
         let count = self.count.saturating_add(other.count);
@@ -37,24 +37,24 @@ impl Spread {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ErrorStatistics {
-    /// Of the depth, in its units in the last place.
+    /// Errors of the depth, in ulps of the depth.
     pub depth_ulps: Spread,
-    /// Of the normal, in units of 1.
+    /// Errors of the normal, in ulps of 1.
     pub normal_ulps: Spread,
-    /// Of the position, in units of what makes it.
+    /// Errors of the position, in ulps of the largest number that makes it.
     pub position_ulps: Spread,
-    /// Of the depth, relative to the sizes that it is made of.
+    /// Errors of the depth, relative to the sizes that make it.
     pub depth: Spread,
-    /// Of the normal, relative to 1.
+    /// Errors of the normal, relative to 1.
     pub normal: Spread,
-    /// Of the position, relative to the largest number that it is made of.
+    /// Errors of the position, relative to the largest number that makes it.
     pub position: Spread,
     /// The largest of the three relative errors of a contact.
     pub contact: Spread,
 }
 
 impl ErrorStatistics {
-    /// Of both together.
+    /// The statistics of both together.
     #[must_use]
     pub fn plus(&self, other: &Self) -> Self {
         let [a, b] = [self.spreads(), other.spreads()];
@@ -91,7 +91,7 @@ impl Gathered {
         self.0.iter_mut().zip(other.0).for_each(|(mine, other)| mine.extend(other));
     }
 
-    /// What they come to.
+    /// The statistics of all errors so far.
     pub fn errors(&self) -> ErrorStatistics {
         ErrorStatistics::of(self.0.each_ref().map(Gathering::spread))
     }
@@ -102,7 +102,7 @@ struct Gathering {
     count: u64,
     sum: f64,
     largest: f64,
-    /// How many errors have these leading bits: sign, exponent and five bits of the fraction.
+    /// Number of errors with these leading bits: sign, exponent and five bits of the fraction.
     leading: BTreeMap<u64, u64>,
 }
 

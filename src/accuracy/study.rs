@@ -7,18 +7,18 @@ use crate::report::folder;
 use crate::store::{self, Store, StoreError};
 use std::path::Path;
 
-/// What contenders are given.
+/// The pairs that contenders are given.
 #[derive(Clone, Copy, Debug)]
 pub struct Task {
-    /// What is asked of them.
+    /// The query.
     pub query: Query,
     /// Pairs of all categories together: those of the set `hard:N`.
     pub pairs: u64,
-    /// Their seed.
+    /// Seed of the pairs.
     pub seed: u64,
 }
 
-/// Why a study did not come to its end.
+/// Why a study was not completed.
 #[derive(Debug, thiserror::Error)]
 pub enum StudyError {
     /// An engine failed.
@@ -37,7 +37,7 @@ pub enum StudyError {
 /// done of a category. Returns how many rows the store held.
 ///
 /// # Errors
-/// If an engine fails, if the folder is not ours or holds another study (`force` takes it all the same), or if it
+/// Returns an error if an engine fails, if the folder is not ours or holds another study (`force` takes it all the same), or if it
 /// cannot be read or written.
 pub fn fill(
     results: &mut HardResults,

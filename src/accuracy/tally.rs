@@ -3,7 +3,7 @@
 use super::Judgement;
 use serde::{Deserialize, Serialize};
 
-/// How many answers were wrong in which way, and the largest errors.
+/// Counts of wrong answers by kind, and the largest errors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Tally {
@@ -13,7 +13,7 @@ pub struct Tally {
     pub contacts: u64,
     /// Contacts not found.
     pub missed: u64,
-    /// Contacts that are none.
+    /// False positives.
     #[serde(rename = "false")]
     pub false_hits: u64,
     /// Answers with an infinity or a NaN where the truth is finite.
@@ -78,7 +78,7 @@ impl Tally {
         [pairs, contacts, missed, false_hits, non_finite, normal, direction, depth, position, bad, unsettled]
     }
 
-    /// What the counts after those of pairs and contacts are of.
+    /// Names of the counts that follow those of pairs and contacts.
     pub const HEADING: [&'static str; 9] =
         ["missed", "false", "non-finite", "normal", "direction", "depth", "position", "BAD", "unsettled"];
 }

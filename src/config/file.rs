@@ -48,7 +48,7 @@ struct Manifest {
 /// Reads the configuration from a manifest; `path` is the file or its folder.
 ///
 /// # Errors
-/// If the file cannot be read, is not JSON, or is not a manifest of this schema.
+/// Returns an error if the file cannot be read, is not JSON, or is not a manifest of this schema.
 pub fn read(path: &Path) -> Result<Config, ReadError> {
     let path = if path.is_dir() { path.join("manifest.json") } else { path.to_owned() };
     let text = fs::read(&path).map_err(|error| ReadError::Io { path: path.clone(), error })?;

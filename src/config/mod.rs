@@ -135,7 +135,7 @@ impl Config {
     /// Checks that an AFU of this configuration can be generated.
     ///
     /// # Errors
-    /// If a value is out of range, or a combination is not supported.
+    /// Returns an error if a value is out of range, or a combination is not supported.
     pub fn check(&self) -> Result<(), Error> {
         if !SCPUS.contains(&self.scpus) {
             return Err(Error::Scpus(self.scpus));

@@ -52,7 +52,7 @@ impl Profile {
     /// This profile with subnormals kept or flushed.
     ///
     /// # Errors
-    /// As [`Profile::with_rounding`].
+    /// Returns the errors of [`Profile::with_rounding`].
     pub fn with_subnormals(self, subnormals: Subnormals) -> Result<Self, FormatError> {
         let format = self.format.with_subnormals(subnormals);
         self.with_format(format)
@@ -61,7 +61,8 @@ impl Profile {
     /// This profile with correct or faithful roots and reciprocals.
     ///
     /// # Errors
-    /// As [`Profile::with_rounding`]; [`FormatError::Unfaithful`] if the fraction is too long for faithful roots.
+    /// Returns the errors of [`Profile::with_rounding`], and [`FormatError::Unfaithful`] if the fraction is too long for
+    /// faithful roots.
     pub fn with_roots(self, roots: Roots) -> Result<Self, FormatError> {
         if self.is_exact() && roots != self.format.roots() {
             return Err(FormatError::Exact);

@@ -14,7 +14,7 @@ pub trait Engine {
     /// The contacts of `pairs`, one each, in order.
     ///
     /// # Errors
-    /// If the engine fails; it then returns no contacts.
+    /// Returns an error if the engine fails; it then returns no contacts.
     fn contacts(&mut self, pairs: &[PairRecord]) -> Result<Vec<ContactRecord>, EngineError>;
 }
 

@@ -12,7 +12,7 @@ use std::process::Command;
 const INSTALL: &str =
     "install the Open Dynamics Engine with ./scripts/setup --ode (Debian: apt-get install libode-dev)";
 
-/// What src/ode calls.
+/// The functions that src/ode calls.
 const FUNCTIONS: &str = "
     dAllocateODEDataForThread dBodyAddForce dBodyCreate dBodyGetAngularVel dBodyGetLinearVel dBodyGetMass
     dBodyGetPosition dBodyGetQuaternion dBodyIsEnabled dBodySetAngularVel dBodySetLinearVel dBodySetMass
@@ -54,7 +54,7 @@ pub fn main() {
     }
 }
 
-/// Where an ODE is installed that no compiler finds by itself: a folder with `include/ode` and `lib`.
+/// Folder of an ODE that the compiler does not find on its own; it has `include/ode` and `lib`.
 fn prefix() -> Option<PathBuf> {
     env::var_os("AFU_ODE").map(PathBuf::from)
 }

@@ -53,11 +53,11 @@ pub struct Touch {
     pub first: Sphere,
     /// The other.
     pub second: Sphere,
-    /// Where and how.
+    /// The contact.
     pub contact: Contact,
 }
 
-/// What a contact does to the spheres.
+/// The surface: what a contact does to the spheres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surface {
     /// Coulomb's coefficient, from 0.

@@ -29,7 +29,7 @@ pub struct Diamond {
     pub time_step: f64,
     /// Iterations of ODE's QuickStep.
     pub iterations: u32,
-    /// What a contact does.
+    /// The surface of the spheres: what a contact does.
     pub surface: Surface,
 }
 
@@ -54,7 +54,7 @@ impl Diamond {
     /// The spheres, at rest.
     ///
     /// # Errors
-    /// When a parameter is out of range.
+    /// Returns an error if a parameter is out of range.
     pub fn build(&self, ode: &Ode) -> Result<Simulation, Error> {
         within("the number of layers", self.layers.into(), 1.0..=MOST_LAYERS.into())?;
         positive("a radius", self.radius)?;
@@ -85,7 +85,7 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// Its spheres: their contacts before each step come from here.
+    /// The world of its spheres, which has their contacts before each step.
     pub fn world(&self) -> &World {
         &self.world
     }
@@ -95,7 +95,7 @@ impl Simulation {
         self.steps
     }
 
-    /// Where every sphere is.
+    /// The positions of all spheres.
     pub fn positions(&self) -> impl ExactSizeIterator<Item = [f64; 3]> + '_ {
         self.world.spheres().map(|sphere| self.world.position(sphere))
     }
@@ -103,7 +103,7 @@ impl Simulation {
     /// Goes on by a step in which the spheres of `touches` part.
     ///
     /// # Errors
-    /// When a contact is not one, ODE has no memory, or a sphere is lost.
+    /// Returns an error if a contact is not one, ODE has no memory, or a sphere is lost.
     pub fn advance(&mut self, touches: &[Touch]) -> Result<(), Error> {
         let spheres: Vec<Sphere> = self.world.spheres().collect();
         if self.steps < self.diamond.force_steps {

@@ -35,7 +35,7 @@ pub(super) struct Plane {
 pub struct WallTouch {
     /// The sphere; the normal points into it.
     pub sphere: Sphere,
-    /// Where and how.
+    /// The contact.
     pub contact: Contact,
 }
 
@@ -43,7 +43,7 @@ impl World {
     /// The acceleration of every sphere in every step, length / time²: `dWorldSetGravity`.
     ///
     /// # Errors
-    /// When a number is out of range.
+    /// Returns an error if a number is out of range.
     pub fn set_gravity(&mut self, gravity: [f64; 3]) -> Result<(), Error> {
         let [x, y, z] = signed("gravity", gravity)?;
         // SAFETY: the world lives.
@@ -54,7 +54,7 @@ impl World {
     /// The part of its speed, and of its turning, that every sphere loses in a step: `dWorldSetDamping`.
     ///
     /// # Errors
-    /// When it is not a part.
+    /// Returns an error if it is not a part.
     pub fn set_damping(&mut self, part: f64) -> Result<(), Error> {
         within("damping", part, 0.0..=1.0)?;
         // SAFETY: the world lives. Without thresholds all speeds are damped.
@@ -66,10 +66,10 @@ impl World {
         Ok(())
     }
 
-    /// How much of an overlap a step mends, 0 to 1, and how soft contacts are: ODE's ERP and CFM.
+    /// Sets the share of an overlap that a step corrects, 0 to 1, and the softness of contacts: ODE's ERP and CFM.
     ///
     /// # Errors
-    /// When a number is out of range.
+    /// Returns an error if a number is out of range.
     pub fn set_stiffness(&mut self, error_reduction: f64, force_mixing: f64) -> Result<(), Error> {
         within("error reduction", error_reduction, 0.0..=1.0)?;
         within("force mixing", force_mixing, 0.0..=1.0)?;
@@ -84,7 +84,7 @@ impl World {
     /// Lets spheres that are added afterwards fall asleep. Two that both sleep are no candidates.
     ///
     /// # Errors
-    /// When a number is out of range.
+    /// Returns an error if a number is out of range.
     pub fn set_sleep(&mut self, sleep: &Sleep) -> Result<(), Error> {
         within("the speed of sleep", sleep.speed, 0.0..=LARGEST)?;
         within("the turning of sleep", sleep.turning, 0.0..=LARGEST)?;
@@ -101,7 +101,7 @@ impl World {
         Ok(())
     }
 
-    /// Whether a sphere sleeps.
+    /// True if a sphere sleeps.
     pub fn is_asleep(&self, sphere: Sphere) -> bool {
         // SAFETY: the body lives as long as the world.
         self.spheres_sleep && unsafe { sys::dBodyIsEnabled(self.spheres[sphere.index()].body) == 0 }
@@ -110,7 +110,7 @@ impl World {
     /// Gives a sphere its velocity, length / time, and its turning, radians / time.
     ///
     /// # Errors
-    /// When a number is out of range.
+    /// Returns an error if a number is out of range.
     pub fn set_velocity(&mut self, sphere: Sphere, velocity: [f64; 3], turning: [f64; 3]) -> Result<(), Error> {
         let [x, y, z] = signed("a velocity", velocity)?;
         let [a, b, c] = signed("an angular velocity", turning)?;
@@ -123,7 +123,7 @@ impl World {
         Ok(())
     }
 
-    /// Keeps every sphere that is there from turning.
+    /// Prevents all present spheres from turning.
     pub fn forbid_turning(&mut self) {
         for parts in &self.spheres {
             // SAFETY: the body lives as long as the world.
@@ -147,7 +147,7 @@ impl World {
     /// unit vector.
     ///
     /// # Errors
-    /// When a number is out of range, or ODE has no memory.
+    /// Returns an error if a number is out of range, or ODE has no memory.
     pub fn add_wall(&mut self, normal: [f64; 3], offset: f64) -> Result<(), Error> {
         let [a, b, c] = signed("a wall's normal", normal)?;
         within("the length of a wall's normal", a * a + b * b + c * c, 0.999_999..=1.000_001)?;
@@ -186,7 +186,7 @@ impl World {
     /// Makes the next step part a sphere and a wall.
     ///
     /// # Errors
-    /// As [`World::join`].
+    /// Returns the errors of [`World::join`].
     pub fn join_wall(&self, touch: &WallTouch, surface: &Surface) -> Result<(), Error> {
         let parts = &self.spheres[touch.sphere.index()];
         let wall = self.walls.first().map_or(std::ptr::null_mut(), |wall| wall.geom);

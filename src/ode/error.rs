@@ -1,4 +1,4 @@
-//! What can go wrong with ODE, its worlds, and engines in its collider's place.
+//! Errors of ODE, its worlds, and engines in its collider's place.
 
 use super::Collider;
 use crate::kernel::EngineError;
@@ -26,7 +26,7 @@ pub enum Error {
     /// A number that ODE would answer with an assertion, or not at all.
     #[error("{what} is {value}: expected {least} to {most}")]
     Number {
-        /// What it stands for.
+        /// The quantity.
         what: &'static str,
         /// Itself.
         value: f64,
@@ -38,9 +38,9 @@ pub enum Error {
     /// A sphere left the space that ODE's broad phase can divide, or has no place at all.
     #[error("sphere {sphere} is lost: its position became ({}, {}, {})", .position[0], .position[1], .position[2])]
     Lost {
-        /// Its number in its world.
+        /// The number of the sphere in its world.
         sphere: usize,
-        /// Where it is.
+        /// The position of the sphere.
         position: [f64; 3],
     },
     /// A contact of a sphere with itself.
@@ -85,9 +85,9 @@ pub enum Error {
     TooFew {
         /// The kind.
         flow: Flow,
-        /// How many there were.
+        /// Number of collisions found.
         found: usize,
-        /// How many were to be.
+        /// Number of collisions requested.
         wanted: usize,
         /// The steps simulated.
         steps: usize,

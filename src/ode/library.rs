@@ -9,7 +9,7 @@ use std::fmt;
 use std::rc::{Rc, Weak};
 use std::sync::{Condvar, Mutex, PoisonError};
 
-/// What collides two spheres.
+/// The collider of two spheres.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Collider {
     /// ODE's own function.
@@ -40,7 +40,7 @@ struct LibraryGuard {
     collider: Collider,
 }
 
-/// Whether a thread has ODE.
+/// True while a thread has ODE.
 static TAKEN: Mutex<bool> = Mutex::new(false);
 static RETURNED: Condvar = Condvar::new();
 
@@ -55,7 +55,7 @@ impl Ode {
     /// While another thread has ODE this call waits. So a thread that has it must not wait for one that wants it.
     ///
     /// # Errors
-    /// When this thread has ODE with another collider, or the library can't be started or is of single precision.
+    /// Returns an error if this thread has ODE with another collider, or the library can't be started or is of single precision.
     pub fn start(collider: Collider) -> Result<Self, Error> {
         if let Some(guard) = GUARD.with_borrow(Weak::upgrade) {
             let ode = Self { guard };
@@ -75,7 +75,7 @@ impl Ode {
         Ok(Self { guard })
     }
 
-    /// What collides two spheres.
+    /// The collider of two spheres.
     pub fn collider(&self) -> Collider {
         self.guard.collider
     }

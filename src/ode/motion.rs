@@ -1,4 +1,4 @@
-//! What a world's motion comes to: the sums that a simulation must keep, or lose no faster than another.
+//! Energy, momentum and angular momentum of a world: a simulation must keep them.
 
 use super::{World, sys};
 

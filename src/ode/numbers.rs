@@ -1,4 +1,4 @@
-//! What numbers ODE is given: it answers others with an assertion that ends the process.
+//! Ranges of the numbers that ODE is given: on others, an assertion in ODE ends the process.
 
 use super::Error;
 use std::ops::RangeInclusive;

@@ -8,7 +8,7 @@ use super::{Contact, sys};
 use std::cell::Cell;
 use std::ffi::c_int;
 
-/// What `dCollide` is to say of a pair.
+/// The answer that `dCollide` gives for a pair.
 #[derive(Clone, Copy)]
 struct Answer {
     first: sys::dGeomID,

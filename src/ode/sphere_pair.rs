@@ -18,7 +18,7 @@ impl SpherePair {
     /// Two spheres of radius 0 at the origin.
     ///
     /// # Errors
-    /// When ODE runs without its own collider, or has no memory.
+    /// Returns an error if ODE runs without its own collider, or has no memory.
     pub fn new(ode: &Ode) -> Result<Self, Error> {
         Self::of_query(Query::SphereSphere, ode)
     }
@@ -26,7 +26,7 @@ impl SpherePair {
     /// The bodies of a query: spheres of radius 0, and planes, at the origin.
     ///
     /// # Errors
-    /// As [`SpherePair::new`].
+    /// Returns the errors of [`SpherePair::new`].
     pub fn of_query(query: Query, ode: &Ode) -> Result<Self, Error> {
         ode.needs(Collider::Own)?;
         // SAFETY: ODE is started; no space is a place for a geom, 0 a radius, and (1, 0, 0) a normal.
@@ -46,7 +46,7 @@ impl SpherePair {
     /// Moves both: a sphere's x y z and radius; a plane's normal, which ODE scales to length 1, and distance.
     ///
     /// # Errors
-    /// When a number is not finite or a radius is negative; both stay as they were.
+    /// Returns an error if a number is not finite or a radius is negative; both stay as they were.
     pub fn set(&mut self, first: [f64; 4], second: [f64; 4]) -> Result<(), Error> {
         let is_plane = self.query == Query::SpherePlane;
         for ([x, y, z, last], is_plane) in [(first, false), (second, is_plane)] {
@@ -75,7 +75,7 @@ impl SpherePair {
         self.geoms
     }
 
-    /// What ODE's `dCollide` says of them.
+    /// The contact that ODE's `dCollide` finds, or `None`.
     #[inline]
     pub fn collide(&self) -> Option<Contact> {
         let [first, second] = self.geoms;

@@ -14,7 +14,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 pub struct Sphere(pub(super) usize);
 
 impl Sphere {
-    /// Its number, from 0.
+    /// The number of the sphere in its world, from 0.
     pub const fn index(self) -> usize {
         self.0
     }
@@ -40,9 +40,9 @@ pub struct World {
     space: sys::dSpaceID,
     joints: sys::dJointGroupID,
     pub(super) spheres: Vec<Parts>,
-    /// What spheres cannot pass.
+    /// Planes that spheres cannot pass.
     pub(super) walls: Vec<Plane>,
-    /// Whether spheres fall asleep.
+    /// True if spheres fall asleep.
     pub(super) spheres_sleep: bool,
     /// Where ODE's random numbers go on.
     seed: c_ulong,
@@ -54,7 +54,7 @@ impl World {
     /// A world without spheres. Its broad phase is ODE's hash space.
     ///
     /// # Errors
-    /// When ODE has no memory.
+    /// Returns an error if ODE has no memory.
     pub fn new(ode: &Ode) -> Result<Self, Error> {
         // SAFETY: ODE is started. No space is the parent of this one.
         let (id, space, joints) =
@@ -78,10 +78,10 @@ impl World {
         self.id
     }
 
-    /// How many iterations ODE's QuickStep does; it begins with 20.
+    /// Sets the number of iterations of ODE's QuickStep; the default is 20.
     ///
     /// # Errors
-    /// When there are none, or more than a million.
+    /// Returns an error if there are none, or more than a million.
     pub fn set_iterations(&mut self, iterations: u32) -> Result<(), Error> {
         within("the number of iterations", iterations.into(), 1.0..=1e6)?;
         // SAFETY: the world lives.
@@ -92,7 +92,7 @@ impl World {
     /// Adds a sphere at rest. Its mass is that of its volume at this density.
     ///
     /// # Errors
-    /// When a number is out of range, or ODE has no memory.
+    /// Returns an error if a number is out of range, or ODE has no memory.
     pub fn add_sphere(&mut self, centre: [f64; 3], radius: f64, density: f64) -> Result<Sphere, Error> {
         let [x, y, z] = signed("a coordinate", centre)?;
         positive("a radius", radius)?;
@@ -137,7 +137,7 @@ impl World {
     /// give the sphere the forces of all steps when it wakes.
     ///
     /// # Errors
-    /// When a number is out of range.
+    /// Returns an error if a number is out of range.
     pub fn add_force(&mut self, sphere: Sphere, force: [f64; 3]) -> Result<(), Error> {
         let [x, y, z] = signed("a force", force)?;
         if self.is_asleep(sphere) {
@@ -153,7 +153,7 @@ impl World {
     /// Within it [`World::collide`] and [`World::join`] may be called, as in any program of ODE's.
     ///
     /// # Errors
-    /// When a sphere is lost: see [`World::step`].
+    /// Returns an error if a sphere is lost: see [`World::step`].
     pub fn near(&self, mut visit: impl FnMut(Sphere, Sphere)) -> Result<(), Error> {
         self.all_in_reach()?;
         let mut near = Near { visit: &mut visit, panic: None };
@@ -168,7 +168,7 @@ impl World {
     /// The pairs that [`World::near`] visits, without those of two spheres that sleep.
     ///
     /// # Errors
-    /// When a sphere is lost: see [`World::step`].
+    /// Returns an error if a sphere is lost: see [`World::step`].
     pub fn candidates(&self) -> Result<Vec<[Sphere; 2]>, Error> {
         let mut pairs = Vec::new();
         self.near(|first, second| {
@@ -182,7 +182,7 @@ impl World {
     /// The contact of two spheres by ODE's own collider.
     ///
     /// # Errors
-    /// When ODE runs without it.
+    /// Returns an error if ODE runs without it.
     #[inline]
     pub fn collide(&self, first: Sphere, second: Sphere) -> Result<Option<Contact>, Error> {
         self.ode.needs(Collider::Own)?;
@@ -204,7 +204,7 @@ impl World {
     /// Every contact there is now, by ODE's own collider.
     ///
     /// # Errors
-    /// When ODE runs without it, or a sphere is lost: see [`World::step`].
+    /// Returns an error if ODE runs without it, or a sphere is lost: see [`World::step`].
     pub fn contacts(&self) -> Result<Vec<Touch>, Error> {
         self.ode.needs(Collider::Own)?;
         let mut touches = Vec::new();
@@ -219,7 +219,7 @@ impl World {
     /// Makes the next step part two spheres that touch: ODE's contact joint.
     ///
     /// # Errors
-    /// When the contact has a number that no contact here can have, or is of a sphere with itself, or a number of the
+    /// Returns an error if the contact has a number that no contact here can have, or is of a sphere with itself, or a number of the
     /// surface is out of range.
     pub fn join(&self, touch: &Touch, surface: &Surface) -> Result<(), Error> {
         let Touch { first, second, contact } = touch;
@@ -263,7 +263,7 @@ impl World {
     /// Moves every sphere through a time, by ODE's QuickStep; afterwards there are no forces and no joints.
     ///
     /// # Errors
-    /// When ODE has no memory, or a sphere is then beyond what ODE's space can hold; such a world is of no more use.
+    /// Returns an error if ODE has no memory, or a sphere is then beyond what ODE's space can hold; such a world is of no more use.
     pub fn step(&mut self, time: f64) -> Result<(), Error> {
         positive("a step's time", time)?;
         self.all_in_reach()?;

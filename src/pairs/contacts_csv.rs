@@ -22,7 +22,7 @@ const COLUMNS: [&str; INVALID + 1] = {
     columns
 };
 
-/// The contacts of a file with a row for each pair, in their order.
+/// The contacts of a file with one row per pair, in the order of the pairs.
 pub fn read(file: &Path, text: &[u8]) -> Result<Vec<ContactRecord>, FileError> {
     let mut contacts = Vec::new();
     table::read(file, text, &COLUMNS, |row| {

@@ -1,4 +1,4 @@
-//! What is wrong with a file: one line that names file, line and field.
+//! Errors of files: one line that names file, line and field.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 /// Why a file of pairs or contacts could not be read or written.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
-    /// The name says neither CSV nor npy.
+    /// The file name ends in neither .csv nor .npy.
     #[error("{}: the name must end in .csv or .npy", .0.display())]
     Extension(PathBuf),
     /// The file system refused.
@@ -19,7 +19,7 @@ pub enum FileError {
         /// What the file system said.
         source: io::Error,
     },
-    /// A CSV file has something wrong in a line.
+    /// A line of a CSV file is wrong.
     #[error("{}, line {line}: {problem}", file.display())]
     Line {
         /// The file.
@@ -29,7 +29,7 @@ pub enum FileError {
         /// What is wrong.
         problem: String,
     },
-    /// A CSV file has something wrong in a field of a line.
+    /// A field of a CSV file is wrong.
     #[error("{}, line {line}, field {field}: {problem}", file.display())]
     Field {
         /// The file.
@@ -41,7 +41,7 @@ pub enum FileError {
         /// What is wrong.
         problem: String,
     },
-    /// An npy file has something wrong in its header, or less or more data than that says.
+    /// The header of an npy file is wrong, or the amount of data does not match it.
     #[error("{}, {field}: {problem}", file.display())]
     Npy {
         /// The file.

@@ -32,16 +32,16 @@ fn kind(file: &Path) -> Result<Kind, FileError> {
 pub struct Loaded {
     /// The pairs.
     pub pairs: Vec<PairRecord>,
-    /// Which numbers were rounded; `None` if all were taken as they are.
+    /// The numbers that were rounded; `None` if all were representable.
     pub rounded: Option<Rounded>,
 }
 
 /// Numbers of a file that binary32 does not have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rounded {
-    /// So many.
+    /// The number of rounded numbers.
     pub numbers: u64,
-    /// Of so many in the file.
+    /// The number of numbers in the file.
     pub of: u64,
     /// The pair of the first.
     pub pair: u64,
@@ -77,7 +77,7 @@ pub enum LoadError {
 /// The pairs of a named set (`diamond:10`, `random:1000` with `seed`) or of a file.
 ///
 /// # Errors
-/// When the name or the file is wrong.
+/// Returns an error if the name or the file is wrong.
 pub fn load(query: Query, source: &str, seed: u64) -> Result<Vec<PairRecord>, LoadError> {
     load_with_notes(query, source, seed).map(|loaded| loaded.pairs)
 }
@@ -85,7 +85,7 @@ pub fn load(query: Query, source: &str, seed: u64) -> Result<Vec<PairRecord>, Lo
 /// The same, with what reading a file changed.
 ///
 /// # Errors
-/// As [`load`].
+/// Returns the errors of [`load`].
 pub fn load_with_notes(query: Query, source: &str, seed: u64) -> Result<Loaded, LoadError> {
     let path = Path::new(source);
     if Set::is_name(source) || (Set::meant(source).is_some() && !path.exists()) {
@@ -97,7 +97,7 @@ pub fn load_with_notes(query: Query, source: &str, seed: u64) -> Result<Loaded, 
 /// Whether `file` has a name that can be written: `.csv` or `.npy`.
 ///
 /// # Errors
-/// When it has not.
+/// Returns an error if it has not.
 pub fn check_name(file: &Path) -> Result<(), FileError> {
     kind(file).map(drop)
 }
@@ -105,7 +105,7 @@ pub fn check_name(file: &Path) -> Result<(), FileError> {
 /// The pairs of a `.csv` or `.npy` file.
 ///
 /// # Errors
-/// When the file cannot be read or is not of that form.
+/// Returns an error if the file cannot be read or is not of that form.
 pub fn read_pairs(query: Query, file: &Path) -> Result<Vec<PairRecord>, FileError> {
     read_with_notes(query, file).map(|loaded| loaded.pairs)
 }
@@ -113,7 +113,7 @@ pub fn read_pairs(query: Query, file: &Path) -> Result<Vec<PairRecord>, FileErro
 /// The same, with what reading changed. (Decimals in CSV are always taken as the nearest binary32 number.)
 ///
 /// # Errors
-/// As [`read_pairs`].
+/// Returns the errors of [`read_pairs`].
 pub fn read_with_notes(query: Query, file: &Path) -> Result<Loaded, FileError> {
     let (pairs, rounded) = match kind(file)? {
         Kind::Csv => (pairs_csv::read(query, file, &bytes(file)?)?, None),
@@ -125,7 +125,7 @@ pub fn read_with_notes(query: Query, file: &Path) -> Result<Loaded, FileError> {
 /// The contacts of a `.csv` or `.npy` file.
 ///
 /// # Errors
-/// When the file cannot be read or is not of that form.
+/// Returns an error if the file cannot be read or is not of that form.
 pub fn read_contacts(file: &Path) -> Result<Vec<ContactRecord>, FileError> {
     match kind(file)? {
         Kind::Csv => contacts_csv::read(file, &bytes(file)?),
@@ -138,7 +138,7 @@ pub fn read_contacts(file: &Path) -> Result<Vec<ContactRecord>, FileError> {
 /// The contacts of a `.csv` or `.npy` file that has only some pairs', each with its pair's number.
 ///
 /// # Errors
-/// As [`read_contacts`], and when the numbers don't increase.
+/// Returns the errors of [`read_contacts`], and an error if the numbers do not increase.
 pub fn read_hits(file: &Path) -> Result<Vec<(u32, ContactRecord)>, FileError> {
     match kind(file)? {
         Kind::Csv => contacts_csv::read_hits(file, &bytes(file)?),
@@ -157,7 +157,7 @@ pub fn read_hits(file: &Path) -> Result<Vec<(u32, ContactRecord)>, FileError> {
 /// Writes pairs to a `.csv` or `.npy` file, which is there whole or not at all.
 ///
 /// # Errors
-/// When the name has another ending or the file cannot be written.
+/// Returns an error if the name has another ending or the file cannot be written.
 pub fn write_pairs(query: Query, file: &Path, pairs: &[PairRecord]) -> Result<(), FileError> {
     match kind(file)? {
         Kind::Csv => write(file, |out| pairs_csv::write(out, query, pairs)),
@@ -178,7 +178,7 @@ pub fn write_pairs_csv(out: impl Write, query: Query, pairs: &[PairRecord]) -> i
 /// Writes contacts to a `.csv` or `.npy` file, which is there whole or not at all.
 ///
 /// # Errors
-/// When the name has another ending or the file cannot be written.
+/// Returns an error if the name has another ending or the file cannot be written.
 pub fn write_contacts(file: &Path, contacts: &[ContactRecord]) -> Result<(), FileError> {
     match kind(file)? {
         Kind::Csv => write(file, |out| contacts_csv::write(out, (0..).zip(contacts.iter().copied()))),
@@ -192,7 +192,7 @@ pub fn write_contacts(file: &Path, contacts: &[ContactRecord]) -> Result<(), Fil
 /// not at all. In CSV each row names its pair; in npy the number is the first of nine words.
 ///
 /// # Errors
-/// As [`write_contacts`].
+/// Returns the errors of [`write_contacts`].
 pub fn write_hits(file: &Path, hits: &[(u32, ContactRecord)]) -> Result<(), FileError> {
     let words = |(number, contact): &(u32, ContactRecord)| {
         let mut words = [*number; HIT_WORDS];

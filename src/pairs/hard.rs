@@ -1,4 +1,4 @@
-//! Pairs that are hard: where floating-point engines miss contacts, invent them, or lose their direction.
+//! Hard pairs: floating-point engines miss their contacts, invent contacts, or lose the direction.
 
 use super::makers::categories;
 use super::source::{LARGEST, Source, UNIT};
@@ -56,7 +56,7 @@ impl Category {
         // Categories are independent of one another: each has a stream of its own.
         let mut source = Source::new(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(self.number));
         let (query, make) = (self.query, self.make);
-        // A number beside the largest may be none: such a pair is drawn again.
+        // A number near the largest may become an infinity: such a pair is drawn again.
         let mut valid = std::iter::repeat_with(move || make(&mut source)).filter(move |pair| pair.is_valid(query));
         (0..count).filter_map(move |_| valid.next())
     }
@@ -226,7 +226,7 @@ impl Source {
     }
 
     /// Along an axis, a sphere that reaches to the origin and a tiny one beyond it: the sum of the radii and the
-    /// distance agree in so many bits.
+    /// distance agree in this number of bits.
     fn cancel(&mut self) -> PairRecord {
         let bits = 1 + self.below(277) as i32;
         let lowest = (bits - 150).max(-126);

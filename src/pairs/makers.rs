@@ -5,11 +5,11 @@ use super::source::Source;
 use super::{random, sphere_plane};
 use crate::query::{PairRecord, Query};
 
-/// What makes pairs of a query.
+/// The functions that make the pairs of a query.
 pub(super) struct Makers {
-    /// Of random pairs: the i-th is made by the (i mod n)th of n.
+    /// For random pairs: the i-th is made by the (i mod n)th of n.
     pub random: &'static [fn(&mut Source) -> PairRecord],
-    /// Of hard pairs, likewise.
+    /// For hard pairs, likewise.
     pub hard: &'static [Category],
 }
 

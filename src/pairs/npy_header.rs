@@ -93,7 +93,7 @@ impl Header {
     }
 }
 
-/// What is left of a text. Spaces count for nothing.
+/// The rest of a text; spaces are ignored.
 struct Scanner<'a>(&'a str);
 
 impl<'a> Scanner<'a> {

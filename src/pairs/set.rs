@@ -13,36 +13,36 @@ const COUNT: u64 = 100_000_000;
 /// A set of pairs made from a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Set {
-    /// The candidate pairs of the paper's diamond of so many layers.
+    /// The candidate pairs of the paper's diamond with this number of layers.
     Diamond(u32),
-    /// So many random pairs of every kind.
+    /// This number of random pairs of every kind.
     Random(u64),
-    /// So many candidate pairs of crowded scenes.
+    /// This number of candidate pairs of crowded scenes.
     Dense(u64),
-    /// So many pairs of the hard categories, each in turn.
+    /// This number of hard pairs, from each category in turn.
     Hard(u64),
 }
 
-/// Not the name of a set.
+/// A text that names no set of pairs.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SetError {
-    /// Neither of the kinds there are.
+    /// The kind is unknown.
     #[error("unknown set of pairs `{name}`: use diamond:H, random:N, dense:N or hard:N{}", tip(meant))]
     Unknown {
-        /// What was given.
+        /// The given text.
         name: String,
-        /// The set that it may be meant for.
+        /// A set that was probably meant.
         meant: Option<String>,
     },
-    /// A set of spheres alone.
+    /// The set has pairs of two spheres only.
     #[error("set of pairs `{set}`: it has pairs of two spheres only; for {query} use random:N or hard:N")]
     SpheresAlone {
         /// The set.
         set: Set,
-        /// What is asked.
+        /// The query.
         query: Query,
     },
-    /// Not a number, or too large a one.
+    /// The size is not a number or out of range.
     #[error("set of pairs `{name}`: expected a number from {least} to {most}, found `{size}`{}", tip(meant))]
     Size {
         /// The whole name.
@@ -53,7 +53,7 @@ pub enum SetError {
         least: u64,
         /// The largest size.
         most: u64,
-        /// The set that it may be meant for.
+        /// A set that was probably meant.
         meant: Option<String>,
     },
 }
@@ -62,7 +62,7 @@ fn tip(meant: &Option<String>) -> String {
     meant.as_ref().map(|meant| format!("; did you mean {meant}?")).unwrap_or_default()
 }
 
-/// What the sets are called.
+/// The kinds of sets.
 const KINDS: [&str; 4] = ["diamond", "random", "dense", "hard"];
 
 /// The digits of a whole number written in another way: `1e6`, `1_000_000`.
@@ -99,7 +99,7 @@ impl Set {
     /// The pairs of a query.
     ///
     /// # Errors
-    /// When the set is of spheres alone, and the query is not.
+    /// Returns an error if the set has pairs of two spheres only and the query is another.
     pub fn pairs_of(self, query: Query, seed: u64) -> Result<Vec<PairRecord>, SetError> {
         match self {
             _ if query == Query::SphereSphere => Ok(self.pairs(seed)),

@@ -52,7 +52,7 @@ pub fn read(
     Ok(())
 }
 
-/// Where each column stands.
+/// The position of each column.
 fn header(
     file: &Path,
     text: &[u8],

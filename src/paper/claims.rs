@@ -1,4 +1,4 @@
-//! What of the paper's text does not add up, each with its arithmetic done here.
+//! Claims of the paper's text that do not add up, with the arithmetic of each.
 
 use serde::Serialize;
 
@@ -13,16 +13,16 @@ const PORT_MHZ: f64 = 200.0;
 /// Bytes of a pair in, and likewise of a contact out.
 const RECORD_BYTES: f64 = 32.0;
 
-/// Something the paper says, and what comes of it.
+/// A claim of the paper, and what follows from it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Claim {
-    /// What it says.
+    /// The claim.
     pub says: String,
     /// Where.
     pub place: &'static str,
     /// The arithmetic, with its results.
     pub arithmetic: String,
-    /// What follows.
+    /// What follows from it.
     pub follows: String,
 }
 

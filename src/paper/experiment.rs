@@ -13,10 +13,10 @@ use crate::verify::{Bench, VerifyError};
 use serde::Serialize;
 use std::path::Path;
 
-/// What is asked for.
+/// The request.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// How many numbers of collisions are tried.
+    /// The extent: how many numbers of collisions are tried.
     pub size: Size,
     /// Layers of the diamond: hMax.
     pub h_max: u32,
@@ -45,15 +45,15 @@ pub struct Plan {
 /// Work done, for progress.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Work {
-    /// So many points were timed, of how many.
+    /// Number of points timed, and number of all points.
     Measured(usize, usize),
     /// The AFU's model is being built.
     Building,
-    /// So many collisions were simulated, of how many.
+    /// Number of collisions simulated, and number of all collisions.
     Simulated(usize, usize),
 }
 
-/// Why the experiment did not come to its end.
+/// Why the experiment was not completed.
 #[derive(Debug, thiserror::Error)]
 pub enum PaperError {
     /// ODE could not do its part.
@@ -70,7 +70,7 @@ pub enum PaperError {
     Folder(#[from] folder::Error),
 }
 
-/// What the folder is.
+/// The schema of the folder.
 #[derive(Serialize)]
 struct Manifest<'a> {
     schema: &'static str,
@@ -80,7 +80,7 @@ struct Manifest<'a> {
 /// Carries out `plan`. What the folder's store holds is not simulated again; what is measured is measured each time.
 ///
 /// # Errors
-/// If ODE, the model or a job fails; if the folder is not ours or holds another study (`force` takes it all the same);
+/// Returns an error if ODE, the model or a job fails; if the folder is not ours or holds another study (`force` takes it all the same);
 /// if it cannot be written.
 pub fn run(plan: &Plan, folder: &Path, force: bool, mut progress: impl FnMut(Work)) -> Result<Experiment, PaperError> {
     folder::check_study(folder, SCHEMA, force)?;

@@ -3,7 +3,7 @@
 use super::OdePoint;
 use crate::ode::{Benchmark, Error, Ode, Recording};
 
-/// What was measured.
+/// The measured figures.
 #[derive(Clone, Debug)]
 pub struct Measured {
     /// The collisions.
@@ -15,10 +15,10 @@ pub struct Measured {
 }
 
 /// Runs the benchmark, then times the first so many of its collisions for each of `counts`, in `passes` passes.
-/// `done` is told how many of the points are there.
+/// `done` is called with the number of points measured so far.
 ///
 /// # Errors
-/// As [`Benchmark::run`] and [`Recording::figures`].
+/// Returns the errors of [`Benchmark::run`] and [`Recording::figures`].
 pub fn measure(
     ode: &Ode,
     benchmark: &Benchmark,

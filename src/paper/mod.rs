@@ -1,7 +1,7 @@
 //! The paper's experiment, run again: collisions recorded in ODE's diamond, timed on this machine, and sent through the
 //! simulated AFU; its Figures 6 and 7, and its text checked by arithmetic.
 //!
-//! [`run`] carries out a [`Plan`], and [`write`](write()) writes what it came to.
+//! [`run`] carries out a [`Plan`], and [`write`](write()) writes its results.
 
 mod claims;
 mod experiment;

@@ -1,4 +1,4 @@
-//! What the experiment leaves in its folder, and its table for people.
+//! The files of the experiment, and its table for people.
 
 use super::{Claim, Experiment, Joined, Published, SCHEMA, Settings, Summary};
 use super::{claims, figure6, figure7, page, per_collision};
@@ -20,7 +20,7 @@ struct Document<'a> {
 /// Writes the figures, their points, results.json and report.html into a folder; each is replaced whole.
 ///
 /// # Errors
-/// When the file system refuses.
+/// Returns an error if the file system refuses.
 pub fn write(results: &Experiment, folder: &Path) -> Result<(), folder::Error> {
     let claims = claims(&Published::PAPER);
     let figures = [

@@ -1,4 +1,4 @@
-//! What the paper says, as numbers.
+//! The figures of the paper's text.
 
 /// The figures in the paper's text. It has no table, and its plots no values.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,12 +45,12 @@ impl Published {
         self.crossover * self.gain_ns()
     }
 
-    /// The paper's ODE for so many collisions, in ns.
+    /// Time of the paper's ODE for this number of collisions, in ns.
     pub(crate) fn ode_total_ns(&self, collisions: f64) -> f64 {
         self.ode_ns * collisions
     }
 
-    /// The paper's AFU for so many collisions, in ns, with the set-up that follows from its crossover.
+    /// Time of the paper's AFU for this number of collisions, in ns, with the set-up that follows from its crossover.
     pub fn afu_total_ns(&self, collisions: f64) -> f64 {
         self.afu_ns * collisions + self.set_up_ns()
     }

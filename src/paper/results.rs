@@ -1,4 +1,4 @@
-//! What the experiment gave, as data.
+//! The results of the experiment, as data.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,7 +7,7 @@ use super::{Published, Size};
 /// The schema of `results.json`.
 pub const SCHEMA: &str = "contact-afu/paper/1";
 
-/// What was asked for, and what it was done with.
+/// The request, and the tools that answered it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Settings {
     /// The command that does it again.
@@ -28,19 +28,19 @@ pub struct Settings {
     pub transactions: u32,
     /// Steps that the recorded collisions are from.
     pub steps: usize,
-    /// Steps after which the diamond is built anew.
+    /// Number of steps after which the diamond is rebuilt.
     pub steps_of_a_run: usize,
-    /// What a look at the clock takes: ns, part of each measurement by the paper's rule.
+    /// Time of one reading of the clock, ns; part of each measurement by the paper's rule.
     pub clock_ns: f64,
     /// Instruction set of the f32 kernel.
     pub level: String,
     /// SCPUs of the AFU.
     pub scpus: u32,
-    /// Its arithmetic.
+    /// The arithmetic of the AFU.
     pub profile: String,
-    /// Its shell.
+    /// The shell of the AFU.
     pub shell: String,
-    /// The clock that its cycles are told in, MHz: assumed.
+    /// The assumed clock of the AFU, MHz.
     pub clock_mhz: f64,
     /// The link model.
     pub link: String,
@@ -55,9 +55,9 @@ pub struct Settings {
 /// Times for a number of collisions, measured on this machine, all in ns for all of them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OdePoint {
-    /// How many.
+    /// Number of collisions.
     pub collisions: usize,
-    /// ODE by the paper's rule: each executed so many times, averages added.
+    /// ODE by the paper's rule: each collision executed several times, averages added.
     pub rule_ns: f64,
     /// ODE's calls in a loop that is timed as a whole: the shortest pass.
     pub loop_ns: f64,
@@ -72,11 +72,11 @@ pub struct OdePoint {
 /// A number of collisions through the simulated AFU.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AfuPoint {
-    /// How many: one transaction.
+    /// Number of collisions in the transaction.
     pub collisions: usize,
     /// Transactions simulated.
     pub transactions: u32,
-    /// Their cycles, on average.
+    /// Cycles, averaged over the transactions.
     pub cycles: f64,
     /// The fewest.
     pub least_cycles: u64,
@@ -91,7 +91,7 @@ pub struct AfuPoint {
 /// Both for one number of collisions.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Joined {
-    /// How many.
+    /// Number of collisions.
     pub collisions: usize,
     /// ODE by the paper's rule, measured, ns.
     pub ode_rule_ns: f64,
@@ -115,11 +115,11 @@ pub struct Joined {
     pub afu_ns: f64,
     /// That with the link's set-up and tear-down, ns.
     pub afu_total_ns: f64,
-    /// What the link's bandwidth allows, ns.
+    /// The link limit, ns.
     pub link_limit_ns: f64,
     /// Contacts that the AFU found.
     pub afu_contacts: u64,
-    /// The paper's ODE: its ns a collision, times so many.
+    /// The paper's ODE: its ns per collision times the number of collisions.
     pub paper_ode_ns: f64,
     /// The paper's AFU, with the set-up that its crossover implies.
     pub paper_afu_ns: f64,
@@ -128,7 +128,7 @@ pub struct Joined {
 /// All of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Experiment {
-    /// What was asked for.
+    /// The request.
     pub settings: Settings,
     /// The numbers of collisions.
     pub size: Size,
@@ -136,7 +136,7 @@ pub struct Experiment {
     pub points: Vec<Joined>,
 }
 
-/// What it comes to, at the largest number of collisions.
+/// The summary at the largest number of collisions.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Summary {
     /// That number.
@@ -153,7 +153,7 @@ pub struct Summary {
     pub afu_ns: f64,
     /// Contacts that the AFU found among them: it gets numbers rounded to binary32.
     pub afu_contacts: u64,
-    /// What the link allows.
+    /// The link limit.
     pub link_limit_ns: f64,
     /// The share of it that is reached, without set-up.
     pub link_share: f64,
@@ -216,7 +216,7 @@ impl Experiment {
         self.points.iter().filter(|point| counts.contains(&point.collisions)).collect()
     }
 
-    /// What it comes to; nothing without points.
+    /// The summary; `None` without points.
     pub fn summary(&self) -> Option<Summary> {
         let last = self.points.last()?;
         let each = |total: f64| total / last.collisions as f64;
@@ -250,7 +250,7 @@ impl Experiment {
 pub(super) mod tests {
     use super::*;
 
-    /// ODE takes 50 ns a collision, the AFU 10 ns and 4 µs around it: equal at 100.
+    /// ODE takes 50 ns per collision, the AFU 10 ns and 4 µs of set-up: equal at 100.
     pub(in crate::paper) fn example() -> Experiment {
         let settings = Settings {
             command: "afu paper --out out/paper".into(),

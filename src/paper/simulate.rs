@@ -13,17 +13,17 @@ use crate::query::PairRecord;
 use crate::store::{Key, Store, StoreError, sha256};
 use crate::verify::{Bench, VerifyError};
 
-/// Above so many collisions a point is one transaction: their scatter is a few cycles of thousands.
+/// Above this number of collisions a point is one transaction: transactions differ by a few cycles in thousands.
 const LARGE: usize = 1000;
 
-/// What is simulated.
+/// A simulation.
 #[derive(Clone, Copy, Debug)]
 pub struct Task<'a> {
     /// The AFU.
     pub bench: &'a Bench,
     /// The link.
     pub link: &'a LinkModel,
-    /// The collisions; a point has the first so many of them.
+    /// The collisions; a point uses the first ones.
     pub pairs: &'a [PairRecord],
     /// Seed of the first transaction's link; the others follow.
     pub seed: u64,
@@ -40,20 +40,20 @@ pub enum SimulateError {
     /// A point could not be read or kept.
     #[error(transparent)]
     Store(#[from] StoreError),
-    /// What the AFU wrote is not what the reference kernel gives.
+    /// The AFU's contacts differ from those of the reference kernel.
     #[error("{mismatches} of {collisions} contacts of the simulated AFU differ from the reference kernel{}", failed_checks.iter().map(|text| format!("; {text}")).collect::<String>())]
     Wrong {
         /// Collisions of the transaction.
         collisions: usize,
         /// Contacts that differ.
         mismatches: usize,
-        /// What else is wrong.
+        /// The other checks that failed.
         failed_checks: Vec<String>,
     },
 }
 
 impl Task<'_> {
-    /// What decides a point.
+    /// The key of a point: everything that decides it.
     fn key(&self, collisions: usize) -> Result<Key, StoreError> {
         let (rtl, config) = (self.bench.rtl_sha256(), self.bench.config());
         let words = self.first(collisions).iter().flat_map(|pair| pair.0);
@@ -66,7 +66,7 @@ impl Task<'_> {
         &self.pairs[..collisions.min(self.pairs.len())]
     }
 
-    /// Pairs that a point of so many collisions costs.
+    /// Number of simulated pairs for a point of this number of collisions.
     fn cost(&self, collisions: usize) -> usize {
         collisions * self.transactions_of(collisions) as usize
     }
@@ -110,7 +110,7 @@ fn thousandths(cycles: f64) -> f64 {
 /// `progress` is called at the beginning and after each, with the pairs that are done, of how many.
 ///
 /// # Errors
-/// If a job does not end, if a contact is not the reference kernel's, or if a point cannot be read or kept.
+/// Returns an error if a job does not end, if a contact is not the reference kernel's, or if a point cannot be read or kept.
 pub fn simulate(
     task: &Task,
     counts: &[usize],

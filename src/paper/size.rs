@@ -1,4 +1,4 @@
-//! How many collisions are tried.
+//! The numbers of collisions that are tried.
 
 /// The numbers of collisions of the two figures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -10,14 +10,14 @@ pub enum Size {
 }
 
 impl Size {
-    /// Of Figure 6, up to `most`.
+    /// The numbers of Figure 6, up to `most`.
     pub fn figure6(self, most: usize) -> Vec<usize> {
         let step = if self == Self::Full { 10 } else { 100 };
         let points = [10].into_iter().chain((step..=1000).step_by(step).filter(|&n| n > 10));
         points.filter(|&n| n <= most).collect()
     }
 
-    /// Of Figure 7, up to `most`.
+    /// The numbers of Figure 7, up to `most`.
     pub fn figure7(self, most: usize) -> Vec<usize> {
         let points = match self {
             Self::Full => (1000..=90_000).step_by(1000).collect(),
@@ -26,7 +26,7 @@ impl Size {
         points.into_iter().filter(|&n| n <= most).collect()
     }
 
-    /// Of both, in increasing order.
+    /// The numbers of both figures, in increasing order.
     pub fn all(self, most: usize) -> Vec<usize> {
         let mut points = [self.figure6(most), self.figure7(most)].concat();
         points.sort_unstable();

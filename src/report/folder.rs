@@ -1,4 +1,4 @@
-//! A folder of results, written aside and renamed into place: it is there whole, or not at all.
+//! A folder of results, written to a temporary folder and renamed: it appears whole or not at all.
 
 use std::fs;
 use std::io;
@@ -13,7 +13,7 @@ use crate::files;
 /// Why a folder of results could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// Something is there that this program did not write.
+    /// The target exists and this program did not write it.
     #[error("{}: not written by afu (it holds no manifest.json of afu); choose another folder, or replace it with --force", .0.display())]
     Foreign(PathBuf),
     /// The path names something other than a folder.
@@ -44,9 +44,9 @@ pub enum Error {
     /// The file system refused.
     #[error("{}: {error}", path.display())]
     Io {
-        /// What was being written.
+        /// The file being written.
         path: PathBuf,
-        /// What the file system said.
+        /// The error of the file system.
         error: io::Error,
     },
 }
@@ -63,7 +63,7 @@ impl Folder {
     /// Begins a folder that will stand at `target`.
     ///
     /// # Errors
-    /// When `target` exists and neither is empty nor carries a manifest of ours, unless `force`.
+    /// Returns an error if `target` exists and neither is empty nor carries a manifest of ours, unless `force`.
     pub fn begin(target: &Path, force: bool) -> Result<Self, Error> {
         check(target, force)?;
         let parent = match target.parent() {
@@ -79,7 +79,7 @@ impl Folder {
     /// Adds a file; `path` is relative and may name folders.
     ///
     /// # Errors
-    /// When the path is not plain, or the file system refuses.
+    /// Returns an error if the path is not plain, or the file system refuses.
     pub fn write(&self, path: &str, bytes: &[u8]) -> Result<(), Error> {
         let plain = |c: std::path::Component<'_>| matches!(c, std::path::Component::Normal(_));
         if path.is_empty() || !Path::new(path).components().all(plain) {
@@ -95,7 +95,7 @@ impl Folder {
     /// Puts the folder in its place, instead of what stood there.
     ///
     /// # Errors
-    /// When the file system refuses; what stood there then stands there still.
+    /// Returns an error if the file system refuses; what stood there then stands there still.
     pub fn commit(self) -> Result<(), Error> {
         let Self { aside, target } = self;
         share(aside.path()).map_err(at(&target))?;
@@ -143,7 +143,7 @@ pub fn check(target: &Path, force: bool) -> Result<(), Error> {
 /// Whether results of this schema may be put at `target`: as [`check`] has it, and no results of another study there.
 ///
 /// # Errors
-/// As [`check`], or [`Error::Other`].
+/// Returns the errors of [`check`], or [`Error::Other`].
 pub(crate) fn check_study(target: &Path, schema: &str, force: bool) -> Result<(), Error> {
     check(target, force)?;
     // Within a study the number alone differs.
@@ -160,7 +160,7 @@ pub(crate) fn check_study(target: &Path, schema: &str, force: bool) -> Result<()
 /// Replaces one file whole with a value as indented JSON and a line end.
 ///
 /// # Errors
-/// If the value has no JSON, or the file system refuses; the old file is then as it was.
+/// Returns an error if the value has no JSON, or the file system refuses; the old file is then as it was.
 pub(crate) fn replace_json(path: &Path, value: &impl Serialize) -> Result<(), Error> {
     let mut text = serde_json::to_vec_pretty(value).map_err(as_text(path))?;
     text.push(b'\n');
@@ -170,7 +170,7 @@ pub(crate) fn replace_json(path: &Path, value: &impl Serialize) -> Result<(), Er
 /// Replaces one file whole with the CSV that `write` writes.
 ///
 /// # Errors
-/// As [`replace_json`].
+/// Returns the errors of [`replace_json`].
 pub(crate) fn replace_csv(
     path: &Path,
     write: impl FnOnce(&mut csv::Writer<Vec<u8>>) -> Result<(), csv::Error>,
@@ -188,7 +188,7 @@ fn as_text<E: std::fmt::Display>(path: &Path) -> impl FnOnce(E) -> Error + use<E
 /// Makes a folder, and those above it, where they are not there.
 ///
 /// # Errors
-/// When the file system refuses.
+/// Returns an error if the file system refuses.
 pub fn create(target: &Path) -> Result<(), Error> {
     fs::create_dir_all(target).map_err(at(target))
 }
@@ -196,7 +196,7 @@ pub fn create(target: &Path) -> Result<(), Error> {
 /// Replaces one file whole ([`files::replace`]).
 ///
 /// # Errors
-/// When the file system refuses; the old file is then as it was.
+/// Returns an error if the file system refuses; the old file is then as it was.
 pub fn replace_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     files::replace(path, |out| out.write_all(bytes)).map_err(at(path))
 }

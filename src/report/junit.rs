@@ -14,7 +14,7 @@ pub struct Error(#[from] quick_junit::SerializeError);
 /// The XML. `details` holds, for each job, the text of its mismatches.
 ///
 /// # Errors
-/// When the XML cannot be written.
+/// Returns an error if the XML cannot be written.
 pub fn xml(run: &Run, details: &[String]) -> Result<String, Error> {
     let mut suite = TestSuite::new("afu cosim");
     suite.add_property(("seed", run.seed.to_string().as_str()));

@@ -12,7 +12,7 @@ type Column = (Vec<Part>, u64);
 /// A table of the parts of jobs with these numbers of pairs and seed 1. `None` if [`account`] cannot split one of them.
 ///
 /// # Errors
-/// If the AFU cannot be generated or run.
+/// Returns an error if the AFU cannot be generated or run.
 pub fn text(bench: &Bench, link: &LinkModel, numbers: &[u32]) -> Result<Option<String>, VerifyError> {
     let afu = Afu::generate(Spec::from(bench.config().clone()))?;
     let mut columns: Vec<Column> = Vec::new();

@@ -6,7 +6,7 @@ use super::synth::by;
 use super::table::figure;
 use crate::synth::Figures;
 
-/// What others reach on the same flow.
+/// The figures of public cores on the same flow.
 #[derive(Debug, Deserialize)]
 struct PublicCores {
     flow: String,

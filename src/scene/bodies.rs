@@ -29,7 +29,7 @@ pub struct Ball {
 /// The spheres of groups, in their order.
 ///
 /// # Errors
-/// When a file of bodies cannot be read, or has what is no sphere.
+/// Returns an error if a file of bodies cannot be read, or has what is no sphere.
 pub fn balls(scene: &Scene, groups: &[Group]) -> Result<Vec<Ball>, SceneError> {
     let mut all = Vec::new();
     for (number, group) in groups.iter().enumerate() {

@@ -37,7 +37,7 @@ impl Cost {
     /// The cost of a configuration, without LUTs.
     ///
     /// # Errors
-    /// When there is no such AFU.
+    /// Returns an error if there is no such AFU.
     pub fn of(config: &Config) -> Result<Self, SceneError> {
         let afu = Afu::generate(Spec::from(config.clone()))?;
         let layout = afu.layout();
@@ -59,7 +59,7 @@ impl Cost {
     /// Has Yosys count an SCPU for an ECP5.
     ///
     /// # Errors
-    /// When Yosys is not there, or refuses.
+    /// Returns an error if Yosys is not there, or refuses.
     pub fn count(&mut self, config: &Config) -> Result<(), SceneError> {
         let options = Options { target: Target::Ecp5, seeds: Vec::new() };
         let area = synthesise(&Unit::scpu(config)?, &options, |_| {})?.area;

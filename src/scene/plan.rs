@@ -51,7 +51,7 @@ impl Plan {
     /// The plan of a scene.
     ///
     /// # Errors
-    /// When a file of bodies cannot be read.
+    /// Returns an error if a file of bodies cannot be read.
     pub fn of(scene: &Scene) -> Result<Self, SceneError> {
         let calls = |demands: &[Demand]| {
             let mut lines: Vec<usize> = demands.iter().flat_map(|demand| demand.lines(scene)).collect();
@@ -125,7 +125,7 @@ impl Plan {
     /// What the AFU costs, without the tools that count LUTs.
     ///
     /// # Errors
-    /// When there is no such AFU.
+    /// Returns an error if there is no such AFU.
     pub fn cost(&self) -> Result<Cost, SceneError> {
         Cost::of(&self.config)
     }
@@ -135,7 +135,7 @@ impl Scene {
     /// The scene with an effect that it does not name, at a usual value, or without one that it does.
     ///
     /// # Errors
-    /// When there is no such effect.
+    /// Returns an error if there is no such effect.
     pub fn switched(&self, effect: &str, on: bool) -> Result<Self, SceneError> {
         // The line of what no line calls for.
         const ASKED: Option<usize> = Some(0);

@@ -155,7 +155,7 @@ impl Scene {
     /// The scene of a text; `file` is for errors.
     ///
     /// # Errors
-    /// As [`Scene::read`].
+    /// Returns the errors of [`Scene::read`].
     pub fn parse(file: &str, text: &str) -> Result<Self, SceneError> {
         let source = Source { file, text };
         let raw: Raw = toml::from_str(text).map_err(|error| {

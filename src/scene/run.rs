@@ -19,7 +19,7 @@ const APART: u64 = 20;
 /// number of those done.
 ///
 /// # Errors
-/// When bodies cannot be read or begin inside one another ([`check_start`]), ODE refuses them or loses one, or the
+/// Returns an error if bodies cannot be read or begin inside one another ([`check_start`]), ODE refuses them or loses one, or the
 /// engine fails.
 pub fn run(
     scene: &Scene,

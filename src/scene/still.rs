@@ -25,7 +25,7 @@ impl Still {
     /// Of a scene: its bodies against its queries, or against each other where there are none.
     ///
     /// # Errors
-    /// When a file of bodies cannot be read.
+    /// Returns an error if a file of bodies cannot be read.
     pub fn of(scene: &Scene) -> Result<Self, SceneError> {
         let mut all = balls(scene, &scene.bodies)?;
         let bodies = all.len();
@@ -89,7 +89,7 @@ fn candidates(balls: &[Ball], bodies: usize) -> Vec<[usize; 2]> {
 /// Runs a scene's one query on an engine.
 ///
 /// # Errors
-/// When bodies cannot be read, or the engine fails.
+/// Returns an error if bodies cannot be read, or the engine fails.
 pub fn query(scene: &Scene, plan: &Plan, engine: &mut dyn Engine, name: &str) -> Result<SceneRun, SceneError> {
     let query = Still::of(scene)?;
     let mut results = SceneRun::begin(scene, plan, name.to_owned())?;

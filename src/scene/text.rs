@@ -16,7 +16,7 @@ impl Plan {
     /// What another plan has otherwise: rows that differ, then costs side by side.
     ///
     /// # Errors
-    /// When there is no such AFU.
+    /// Returns an error if there is no such AFU.
     pub fn difference(&self, other: &Self, mine: &Cost, theirs: &Cost) -> String {
         let differs = |row: &&Row| self.rows.iter().find(|mine| mine.name == row.name) != Some(*row);
         let rows: Vec<[String; 4]> = other.rows.iter().filter(differs).map(row).collect();

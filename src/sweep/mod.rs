@@ -1,4 +1,4 @@
-//! The same job for many AFUs: what each number of SCPUs gives, in a table that grows row by row and is resumed.
+//! The same job for many AFUs: one row per AFU, in a table that grows row by row and can be resumed.
 
 mod page;
 mod results;
@@ -18,7 +18,7 @@ use crate::store::{self, Key, Store, StoreError, sha256};
 use crate::synth::{Area, Options, SynthError, Target, Unit, synthesise};
 use crate::verify::{Bench, VerifyError, rtl_sha256};
 
-/// What every AFU of a sweep is given.
+/// The job of every AFU of a sweep.
 #[derive(Clone, Copy, Debug)]
 pub struct Task<'a> {
     /// The pairs.
@@ -32,7 +32,7 @@ pub struct Task<'a> {
 }
 
 impl Task<'_> {
-    /// What decides a row.
+    /// The key of a row: everything that decides it.
     fn key(&self, config: &Config) -> Result<Key, SweepError> {
         let version = env!("CARGO_PKG_VERSION");
         let of = (version, config, rtl_sha256(config)?, fingerprint(self.pairs), self.link, self.seed);
@@ -44,7 +44,8 @@ impl Task<'_> {
 /// The folder is written after each. Returns how many rows the store held.
 ///
 /// # Errors
-/// As [`Bench::new`] and [`Bench::run`]; as [`SweepResults::check`]; if the folder cannot be written.
+/// Returns the errors of [`Bench::new`], [`Bench::run`] and [`SweepResults::check`], and an error if the folder cannot be
+/// written.
 pub fn fill(
     results: &mut SweepResults,
     configs: &[Config],
@@ -78,7 +79,7 @@ pub fn fill(
     Ok(resumed)
 }
 
-/// What one SCPU takes of an ECP5.
+/// The area of one SCPU on an ECP5.
 fn area(config: &Config) -> Result<Area, SynthError> {
     let target = Target::Ecp5;
     let unit = Unit::scpu_for(config, target)?;
@@ -100,16 +101,16 @@ fn fingerprint(pairs: &[PairRecord]) -> String {
     sha256(&pairs.iter().flat_map(|pair| pair.0).flat_map(u32::to_le_bytes).collect::<Vec<_>>())
 }
 
-/// Why a sweep did not come to its end.
+/// Why a sweep was not completed.
 #[derive(Debug, thiserror::Error)]
 pub enum SweepError {
-    /// No folder for its model.
+    /// A temporary folder for models could not be created.
     #[error("no temporary folder for models: {0}")]
     Cache(std::io::Error),
-    /// No count of cells.
+    /// Cells could not be counted.
     #[error(transparent)]
     Synth(#[from] SynthError),
-    /// No model, or no end of the job.
+    /// A model could not be built, or a job did not finish.
     #[error(transparent)]
     Verify(#[from] VerifyError),
     /// The folder is not ours, or could not be read or written.

@@ -1,4 +1,4 @@
-//! What a sweep came to, in the folder that it grows in.
+//! The results of a sweep, in a folder that grows.
 
 use std::fs;
 use std::io;
@@ -33,21 +33,21 @@ pub struct SweepResults {
     pub pairs_sha256: String,
     /// The link's name, or its file.
     pub link: String,
-    /// SHA-256 of what the link is like; empty in results of before it was kept.
+    /// SHA-256 of the link model; empty in results of older versions.
     #[serde(default)]
     pub link_sha256: String,
     /// Seed of pairs and link.
     pub seed: u64,
-    /// The configuration, but for what is swept.
+    /// The configuration; the swept options are in [`Swept`].
     pub config: Config,
-    /// The numbers of SCPUs and the intervals that were asked for: a row for each with each.
+    /// The requested numbers of SCPUs and intervals; there is one row for each combination.
     #[serde(default)]
     pub swept: Swept,
     /// The rows, in the order asked for.
     pub rows: Vec<Row>,
 }
 
-/// What is different in each row of a sweep.
+/// The options that a sweep varies.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Swept {
@@ -79,7 +79,7 @@ impl SweepResults {
     /// replaces what is there.
     ///
     /// # Errors
-    /// If the folder is not ours, or holds another sweep or rows that this one does not ask for, without `force`; if it
+    /// Returns an error if the folder is not ours, or holds another sweep or rows that this one does not ask for, without `force`; if it
     /// cannot be read.
     pub fn check(&self, folder: &Path, force: bool) -> Result<(), folder::Error> {
         folder::check(folder, force)?;
@@ -141,7 +141,7 @@ impl SweepResults {
     /// Writes the folder as it is now; each file is replaced whole.
     ///
     /// # Errors
-    /// When the file system refuses.
+    /// Returns an error if the file system refuses.
     pub fn save(&self, folder: &Path) -> Result<(), folder::Error> {
         folder::create(folder)?;
         folder::replace_json(&folder.join(manifest::NAME), self)?;

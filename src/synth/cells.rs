@@ -13,7 +13,7 @@ pub(super) type Cells = BTreeMap<String, u64>;
 /// What a unit takes of a device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Area {
-    /// Look-up tables; those of carry chains and small memories among them. ALUTs on Cyclone V.
+    /// LUTs, including those of carry chains and small memories; ALUTs on Cyclone V.
     pub luts: u64,
     /// Flip-flops.
     pub ffs: u64,
@@ -24,7 +24,7 @@ pub struct Area {
 }
 
 impl Area {
-    /// How many of `unit` fit, by what runs out first.
+    /// The number of `unit` that fit; the resource that runs out first decides.
     pub fn fits(&self, unit: &Self) -> u64 {
         let pairs = [(self.luts, unit.luts), (self.ffs, unit.ffs), (self.dsps, unit.dsps), (self.brams, unit.brams)];
         pairs.into_iter().filter(|(_, each)| *each > 0).map(|(all, each)| all / each).min().unwrap_or(0)
@@ -44,7 +44,7 @@ impl Sub for Area {
     }
 }
 
-/// The area of cells after synthesis. Tables in chains and memories are counted by how many they occupy.
+/// The area of cells after synthesis. LUTs of chains and memories are counted by the number that they occupy.
 pub(super) fn area(target: Target, cells: &Cells) -> Area {
     let mut area = Area::default();
     for (name, &count) in cells {
@@ -69,7 +69,7 @@ pub(super) fn area(target: Target, cells: &Cells) -> Area {
             Target::Cyclonev => match name.as_str() {
                 "MISTRAL_FF" => area.ffs += count,
                 "MISTRAL_M10K" => area.brams += count,
-                // An inverter is absorbed; a MLAB bit takes a table.
+                // An inverter is absorbed; an MLAB bit takes a LUT.
                 "MISTRAL_MLAB" => area.luts += count,
                 _ if is("MISTRAL_ALUT") => area.luts += count,
                 _ if is("MISTRAL_MUL") => area.dsps += count,
@@ -90,7 +90,7 @@ pub(super) fn area(target: Target, cells: &Cells) -> Area {
     area
 }
 
-/// The area of a placed design, of nextpnr's kinds of places; nothing where that is not known.
+/// The area of a placed design, from nextpnr's kinds of sites; `None` if a kind is unknown.
 pub(super) fn placed(target: Target, used: &Cells) -> Option<Area> {
     let count = |name: &str| used.get(name).copied().unwrap_or(0);
     match target {
@@ -100,7 +100,7 @@ pub(super) fn placed(target: Target, used: &Cells) -> Option<Area> {
             dsps: count("MULT18X18D"),
             brams: count("DP16KD"),
         }),
-        // A logic cell holds a table and a flip-flop: they are counted before placement.
+        // A logic cell holds a LUT and a flip-flop: they are counted before placement.
         _ => None,
     }
 }

@@ -1,4 +1,4 @@
-//! Why there are no figures.
+//! Errors of a measurement.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ use crate::tools::MissingTool;
 /// Why a unit could not be measured.
 #[derive(Debug, thiserror::Error)]
 pub enum SynthError {
-    /// A program that is needed is not there.
+    /// A required program is missing.
     #[error(transparent)]
     MissingTool(#[from] MissingTool),
     /// The AFU could not be generated.
@@ -21,7 +21,7 @@ pub enum SynthError {
     /// The unit or its wrapper: a mistake of the generator, or a clock nothing can be cut for.
     #[error("the hardware is faulty:\n{0}")]
     Hardware(#[from] BuildErrors),
-    /// A program refused, with the last of what it said.
+    /// A program failed, with its last messages.
     #[error("{program} failed on {unit}:\n{text}")]
     Failed {
         /// The program.
@@ -31,7 +31,7 @@ pub enum SynthError {
         /// Its messages.
         text: String,
     },
-    /// A program wrote what is not understood.
+    /// The output of a program could not be read.
     #[error("unexpected output of {program} for {unit}: {what}")]
     Unexpected {
         /// The program.
@@ -51,7 +51,7 @@ pub enum SynthError {
         /// Why.
         source: io::Error,
     },
-    /// Netlists and routes cannot be kept.
+    /// Netlists and routes cannot be stored.
     #[error(transparent)]
     Store(#[from] StoreError),
 }

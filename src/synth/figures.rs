@@ -1,4 +1,4 @@
-//! What came out, as JSON keeps it.
+//! The figures of a unit, as the JSON has them.
 
 use serde::{Deserialize, Serialize};
 
@@ -16,14 +16,14 @@ pub struct Figures {
     pub schema: String,
     /// The version of this crate.
     pub version: String,
-    /// What was measured, as in `add` or `scpu`.
+    /// The kind of unit, such as `add` or `scpu`.
     pub unit: String,
     /// Its arithmetic.
     pub profile: Profile,
-    /// Of an operator that has several: its architecture.
+    /// The architecture, if the operator has several.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub architecture: Option<Architecture>,
-    /// Of an SCPU or an AFU: cycles from one pair to the next in one SCPU.
+    /// The initiation interval of an SCPU or an AFU, in cycles.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub interval: Option<u32>,
     /// The module's name in Verilog.
@@ -32,11 +32,11 @@ pub struct Figures {
     pub target: Target,
     /// The clock that stages were cut for, MHz.
     pub asked_mhz: f64,
-    /// The clock that the delay model promised, MHz; nothing where no stages were cut.
+    /// The clock that the delay model predicts, MHz; `None` if no stages were cut.
     pub modelled_mhz: Option<f64>,
-    /// The clock after place and route, MHz: the median of the seeds'. Nothing where it was only counted.
+    /// The clock after place and route, MHz, median of the seeds; `None` if cells were only counted.
     pub clock_mhz: Option<f64>,
-    /// Cycles from inputs to outputs; nothing where it is not a pipeline.
+    /// Cycles from inputs to outputs; `None` if the unit is not a pipeline.
     pub latency_cycles: Option<u32>,
     /// The same in nanoseconds, at [`Figures::clock_mhz`].
     pub latency_ns: Option<f64>,
@@ -49,7 +49,7 @@ pub struct Figures {
     pub trimmed: Trimmed,
     /// Each seed's run, in the order asked for.
     pub seeds: Vec<Seed>,
-    /// The slowest path between two registers, of the seed whose clock is the median.
+    /// The critical path between two registers, for the seed with the median clock.
     pub critical: Vec<Hop>,
     /// SHA-256 of the Verilog that was synthesised, wrapper and all.
     pub verilog_sha256: String,
@@ -73,13 +73,13 @@ pub struct Hop {
     pub signal: String,
     /// The stage it stands in, counted from 0.
     pub stage: Option<u32>,
-    /// Time on wires to it, ns.
+    /// Routing delay to it, ns.
     pub routing_ns: f64,
-    /// Time in cells, ns.
+    /// Logic delay, ns.
     pub logic_ns: f64,
 }
 
-/// What the programs say of themselves.
+/// The versions of the programs.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Tools {
     /// Yosys.
@@ -89,7 +89,7 @@ pub struct Tools {
 }
 
 impl Figures {
-    /// Whether the clock that was asked for was reached; nothing where it was only counted.
+    /// Whether the requested clock was reached; `None` if cells were only counted.
     pub fn meets(&self) -> Option<bool> {
         self.clock_mhz.map(|clock| clock >= self.asked_mhz)
     }

@@ -1,4 +1,4 @@
-//! nextpnr: cells to places and wires, and how fast that is.
+//! nextpnr: places and routes cells, and reports the clock.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -18,11 +18,11 @@ const GOAL_MHZ: &str = "400";
 /// A placed and routed design.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Routed {
-    /// The clock it reaches, MHz.
+    /// The clock in MHz that it reaches.
     pub clock_mhz: f64,
     /// Places in use, by kind.
     pub used: Cells,
-    /// The slowest path from register to register.
+    /// The critical path from register to register.
     pub path: Vec<Segment>,
 }
 
@@ -94,7 +94,7 @@ pub(super) struct Run<'a> {
     pub device: &'a [&'a str],
     /// The placer's seed.
     pub seed: u32,
-    /// What it is, for messages.
+    /// The name of the design, for messages.
     pub unit: &'a str,
 }
 

@@ -24,7 +24,7 @@ pub enum Target {
     Xilinx,
 }
 
-/// Not a [`Target`].
+/// The name of no [`Target`].
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("unknown target `{0}`: use ecp5, ice40, cyclonev, xilinx")]
 pub struct TargetError(String);
@@ -33,7 +33,7 @@ impl Target {
     /// All of them.
     pub const ALL: [Self; 4] = [Self::Ecp5, Self::Ice40, Self::Cyclonev, Self::Xilinx];
 
-    /// Its word on the command line.
+    /// Its name on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Ecp5 => "ecp5",
@@ -85,7 +85,7 @@ impl Target {
         }
     }
 
-    /// Which memories it has.
+    /// The kinds of memory that the family has.
     pub(super) const fn memories(self) -> Memories {
         match self {
             Self::Ecp5 => Memories::BlocksAndLuts,

@@ -1,4 +1,4 @@
-//! Which of a wrapper's registers are still there after synthesis: a unit whose outputs are gone would look small.
+//! Finds the wrapper's registers that synthesis removed: a unit with removed outputs would look small.
 
 use std::collections::{BTreeMap, HashSet};
 use std::fs;

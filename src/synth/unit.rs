@@ -1,4 +1,4 @@
-//! What can be measured.
+//! Units whose area and clock can be measured.
 
 use std::sync::Arc;
 
@@ -13,19 +13,19 @@ use super::{SynthError, Target};
 /// A module to be measured.
 #[derive(Clone, Debug)]
 pub struct Unit {
-    /// What it is, as in `add` or `scpu`.
+    /// Its kind, such as `add` or `scpu`.
     pub name: String,
     /// The arithmetic.
     pub profile: Profile,
-    /// Of an operator that has several: its architecture.
+    /// The architecture, if the operator has several.
     pub architecture: Option<Architecture>,
-    /// Of an SCPU or an AFU: cycles from one pair to the next in one SCPU.
+    /// The initiation interval of an SCPU or an AFU, in cycles.
     pub interval: Option<u32>,
     /// The clock that its stages were cut for, MHz.
     pub clock_mhz: f64,
     /// Its module.
     pub module: Arc<Module>,
-    /// Cycles from inputs to outputs; nothing where it is not a pipeline.
+    /// Cycles from inputs to outputs; `None` if the unit is not a pipeline.
     pub latency: Option<u32>,
 }
 
@@ -33,7 +33,7 @@ impl Unit {
     /// An operator of a profile, for the given values, cut for a clock.
     ///
     /// # Errors
-    /// A clock it cannot be cut for.
+    /// Returns an error if the operator cannot be cut for this clock.
     pub fn operator(
         operator: Operator,
         profile: &Profile,
@@ -47,7 +47,7 @@ impl Unit {
         Ok(Self { architecture, ..Self::pipeline(operator.name(), profile, clock_mhz, module) })
     }
 
-    /// A pipeline that is already there.
+    /// A unit of an existing pipeline.
     pub fn pipeline(name: &str, profile: &Profile, clock_mhz: f64, module: Arc<Module>) -> Self {
         let latency = Some(module.latency);
         Self {
@@ -64,7 +64,7 @@ impl Unit {
     /// The SCPU of a configuration: its kernel with detection of invalid pairs.
     ///
     /// # Errors
-    /// A configuration that cannot be generated.
+    /// Returns an error if the configuration cannot be generated.
     pub fn scpu(config: &Config) -> Result<Self, SynthError> {
         Self::scpu_with(config, DelayModel::default())
     }
@@ -72,7 +72,7 @@ impl Unit {
     /// [`Unit::scpu`] cut for a target by its own delays ([`Target::delays`]), its multiplier blocks in its own way.
     ///
     /// # Errors
-    /// A configuration that cannot be generated.
+    /// Returns an error if the configuration cannot be generated.
     pub fn scpu_for(config: &Config, target: Target) -> Result<Self, SynthError> {
         Self::scpu_with(config, target.delays())
     }
@@ -88,7 +88,7 @@ impl Unit {
     /// The whole AFU of a configuration, with its shell.
     ///
     /// # Errors
-    /// A configuration that cannot be generated.
+    /// Returns an error if the configuration cannot be generated.
     pub fn afu(config: &Config, target: Target) -> Result<Self, SynthError> {
         Ok(Self::of(config, &Self::generate(config, target.delays())?))
     }
@@ -109,26 +109,26 @@ impl Unit {
         }
     }
 
-    /// The clock its cut promised by the delay model, MHz: the slowest of its parts'. Nothing where none was cut.
+    /// The clock in MHz that the delay model predicts, that of the slowest part; `None` if no stages were cut.
     pub fn modelled_mhz(&self) -> Option<f64> {
         let timings = self.module.hierarchy();
         timings.iter().filter_map(|module| module.timing.as_ref()).map(|timing| timing.clock_mhz).reduce(f64::min)
     }
 
-    /// It and its arithmetic, for messages.
+    /// The unit and its arithmetic, for messages.
     pub fn title(&self) -> String {
         let every = self.interval.filter(|interval| *interval > 1).map(|interval| format!(" every {interval}"));
         format!("{} {}{}", self.name, self.profile, every.unwrap_or_default())
     }
 
-    /// The Verilog of `top` and all below it, a file a module: file name and text.
+    /// The Verilog of `top` and everything below it, one file per module: file name and text.
     pub(super) fn files(top: &Arc<Module>, target: Target) -> Vec<(String, String)> {
         let style = Style { memories: target.memories(), ..Style::default() };
         let file = |module: Arc<Module>| (format!("{}.v", module.name), emit(&module, &style));
         top.hierarchy().into_iter().map(file).collect()
     }
 
-    /// The Verilog of a wrapper around a unit of which only the ports are known.
+    /// The Verilog of a wrapper around a unit; the unit is declared by its ports only.
     pub(super) fn wrapper_files(bench: &Arc<Module>, unit: &Module) -> Vec<(String, String)> {
         let style = Style::default();
         let mut ports = Vec::new();
@@ -146,7 +146,7 @@ impl Unit {
         vec![("bench.v".to_owned(), emit(bench, &style)), (format!("{}.v", unit.name), empty)]
     }
 
-    /// It in its wrapper.
+    /// The unit in its wrapper.
     pub(super) fn wrapped(&self) -> Result<Arc<Module>, BuildErrors> {
         super::wrapper::wrap(&self.module)
     }

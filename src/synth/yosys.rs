@@ -14,7 +14,7 @@ use crate::tools::Program;
 
 /// A netlist in the store.
 pub(super) struct Netlist {
-    /// All that it was made from.
+    /// The hash of its inputs.
     pub key: Key,
     /// Its cells by type.
     pub cells: Cells,
@@ -24,7 +24,7 @@ pub(super) struct Netlist {
 
 /// The modules to synthesise.
 pub(super) struct Design<'a> {
-    /// What it is, for messages.
+    /// The name of the design, for messages.
     pub unit: &'a str,
     /// File names and texts.
     pub files: &'a [(String, String)],
@@ -74,7 +74,7 @@ pub(super) fn synthesise(
     Ok(Netlist { key, cells, path })
 }
 
-/// Runs a program, whose last words are the error when it fails.
+/// Runs a program; if it fails, its last messages are the error.
 pub(super) fn run(program: &Program, command: &mut Command, unit: &str) -> Result<Output, SynthError> {
     const LINES: usize = 12;
     let output = command.output().map_err(|e| SynthError::io("run", Path::new(program.name()), e))?;

@@ -8,7 +8,7 @@ fn one(config: Config) -> Config {
     Config { scpus: 1, shell: Shell::Line, ..config }
 }
 
-/// What a configuration is called: its profile, and what else is not as by default.
+/// The name of a configuration: its profile, and every option that differs from the default.
 pub fn name(config: &Config) -> String {
     let default = Config::default();
     let rest = Config { scpus: default.scpus, shell: default.shell, profile: default.profile, ..config.clone() };
@@ -21,7 +21,7 @@ pub fn name(config: &Config) -> String {
 pub type Choice = (&'static str, Config);
 
 fn profile(name: &str) -> Option<Config> {
-    // A name that is none is left out; the tests hold that there is none such.
+    // An invalid name is left out; tests check that there is none.
     name.parse::<Profile>().ok().map(|profile| one(Config { profile, ..Config::default() }))
 }
 
@@ -92,7 +92,7 @@ pub(super) fn neighbours(config: &Config) -> Vec<Choice> {
     let (exponent, fraction) = (format.exponent_bits(), format.fraction_bits());
     let with = |exponent, fraction, roots| {
         let other = Format::new(exponent, fraction, format.subnormals()).ok()?.with_rounding(format.rounding());
-        // As text it is the profile of that format.
+        // The text names the profile of that format.
         other.with_roots(roots).ok()?.to_string().parse::<Profile>().ok()
     };
     let other_roots = if format.roots() == Roots::Correct { Roots::Faithful } else { Roots::Correct };
@@ -115,7 +115,7 @@ pub(super) fn neighbours(config: &Config) -> Vec<Choice> {
     formats.chain(clocks).chain(records).map(|config| ("neighbour of the front", config)).collect()
 }
 
-/// Whether two configurations are one under two names.
+/// True if two configurations are the same under two names.
 pub(super) fn is_same(a: &Config, b: &Config) -> bool {
     let renamed = Config { profile: a.profile.clone(), ..b.clone() };
     a.profile.arithmetic() == b.profile.arithmetic() && *a == renamed

@@ -3,7 +3,7 @@
 use super::{Point, Study, Time};
 use crate::config::{Config, SCPUS};
 
-/// What a configuration must meet; none: anything goes.
+/// The bounds that a configuration must meet; `None` is no bound.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bounds {
     /// The largest relative error on the scenes, at most.
@@ -16,7 +16,7 @@ pub struct Bounds {
     pub bad: Option<f64>,
 }
 
-/// What is bounded.
+/// A quantity that can be bounded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bound {
     /// The largest error.

@@ -19,9 +19,9 @@ pub(super) enum Show {
 
 /// A column of figures.
 pub(super) struct Column {
-    /// Its key in the CSV.
+    /// The key in the CSV.
     pub key: &'static str,
-    /// Its heading for people.
+    /// The heading in tables for people.
     pub heading: &'static str,
     /// The figure; `None` if it was not measured.
     pub value: fn(&Study, &Point) -> Option<f64>,

@@ -1,4 +1,4 @@
-//! What a configuration takes: cycles by cosim, area and clock by synthesis.
+//! The cost of a configuration: cycles by co-simulation, area and clock by synthesis.
 
 use super::plan::Plan;
 use crate::accuracy::measure::with_pairs;
@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Cycles {
-    /// What was simulated, over which link at which clock: a hash.
+    /// Hash of the simulated Verilog, link and clock.
     pub key: String,
     /// From the line of a lone pair in to the line of its contact out, over the link `ideal`.
     pub lone: u64,
@@ -32,7 +32,7 @@ pub struct Cycles {
 /// Counts the cycles of an AFU for a lone pair, and for `pairs` over the link `ideal` and over `link`.
 ///
 /// # Errors
-/// When a job does not end.
+/// Returns an error if a job does not end.
 pub fn cycles(
     bench: &Bench,
     pairs: &[PairRecord],
@@ -71,7 +71,7 @@ pub(super) fn cycles_hash(rtl: &str, pairs: &[PairRecord], link: &LinkModel, see
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Hardware {
-    /// What was synthesised, and how: a hash.
+    /// Hash of the synthesised Verilog and the options.
     pub key: String,
     /// Its area.
     pub area: Area,

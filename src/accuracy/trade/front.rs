@@ -29,7 +29,7 @@ impl Time {
         }
     }
 
-    /// What it is a time of, in a sentence.
+    /// The kind of time, in words.
     pub(super) fn words(self) -> &'static str {
         match self {
             Self::Lone => "latency",

@@ -1,4 +1,4 @@
-//! What a study leaves in its folder beside its measurements.
+//! The files of a study beside its measurements.
 
 use super::columns::COLUMNS;
 use super::{Study, Time, page, picture};
@@ -10,7 +10,7 @@ use std::{fs, io};
 /// results.json into a folder that [`run`](super::run) made; each is replaced whole, and none of an earlier run stays.
 ///
 /// # Errors
-/// When the file system refuses.
+/// Returns an error if the file system refuses.
 pub fn write(results: &Study, folder: &Path) -> Result<(), folder::Error> {
     replace_json(&folder.join("results.json"), results)?;
     replace_csv(&folder.join("results.csv"), |out| csv(results, out))?;

@@ -1,4 +1,4 @@
-//! What a study measures.
+//! The plan of a study: what it measures.
 
 use super::axes::{self, Choice};
 use crate::config::Profile;
@@ -7,7 +7,7 @@ use crate::pairs::Set;
 use crate::query::PairRecord;
 use crate::synth::Target;
 
-/// How much is measured.
+/// The extent of a study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Size {
     /// A configuration a profile, some fifty thousand pairs.
@@ -23,7 +23,7 @@ pub enum Size {
 pub struct Named {
     /// The set's name.
     pub name: String,
-    /// Whether its pairs are those of a scene, of which errors in the pictures are, and not made to be hard.
+    /// True for the pairs of a scene, whose errors the pictures show; false for hard pairs.
     pub is_scene: bool,
     /// The pairs.
     pub pairs: Vec<PairRecord>,
@@ -34,25 +34,25 @@ pub struct Named {
 pub struct Plan {
     /// The configurations, each with its axis.
     pub choices: Vec<Choice>,
-    /// What cannot be generated, and why.
+    /// Configurations that cannot be generated, with the reason.
     pub left_out: Vec<String>,
     /// The sets of pairs.
     pub sets: Vec<Named>,
     /// The link over which cycles are counted.
     pub link: Description,
-    /// What reports call it.
+    /// The name in reports.
     pub link_name: String,
     /// Seed of pairs and link.
     pub seed: u64,
     /// The family that area is counted for.
     pub target: Target,
-    /// Whether area is counted at all.
+    /// True if area is counted.
     pub synthesis: bool,
     /// Neighbours of the front that are added, at most.
     pub neighbours: usize,
     /// The placer's seeds for the points on the front; none: nothing is routed.
     pub placer_seeds: Vec<u32>,
-    /// Whether a missing program for that is an error, and not only told.
+    /// True if a missing program for it is an error, and not only a message.
     pub must_route: bool,
     /// Configurations that are worked on at a time.
     pub jobs: usize,

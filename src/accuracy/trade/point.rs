@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Point {
-    /// Its name, the only one of that name.
+    /// The name, unique in a study.
     pub name: String,
     /// The axis along which it was chosen.
     pub axis: String,
@@ -29,12 +29,12 @@ pub struct Point {
     pub cycles: Cycles,
     /// Area and clock, where the tools for it are there.
     pub hardware: Option<Hardware>,
-    /// What both were before place and route gave it another clock; none where it was not routed.
+    /// Both times at the delay model's clock, before place and route; `None` if the point was not routed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub before_routing: Option<Counted>,
     /// Nanoseconds a pair of the same arithmetic in software, on one thread of this machine.
     pub software_ns: Option<f64>,
-    /// Where it leads the diamond's spheres; none without ODE, or where it gives what is no contact.
+    /// How far it leads the diamond's spheres; `None` without ODE, or if it gives a record that is not a contact.
     pub drift: Option<Drift>,
 }
 
@@ -100,12 +100,12 @@ impl Point {
         self.on_device(target).filter(|&scpus| scpus > 0).map(|scpus| self.compute_ns() / scpus as f64)
     }
 
-    /// Its SCPU's area.
+    /// The area of the SCPU.
     pub fn area(&self) -> Option<Area> {
         self.hardware.as_ref().map(|hardware| hardware.area)
     }
 
-    /// What it came to on all pairs.
+    /// The tally over all pairs.
     pub fn tally(&self) -> Tally {
         self.rows.iter().fold(Tally::default(), |sum, row| sum.plus(&row.tally))
     }
@@ -116,7 +116,7 @@ impl Point {
         tally.missed.saturating_add(tally.false_hits)
     }
 
-    /// Its errors on the sets of these names.
+    /// The errors on the sets of these names.
     pub fn errors(&self, sets: &[String]) -> ErrorStatistics {
         let rows = self.rows.iter().filter(|row| sets.contains(&row.category));
         rows.fold(ErrorStatistics::default(), |sum, row| sum.plus(&row.errors))

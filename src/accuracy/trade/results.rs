@@ -1,4 +1,4 @@
-//! What a study came to.
+//! The results of a study.
 
 use super::{Plan, Point, Time};
 use crate::synth::Target;
@@ -10,15 +10,15 @@ pub const SCHEMA: &str = "contact-afu/accuracy/1";
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SetFigures {
-    /// Its name.
+    /// The name of the set.
     pub name: String,
-    /// Its pairs.
+    /// The number of pairs.
     pub pairs: u64,
-    /// Whether errors in pictures are of it.
+    /// True if the pictures show the errors of this set.
     pub is_scene: bool,
 }
 
-/// Everything a study came to.
+/// All results of a study.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Study {
@@ -40,9 +40,9 @@ pub struct Study {
     pub link: String,
     /// The FPGA family.
     pub target: Target,
-    /// What is missing, and why.
+    /// What is missing, with the reason.
     pub left_out: Vec<String>,
-    /// The best kernels of this machine in software, ns a pair: name and time.
+    /// The fastest software kernels on this machine: name, and ns per pair.
     pub kernels: Vec<(String, f64)>,
     /// The points, in the order of the plan.
     pub points: Vec<Point>,
@@ -78,7 +78,7 @@ impl Study {
         Time::ALL.into_iter().filter(is_known).collect()
     }
 
-    /// Whether the area of any point is known.
+    /// True if the area of any point is known.
     pub fn has_areas(&self) -> bool {
         self.points.iter().any(|point| point.area().is_some())
     }
@@ -115,7 +115,7 @@ impl Study {
         point.errors(&self.scenes()).contact.largest
     }
 
-    /// Its mean.
+    /// The mean.
     pub(crate) fn typical(&self, point: &Point) -> f64 {
         point.errors(&self.scenes()).contact.mean
     }
@@ -124,7 +124,7 @@ impl Study {
 /// The results that are part of this crate: of the day and by the command that they name.
 ///
 /// # Errors
-/// When the file of the crate is not what this version reads; a test holds that it is.
+/// Returns an error if the file of the crate is not what this version reads; a test holds that it is.
 pub fn committed() -> Result<Study, serde_json::Error> {
     serde_json::from_str(include_str!("committed.json"))
 }

@@ -19,7 +19,7 @@ use std::collections::VecDeque;
 use std::mem::{replace, take};
 use std::path::Path;
 
-/// Why a study did not come to its end.
+/// Why a study was not completed.
 #[derive(Debug, thiserror::Error)]
 pub enum TradeError {
     /// A kernel failed, or the folder cannot be used.
@@ -55,11 +55,11 @@ const FOLDER: &str = "contact-afu/accuracy-store/2";
 /// known yet: only the shares count.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Work {
-    /// So many seconds of work more; or less, where there turns out to be less to do.
+    /// The estimate of the work changed by this number of seconds, up or down.
     Planned(f64),
     /// Something begins.
     Begun(String),
-    /// So many of them are done.
+    /// This number of seconds of it is done.
     Done(f64),
     /// A configuration's times and area are known: a line on it.
     Configuration(String),
@@ -78,7 +78,7 @@ const ON_FRONTS: f64 = 8.0;
 /// Arithmetics that answer a set before their rows are kept: the truth about the set is found anew for each so many.
 const AT_ONCE: usize = 16;
 
-/// A guess at the seconds of so many configurations.
+/// An estimate of the seconds that this number of configurations takes.
 fn seconds(plan: &Plan, configs: usize) -> f64 {
     let pairs: usize = plan.sets.iter().map(|set| set.pairs.len()).sum();
     configs as f64 * (cost_seconds(plan) + PAIR_SECONDS * pairs as f64)
@@ -93,7 +93,7 @@ pub(super) fn cost_seconds(plan: &Plan) -> f64 {
 /// again, and everything new is put there as it comes.
 ///
 /// # Errors
-/// When a program refuses, a job does not end, or the folder is not ours or cannot be written. A missing synthesis
+/// Returns an error if a program refuses, a job does not end, or the folder is not ours or cannot be written. A missing synthesis
 /// program is no error: the results say so.
 pub fn run(plan: &Plan, folder: Option<(&Path, bool)>, mut progress: impl FnMut(Work)) -> Result<Study, TradeError> {
     let store = &study::open(folder, FOLDER)?;
@@ -198,7 +198,7 @@ fn route(
         let costs = costs(plan, &configs.iter().collect::<Vec<_>>(), seeds, store, progress)?;
         for (&index, cost) in chosen.iter().zip(costs) {
             results.left_out.extend(cost.missing.filter(|missing| !results.left_out.contains(missing)));
-            // Where it could not be routed, what was known of it stays.
+            // If it could not be routed, its earlier figures stay.
             if let Some(routed) = cost.hardware {
                 let point = &mut results.points[index];
                 let cycles = replace(&mut point.cycles, cost.cycles);

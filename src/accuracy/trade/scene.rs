@@ -20,7 +20,7 @@ pub struct Drift {
     pub largest: f64,
 }
 
-/// Why there is no drift in this program.
+/// Why this program cannot measure the drift.
 #[cfg(not(feature = "ode"))]
 pub(super) const ABSENT: &str =
     "where the diamond's spheres are after 300 steps: this program has no ODE; build it with --features ode";
@@ -51,7 +51,7 @@ mod with_ode {
             Ok(Self { exact: positions(&simulation) })
         }
 
-        /// How far from it an engine's contacts lead; nothing where the engine gives what is no contact.
+        /// How far an engine's contacts lead away from it; `None` if the engine gives a record that is not a contact.
         pub fn drift(&self, engine: &mut dyn Engine) -> Result<Option<Drift>, Error> {
             let ode = Ode::start(Collider::Engine)?;
             let diamond = diamond();

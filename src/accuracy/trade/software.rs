@@ -7,13 +7,13 @@ use crate::query::{Fields, PairRecord};
 use std::hint::black_box;
 use std::time::Instant;
 
-/// Passes of which the shortest counts.
+/// Number of passes; the shortest counts.
 const PASSES: usize = 5;
-/// Pairs that software in any format is timed on, and the best kernels: these stay in a cache.
+/// Number of pairs for software in any format, and for the fastest kernels; both stay in a cache.
 const PAIRS: usize = 2_000;
 const KERNEL_PAIRS: usize = 4_096;
 
-/// Nanoseconds a pair of a configuration's reference kernel, on one thread.
+/// Nanoseconds per pair of a configuration's reference kernel, on one thread.
 pub(super) fn of_config(config: &Config, pairs: &[PairRecord]) -> Option<f64> {
     let pairs = &pairs[..pairs.len().min(PAIRS)];
     let reference = config.reference();
@@ -22,7 +22,7 @@ pub(super) fn of_config(config: &Config, pairs: &[PairRecord]) -> Option<f64> {
     })
 }
 
-/// Nanoseconds a pair of the best kernels of this machine, on one thread, in their own layout.
+/// Nanoseconds per pair of the fastest kernels of this machine, on one thread, in their own layout.
 pub(super) fn kernels(pairs: &[PairRecord]) -> Vec<(String, f64)> {
     let pairs = &pairs[..pairs.len().min(KERNEL_PAIRS)];
     let (batch, mut contacts) = (Batch::from_pairs(pairs), Batch::zeros(pairs.len()));

@@ -70,7 +70,7 @@ fn row(results: &Study, point: &Point, base: Option<&Point>, has_areas: bool) ->
     cells
 }
 
-/// What a point costs compared with `base` over a link.
+/// The cost of a point over a link, compared with `base`.
 pub(super) fn at_the_link(point: &Point, base: &Point) -> String {
     let ratio = point.link_ns() / base.link_ns();
     let hidden = |point: &Point| point.cycles.link <= point.cycles.link_limit * (1.0 + LIMITED);

@@ -12,7 +12,7 @@ use std::collections::VecDeque;
 use std::sync::{Mutex, PoisonError, mpsc};
 use std::thread;
 
-/// What was measured of a configuration's hardware.
+/// The measured figures of a configuration's hardware.
 pub(super) struct Cost {
     pub rtl_sha256: String,
     pub scpu_cycles: u32,
@@ -33,7 +33,7 @@ impl Cost {
     }
 }
 
-/// What workers tell.
+/// The messages of workers.
 enum News {
     Begun(String),
     Ended(usize, Box<Result<Cost, TradeError>>),

@@ -11,7 +11,7 @@ use std::hint::black_box;
 /// What the same collisions take, all of them together, in nanoseconds. All is measured on this machine, one thread.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Figures {
-    /// How many there are.
+    /// Number of collisions.
     pub collisions: usize,
     /// ODE by the paper's rule: the sum of the averages, the clock's share included.
     pub rule_ns: f64,
@@ -30,7 +30,7 @@ impl Recording {
     /// Times the first `count` collisions (all, where there are fewer) in `passes` passes.
     ///
     /// # Errors
-    /// When ODE runs without its own collider, or has no memory.
+    /// Returns an error if ODE runs without its own collider, or has no memory.
     pub fn figures(&self, ode: &Ode, count: usize, passes: usize) -> Result<Figures, Error> {
         let collisions = self.first(count);
         let mut pairs = Vec::with_capacity(collisions.len());

@@ -18,7 +18,7 @@ use crate::query::{Flow, PairRecord};
 use std::hint::black_box;
 use std::time::Instant;
 
-/// What to measure.
+/// A benchmark: what to measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Benchmark {
     /// The simulation: the paper's hMax and dSph are in it.
@@ -27,7 +27,7 @@ pub struct Benchmark {
     pub flow: Flow,
     /// The paper's nColMax: how many of them. The simulation stops at the last.
     pub collisions: usize,
-    /// How often each is executed, of which the average counts; 10 in the paper. At least 1.
+    /// Number of executions of each collision, whose average counts; 10 in the paper, at least 1.
     pub executions: u32,
     /// After so many steps the diamond is built anew and the recording goes on: the forces that made it collide drive
     /// its spheres apart in the end, that of hMax 3 after some 1350 steps. At least 1.
@@ -45,7 +45,7 @@ pub struct Collision {
     pub nanoseconds: f64,
 }
 
-/// What a run of the benchmark gave.
+/// The result of a run of the benchmark.
 #[derive(Clone, Debug)]
 pub struct Recording {
     /// The collisions that count, in the order they were met.
@@ -68,7 +68,7 @@ impl Benchmark {
     /// Simulates and measures.
     ///
     /// # Errors
-    /// When ODE runs without its own collider, a parameter is out of range, or there are too few
+    /// Returns an error if ODE runs without its own collider, a parameter is out of range, or there are too few
     /// collisions of the kind.
     pub fn run(&self, ode: &Ode) -> Result<Recording, Error> {
         ode.needs(Collider::Own)?;

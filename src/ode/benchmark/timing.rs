@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 /// Shorter than this, a piece of work is repeated between two looks at the clock.
 const LONG_ENOUGH: Duration = Duration::from_micros(50);
 
-/// How long a piece of work takes, in nanoseconds. On a machine shared with others the least says most.
+/// The time of a piece of work, in nanoseconds. On a shared machine the minimum is the most meaningful.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timing {
     /// The shortest.
@@ -37,7 +37,7 @@ impl Timing {
     }
 }
 
-/// What two looks at the clock with nothing between them take: the median of many.
+/// The time between two readings of the clock with nothing between them: the median of many.
 pub(super) fn clock_ns() -> f64 {
     let looks: Vec<f64> = (0..1001).map(|_| Instant::now().elapsed().as_nanos() as f64).collect();
     Timing::from_passes(looks).median_ns

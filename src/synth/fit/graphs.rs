@@ -11,10 +11,10 @@ pub struct Sample {
     kind: &'static str,
     /// Bits of its operands.
     width: u32,
-    /// Levels, where the kind has a number of them.
+    /// Number of levels, if the kind has levels.
     levels: u32,
     build: for<'g> fn(&mut Operands<'g, '_>) -> Signal<'g>,
-    /// Whether the fit may see it; otherwise it is for the test.
+    /// True for a sample of the fit, false for one of the test.
     pub fitted: bool,
 }
 
@@ -53,10 +53,10 @@ impl Sample {
         (self.build)(&mut Operands { graph, name: &name, width: self.width, levels: self.levels, next: 0 })
     }
 
-    /// It alone, as a combinational module.
+    /// The sample alone, as a combinational module.
     ///
     /// # Errors
-    /// A fault of this list.
+    /// Returns an error only if this list is wrong.
     pub fn module(&self) -> Result<Arc<Module>, BuildErrors> {
         let graph = Graph::new(self.name());
         let result = self.logic(&graph);
@@ -73,7 +73,7 @@ pub fn port(name: &str) -> String {
 /// Samples side by side in one module, each with a register behind its logic.
 ///
 /// # Errors
-/// A fault of this list.
+/// Returns an error only if this list is wrong.
 pub fn together(samples: &[Sample]) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new("samples");
     graph.about("small graphs side by side, for fitting a delay model");
@@ -129,7 +129,7 @@ fn select<'g>(x: &mut Operands<'g, '_>) -> Signal<'g> {
     x.of(1).select(x.one(), x.one())
 }
 
-/// A shifter to the left, a level a power of two.
+/// A left shifter with one level per power of two.
 fn shift<'g>(x: &mut Operands<'g, '_>) -> Signal<'g> {
     let (mut value, distance) = (x.one(), x.of(x.levels));
     for level in 0..x.levels {
@@ -171,7 +171,7 @@ fn add_normalise<'g>(x: &mut Operands<'g, '_>) -> Signal<'g> {
     sum.msb().select(sum.drop_low(1), sum.low(x.width))
 }
 
-/// A sum or a difference by one bit, which goes to all of an operand's.
+/// A sum or a difference, chosen by one bit that fans out to all bits of an operand.
 fn complement_add<'g>(x: &mut Operands<'g, '_>) -> Signal<'g> {
     let (a, b, subtract) = (x.one(), x.one(), x.of(1));
     a.concat(a.graph().constant(1, 1)) + (b ^ subtract.repeat(x.width)).concat(subtract)

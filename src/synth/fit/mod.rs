@@ -1,4 +1,4 @@
-//! Fitting a delay model to what the router says.
+//! Fits a delay model to the delays that the router reports.
 //!
 //! Small graphs of one kind each are placed and routed, those of about the same delay side by side in one design, so
 //! that none is neglected by a placer that looks at the slowest. Each graph's delay is the latest arrival at its own
@@ -24,14 +24,14 @@ pub const SCHEMA: &str = "contact-afu/fit/1";
 /// Graphs whose modelled delays differ by more than this factor are not put into one design.
 const SPREAD: f64 = 1.25;
 
-/// A fitted model, and how well it says what the router says.
+/// A fitted model, and how well it predicts the router.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Fit {
     /// [`SCHEMA`].
     pub schema: String,
     /// The family.
     pub target: Target,
-    /// What Yosys and nextpnr say of themselves.
+    /// The versions of Yosys and nextpnr.
     pub tools: [String; 2],
     /// The placer's seeds.
     pub seeds: Vec<u32>,
@@ -46,7 +46,7 @@ pub struct Fit {
 pub struct Point {
     /// The graph, as in `add_24`: an addition of 24 bits.
     pub graph: String,
-    /// Whether the fit saw it.
+    /// True for a graph of the fit, false for one of the test.
     pub fitted: bool,
     /// The clock that the router's delay allows, MHz: median of the seeds.
     pub routed_mhz: f64,
@@ -61,7 +61,7 @@ impl Point {
     }
 }
 
-/// Routes the graphs and fits a model for a target; nothing for a target without a router.
+/// Routes the graphs and fits a model for a target; `None` for a target without a router.
 ///
 /// # Errors
 /// As of [`super::synthesise`].
@@ -126,7 +126,7 @@ pub fn fit(target: Target, seeds: &[u32], mut progress: impl FnMut(&str)) -> Res
     Ok(Some(Fit { schema: SCHEMA.to_owned(), target, tools, seeds: seeds.to_vec(), model, points }))
 }
 
-/// To a picosecond: more is noise.
+/// Rounded to a picosecond: more digits are noise.
 fn thousandths(time: &f64) -> f64 {
     (time * 1000.0).round() / 1000.0
 }
