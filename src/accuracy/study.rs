@@ -37,8 +37,8 @@ pub enum StudyError {
 /// done of a category. Returns how many rows the store held.
 ///
 /// # Errors
-/// Returns an error if an engine fails, if the folder is not ours or holds another study (`force` takes it all the same), or if it
-/// cannot be read or written.
+/// Returns an error if an engine fails, if the folder is not ours or holds another study (`force` takes it all the
+/// same), or if it cannot be read or written.
 pub fn fill(
     results: &mut HardResults,
     contenders: &mut [Box<dyn Contender>],

@@ -61,8 +61,8 @@ impl Profile {
     /// This profile with correct or faithful roots and reciprocals.
     ///
     /// # Errors
-    /// Returns the errors of [`Profile::with_rounding`], and [`FormatError::Unfaithful`] if the fraction is too long for
-    /// faithful roots.
+    /// Returns the errors of [`Profile::with_rounding`], and [`FormatError::Unfaithful`] if the fraction is too long
+    /// for faithful roots.
     pub fn with_roots(self, roots: Roots) -> Result<Self, FormatError> {
         if self.is_exact() && roots != self.format.roots() {
             return Err(FormatError::Exact);

@@ -18,7 +18,8 @@ impl World {
     /// to binary32, and their contacts through ODE's collider override. In the order of [`World::contacts`].
     ///
     /// # Errors
-    /// Returns an error if ODE runs with its own collider, a sphere is lost, or the engine fails or gives what is no answer.
+    /// Returns an error if ODE runs with its own collider, a sphere is lost, or the engine fails or gives what is no
+    /// answer.
     pub fn contacts_by(&self, engine: &mut dyn Engine) -> Result<Vec<Touch>, Error> {
         self.ode.needs(Collider::Engine)?;
         let pairs = self.candidates()?;

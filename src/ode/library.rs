@@ -55,7 +55,8 @@ impl Ode {
     /// While another thread has ODE this call waits. So a thread that has it must not wait for one that wants it.
     ///
     /// # Errors
-    /// Returns an error if this thread has ODE with another collider, or the library can't be started or is of single precision.
+    /// Returns an error if this thread has ODE with another collider, or the library can't be started or is of single
+    /// precision.
     pub fn start(collider: Collider) -> Result<Self, Error> {
         if let Some(guard) = GUARD.with_borrow(Weak::upgrade) {
             let ode = Self { guard };

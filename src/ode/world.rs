@@ -219,8 +219,8 @@ impl World {
     /// Makes the next step part two spheres that touch: ODE's contact joint.
     ///
     /// # Errors
-    /// Returns an error if the contact has a number that no contact here can have, or is of a sphere with itself, or a number of the
-    /// surface is out of range.
+    /// Returns an error if the contact has a number that no contact here can have, or is of a sphere with itself, or a
+    /// number of the surface is out of range.
     pub fn join(&self, touch: &Touch, surface: &Surface) -> Result<(), Error> {
         let Touch { first, second, contact } = touch;
         let [one, other] = [first, second].map(|sphere| &self.spheres[sphere.0]);
@@ -263,7 +263,8 @@ impl World {
     /// Moves every sphere through a time, by ODE's QuickStep; afterwards there are no forces and no joints.
     ///
     /// # Errors
-    /// Returns an error if ODE has no memory, or a sphere is then beyond what ODE's space can hold; such a world is of no more use.
+    /// Returns an error if ODE has no memory, or a sphere is then beyond what ODE's space can hold; such a world is of
+    /// no more use.
     pub fn step(&mut self, time: f64) -> Result<(), Error> {
         positive("a step's time", time)?;
         self.all_in_reach()?;

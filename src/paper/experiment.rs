@@ -80,8 +80,8 @@ struct Manifest<'a> {
 /// Carries out `plan`. What the folder's store holds is not simulated again; what is measured is measured each time.
 ///
 /// # Errors
-/// Returns an error if ODE, the model or a job fails; if the folder is not ours or holds another study (`force` takes it all the same);
-/// if it cannot be written.
+/// Returns an error if ODE, the model or a job fails; if the folder is not ours or holds another study (`force` takes
+/// it all the same); if it cannot be written.
 pub fn run(plan: &Plan, folder: &Path, force: bool, mut progress: impl FnMut(Work)) -> Result<Experiment, PaperError> {
     folder::check_study(folder, SCHEMA, force)?;
     let Plan { size, config, link, .. } = plan;

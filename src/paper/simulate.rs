@@ -110,7 +110,8 @@ fn thousandths(cycles: f64) -> f64 {
 /// `progress` is called at the beginning and after each, with the pairs that are done, of how many.
 ///
 /// # Errors
-/// Returns an error if a job does not end, if a contact is not the reference kernel's, or if a point cannot be read or kept.
+/// Returns an error if a job does not end, if a contact is not the reference kernel's, or if a point cannot be read or
+/// kept.
 pub fn simulate(
     task: &Task,
     counts: &[usize],

@@ -19,8 +19,8 @@ const APART: u64 = 20;
 /// number of those done.
 ///
 /// # Errors
-/// Returns an error if bodies cannot be read or begin inside one another ([`check_start`]), ODE refuses them or loses one, or the
-/// engine fails.
+/// Returns an error if bodies cannot be read or begin inside one another ([`check_start`]), ODE refuses them or loses
+/// one, or the engine fails.
 pub fn run(
     scene: &Scene,
     plan: &Plan,

@@ -44,8 +44,8 @@ impl Task<'_> {
 /// The folder is written after each. Returns how many rows the store held.
 ///
 /// # Errors
-/// Returns the errors of [`Bench::new`], [`Bench::run`] and [`SweepResults::check`], and an error if the folder cannot be
-/// written.
+/// Returns the errors of [`Bench::new`], [`Bench::run`] and [`SweepResults::check`], and an error if the folder cannot
+/// be written.
 pub fn fill(
     results: &mut SweepResults,
     configs: &[Config],

@@ -79,8 +79,8 @@ impl SweepResults {
     /// replaces what is there.
     ///
     /// # Errors
-    /// Returns an error if the folder is not ours, or holds another sweep or rows that this one does not ask for, without `force`; if it
-    /// cannot be read.
+    /// Returns an error if the folder is not ours, or holds another sweep or rows that this one does not ask for,
+    /// without `force`; if it cannot be read.
     pub fn check(&self, folder: &Path, force: bool) -> Result<(), folder::Error> {
         folder::check(folder, force)?;
         let path = folder.join(manifest::NAME);

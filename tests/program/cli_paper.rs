@@ -97,8 +97,8 @@ fn seen(out: &std::path::Path) {
     let page = crate::browser::open(&out.join("report.html"));
     assert!(page.console.is_empty(), "{:#?}", page.console);
     assert!(page.fetched.is_empty(), "{:#?}", page.fetched);
-    // Two figures, each drawn for a wide and for a narrow screen. Figure 7 is left out: it begins where a run of at most
-    // a thousand collisions ends.
+    // Two figures, each drawn for a wide and for a narrow screen. Figure 7 is left out: it begins where a run of at
+    // most a thousand collisions ends.
     assert_eq!(page.dom.matches("<svg class=\"plot\"").count(), 4);
     // Each plot has six series, each drawn with eleven points.
     assert_eq!(page.dom.matches("data-series=").count(), 24);

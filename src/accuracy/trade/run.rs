@@ -93,8 +93,8 @@ pub(super) fn cost_seconds(plan: &Plan) -> f64 {
 /// again, and everything new is put there as it comes.
 ///
 /// # Errors
-/// Returns an error if a program refuses, a job does not end, or the folder is not ours or cannot be written. A missing synthesis
-/// program is no error: the results say so.
+/// Returns an error if a program refuses, a job does not end, or the folder is not ours or cannot be written. A missing
+/// synthesis program is no error: the results say so.
 pub fn run(plan: &Plan, folder: Option<(&Path, bool)>, mut progress: impl FnMut(Work)) -> Result<Study, TradeError> {
     let store = &study::open(folder, FOLDER)?;
     if let Some((folder, _)) = folder {
