@@ -1,6 +1,6 @@
-//! The backlog: contacts between the sieve, which may find as many a cycle as there are lanes, and the packer, which
-//! takes no more than a line holds. It cannot overflow: a pair enters an SCPU only when there is a place here for its
-//! contact.
+//! The backlog: a queue of contacts between the sieve, which finds up to one contact per lane and cycle, and the
+//! packer, which takes up to one line per cycle. It cannot overflow: a pair enters an SCPU only when there is a place
+//! here for its contact.
 
 use std::sync::Arc;
 
@@ -8,8 +8,8 @@ use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
 use super::Spec;
 
-/// Builds the module `contact_afu_backlog` with `places` (a power of two) places, in a bank a lane: what comes in one
-/// cycle goes to as many banks, and so does what leaves.
+/// Builds the module `contact_afu_backlog` with `places` (a power of two) places and one bank per lane: the contacts of
+/// one cycle enter different banks, and leave from different banks.
 pub(super) fn backlog(spec: &Spec, places: u32) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new("contact_afu_backlog");
     graph.about("keeps contacts, in their order, until the packer takes them");
@@ -25,7 +25,7 @@ pub(super) fn backlog(spec: &Spec, places: u32) -> Result<Arc<Module>, BuildErro
     let tail = graph.register("tail", place_bits, 0);
     let head = graph.register("head", place_bits, 0);
     let stored = graph.register("stored", count_bits, 0);
-    // What stood in a bank a cycle ago: what its registered read has.
+    // The contents of a bank one cycle ago, which its registered read shows.
     let readable = graph.register("readable", count_bits, 0);
 
     let many = readable.at_least(readable.same(u128::from(leaving)));
@@ -54,7 +54,7 @@ pub(super) fn backlog(spec: &Spec, places: u32) -> Result<Arc<Module>, BuildErro
     let group_out = group.gate(!start).registered("group_out");
     graph.output("group", group_out);
     for (lane, entry) in leaves.into_iter().take(leaving as usize).enumerate() {
-        // The packer hears of their number a cycle before, and merges what comes: a lane without a contact is zero.
+        // The packer gets their number one cycle ahead and merges all lanes: a lane without a contact is zero.
         let taken = group.greater_than(group.same(lane as u128));
         graph.output(&format!("record_{lane}"), entry.gate(taken).delay(2).named(&format!("leaving_{lane}")));
     }
@@ -69,7 +69,7 @@ enum Turn {
     Down,
 }
 
-/// Turns a row of a power of two entries by the low bits of `by`.
+/// Rotates a row of a power of two entries by the low bits of `by`.
 fn rotate<'g>(mut row: Vec<Signal<'g>>, by: Signal<'g>, turn: Turn) -> Vec<Signal<'g>> {
     let lanes = row.len();
     for bit in 0..lanes.ilog2() {
@@ -83,7 +83,7 @@ fn rotate<'g>(mut row: Vec<Signal<'g>>, by: Signal<'g>, turn: Turn) -> Vec<Signa
     row
 }
 
-/// The row of a bank in which the first place from `place` on that is in it lies.
+/// The row of the first place at or after `place` that lies in this bank.
 fn row<'g>(place: Signal<'g>, bank: u32, lanes: u32) -> Signal<'g> {
     let bank_bits = lanes.ilog2();
     let row = place.drop_low(bank_bits);

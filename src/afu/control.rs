@@ -1,7 +1,8 @@
 //! Control: takes a job, watches it, ends it. A job ends done when the last write is acknowledged. On an abort, an
-//! error response or a response that no request waits for it stops asking, waits for what is outstanding, and ends with
-//! an error. It waits no longer than the watchdog allows, or than [`DRAIN_CYCLES`] without one: then it gives up what
-//! is outstanding. A request that the link has not accepted by then stays on the port until it is, next jobs or not.
+//! error response or a response that no request waits for it stops requests, waits for what is outstanding, and ends
+//! with an error. It waits no longer than the watchdog allows, or than [`DRAIN_CYCLES`] without one: then it gives up
+//! what is outstanding. A request that the link has not accepted by then stays on the port until it is, next jobs or
+//! not.
 
 use std::sync::Arc;
 
@@ -14,9 +15,9 @@ use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, JobError, Spec, feeder};
 /// Cycles without a response after which a job that is to end ends, if it has no watchdog.
 pub const DRAIN_CYCLES: u32 = 1 << 16;
 
-/// From the cycle in which `start` is high to the first in which the parts run.
+/// Cycles from `start` high to the first cycle in which the parts run.
 pub(super) const CYCLES_TO_RUN: u32 = 2;
-/// From the cycle in which nothing is left to do to `done`.
+/// Cycles from the end of all work to `done`.
 pub(super) const CYCLES_TO_DONE: u32 = 2;
 
 /// Builds the module `contact_afu_control`; `capacity` is the number of results there is room for.
@@ -31,7 +32,7 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, BuildEr
         [&job.start, &job.source, &job.destination, &job.count, &job.mode, &job.epoch, &job.watchdog, &job.abort_job]
             .map(|port| port.input(&graph));
     let told = JobOutputs::of(spec);
-    // What comes from afar is heard a cycle later.
+    // Inputs from distant parts are registered first.
     let heard = |name: &str| graph.input(name, 1).registered(&format!("{name}_heard"));
     let [read_failed, write_failed, unexpected] = ["read_failed", "write_failed", "unexpected"].map(heard);
     let response = heard("response");
@@ -80,7 +81,7 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, BuildEr
     last_place.next_if(accept, if shift == 0 { fewer.same(0) } else { fewer });
 
     // Pairs inside, and room for results: a pair takes its place when it enters, a line frees its places when it
-    // leaves for memory. Where only contacts come back, a pair that is none frees its place as soon as that is known,
+    // leaves for memory. With only hits, a pair without contact frees its place as soon as that is known,
     // and a contact when it leaves the backlog.
     let room = graph.register("room", room_bits, u128::from(capacity));
     let returned = match spec.config.results {
@@ -90,14 +91,14 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, BuildEr
     let change = (returned - entered.extend(room_bits)).gate(!*begin).registered("room_change");
     let next_room = (room.value() + change).named("next_room");
     room.next(begin.select(room.same(u128::from(capacity)), next_room));
-    // Whether a group may enter, whatever those before it were that do not show yet.
+    // True if a group may enter, whatever the size of earlier groups that are not yet counted.
     let may_enter = graph.register("may_enter", 1, 0);
     may_enter.next(run & next_room.drop_low(feeder::room_to_enter(spec).ilog2()).any());
     let inside = graph.register("pairs_inside", room_bits, 0);
     inside.next(inside.value() + entered.extend(room_bits) - emerged.extend(room_bits));
 
     // Watchdog: cycles since the last response while one is outstanding; they begin again when the job is to end. A
-    // response in time is never too late because it is heard a cycle later.
+    // response in time is never too late because of the register.
     let silence = graph.register("silence", COUNT_BITS, 0);
     let link_idle = link_idle_now.registered("link_idle_heard");
     let quiet = (response | link_idle).named("not_waiting");
@@ -114,7 +115,7 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, BuildEr
         (abort, JobError::Aborted),
         (read_failed, JobError::Read),
         (write_failed, JobError::Write),
-        // What comes as a job completes is not heard before the next one begins.
+        // What arrives as a job completes is used only after the next one begins.
         (unexpected & !*begin, JobError::Response),
         (*expired, JobError::Watchdog),
     ];
@@ -124,11 +125,11 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, BuildEr
     }
     let cause = cause.named("cause");
     failing.drive(*running & cause.any() & !complete);
-    // Whatever else went wrong, this is what the host must know: late responses may still come, and late writes.
+    // This error takes precedence, because the host must know that late responses and late writes may still come.
     let gives_up = (busy & *expired & !complete).named("gives_up");
     let given_up = graph.register("given_up", 1, 0);
     given_up.next(!accept & (*given_up | gives_up));
-    // What runs hears a cycle later that it should not.
+    // The parts are stopped one cycle later.
     let stopped = draining.registered("stopped");
     let empty = (!inside.any() & !entered.any()).named("none_inside");
     let drained = (*draining & stopped & empty & (link_idle | *given_up)).named("drained");

@@ -2,8 +2,8 @@
 //!
 //! A tag is the job's epoch and a slot; slots are used in turn, each again only after its acknowledgement.
 //!
-//! Where only contacts come back, nobody knows beforehand how many lines there will be: the host says how many it has
-//! room for, and those beyond are dropped and told.
+//! With `--results hits`, the number of lines is not known in advance. The host says how many it has room for; the rest
+//! are dropped, and the job ends with an error.
 
 use std::sync::Arc;
 
@@ -17,9 +17,9 @@ use super::lines::{Access, line_memory};
 use super::port::{WriteInputs, WriteOutputs, outputs};
 use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, Spec};
 
-/// From a line to its write request: stored, at the head, registered.
+/// Cycles from a line to its write request: stored, at the head, registered.
 pub(super) const CYCLES_TO_REQUEST: u32 = 3;
-/// From an acknowledgement to its being counted.
+/// Cycles from an acknowledgement to its count.
 pub(super) const CYCLES_TO_IDLE: u32 = awaited::CYCLES_TO_ANSWER + 1;
 
 /// Builds the module `contact_afu_dispatcher`, with room for `depth` (a power of two) lines.
@@ -39,8 +39,8 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
     let link = WriteInputs::of(spec).map(|port| port.input(&graph));
     let bounded = spec.config.results == Results::Hits;
 
-    // Finished lines wait in a memory, the oldest of them read already. It cannot overflow: a pair enters an SCPU only
-    // when its result has a place here.
+    // Finished lines wait in a memory; the oldest one has been read already. It cannot overflow: a pair enters an SCPU
+    // only when its result has a place here.
     let tail = graph.register("tail", place_bits, 0);
     let head = graph.register("head", place_bits, 0);
     let stored = graph.register("stored", place_bits + 1, 0);
@@ -56,7 +56,7 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
     ready.next(!start & (line_valid | some_left));
     read_valid.next(!start & (take | (*read_valid & !goes)));
 
-    // Write requests. Whether one may be sent is known a cycle before.
+    // Write requests. Whether one may be sent is decided one cycle ahead.
     let next_address = graph.data_register("next_address", ADDRESS_BITS);
     let next_slot = graph.register("next_slot", slot_bits, 0);
     let reserved = graph.register("reserved", slot_bits + 1, 0);
@@ -76,7 +76,7 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
         let overflowed = graph.register("overflowed", 1, 0);
         overflowed.next(!start & (*overflowed | goes & !fits));
         graph.output("overflowed", overflowed.value());
-        // The packer hears a few cycles before the memory is full: lines are still on their way then.
+        // The packer is stopped a few cycles before the memory is full, because lines are still in flight.
         graph.output("accepts", (!stored.high(2).any()).registered("accepts"));
         send
     } else {

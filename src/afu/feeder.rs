@@ -14,16 +14,17 @@ use super::{COUNT_BITS, SCPU_BITS, Spec};
 /// Register ranks from the decision which pairs go to them on their way: its data come as late as lines do, and are
 /// registered.
 const RANKS: u32 = CYCLES_TO_WORD + 1;
-/// Likewise to a group's size and first SCPU, which the slots hear a cycle before its pairs: by then each knows what it
-/// takes.
+/// Likewise to the size and the first SCPU of a group, which the slots get one cycle before its pairs: each then knows
+/// which pair it takes.
 const RANKS_TO_GROUP: u32 = RANKS - 1;
-/// From a line offered to a group of its pairs on their way to the slots: the line in hand, and the decision's ranks.
+/// Cycles from a line that is offered to a group of its pairs that leaves for the slots: the line in hand, and the
+/// ranks of the decision.
 pub(super) const CYCLES_TO_ISSUE: u32 = 1 + RANKS;
-/// Groups that do not show yet in whether there is room when one is decided, that one among them.
+/// Groups whose results are not yet counted when the room for another one is checked, that one included.
 const UNSEEN_GROUPS: u32 = 3;
 
-/// Results that there must be room for when a group enters, a power of two: its own, and those of the groups before it
-/// that do not show yet.
+/// The number of results, a power of two, for which there must be room when a group enters: its own, and those of
+/// earlier groups that are not yet counted.
 pub(super) fn room_to_enter(spec: &Spec) -> u32 {
     spec.lanes() * UNSEEN_GROUPS.next_power_of_two()
 }
@@ -53,7 +54,7 @@ pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let turn = graph.register("turn", SCPU_BITS, 0);
     let lines_left = Countdown::new(&graph, "lines_left", COUNT_BITS);
     let (some_left, last_is_next) = (lines_left.any, lines_left.one);
-    // Whatever a link brings that nobody asked for: no more than the job's.
+    // Even if the link brings data that was not requested, no more than the job's lines are taken.
     let line_valid = (offered & some_left).named("line_comes");
     let of_full = graph.constant(place_bits, u128::from(per_line - 1));
     let next_last = last_is_next.select(last_place, of_full).named("next_last");
@@ -87,7 +88,7 @@ pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let take = (line_valid & (line_done | !*in_hand)).named("take");
     in_hand.next(!start & (take | (*in_hand & !line_done)));
     last.next_if(take, next_last);
-    // In the next line, where the one in hand is done; after the last there is none, and it does not matter.
+    // In the next line, if the present one is finished; after the last line there is none, and the value is not used.
     let place_after = |pairs: u32| if per_line == 1 { place.same(0) } else { after(pairs).low(place_bits) };
     let next_place = by_group(&go, place_after).named("next_place");
     place.next((start | !*in_hand).select(place.same(0), next_place));
@@ -149,8 +150,8 @@ pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     graph.finish()
 }
 
-/// What `of` the number of pairs comes to that go. What each number would come to is known beforehand; which it is
-/// comes last.
+/// `of` applied to the number of pairs that enter. Its value is computed for each possible number; the number itself
+/// selects last.
 fn by_group<'g>(go: &[Signal<'g>], of: impl Fn(u32) -> Signal<'g>) -> Signal<'g> {
     (1..).zip(go).fold(of(0), |fewer, (pairs, go)| go.select(of(pairs), fewer))
 }

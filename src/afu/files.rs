@@ -1,4 +1,4 @@
-//! What stands beside the Verilog: what simulators, synthesisers and integrators read.
+//! The files beside the Verilog: for simulators, synthesis tools and integrators.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -69,7 +69,7 @@ impl Afu {
         format!("{}\ncreate_clock -period {:.3} -name clk [get_ports clk]\n", self.clock_comment(), self.period_ns())
     }
 
-    /// The list of Verilog files, with what each tool calls it by.
+    /// The list of Verilog files, with the command of each tool.
     fn list(&self, names: &[&str]) -> String {
         let (top, list) = (self.top_name(), file_list(&self.spec().config));
         let files: String = names.iter().map(|name| format!("{name}\n")).collect();
@@ -125,7 +125,7 @@ impl Afu {
         if let Some(target) = spec.target {
             manifest["target"] = json!(target);
         }
-        // What a target's blocks are named: another target's flow cannot read these.
+        // The names of a target's blocks: another target's flow cannot read them.
         let primitives: BTreeSet<&str> =
             self.top().hierarchy().iter().filter_map(|module| module.primitive).map(Primitive::name).collect();
         if !primitives.is_empty() {

@@ -1,8 +1,8 @@
-//! Responses come in any order, and what they answer goes on in order: marks of those that came, the oldest first.
+//! Responses arrive in any order, and what they answer leaves in order: marks for answered requests, the oldest first.
 
 use crate::hdl::{Graph, Signal};
 
-/// From a response to what it answers being known to have come: [`awaited`](super::awaited) registers that it came.
+/// Cycles from a response to its mark: [`awaited`](super::awaited) registers that it came.
 pub(super) const CYCLES_TO_COME: u32 = super::awaited::CYCLES_TO_ANSWER + 1;
 
 /// A response to the request in `slot`.
@@ -11,12 +11,12 @@ pub(super) struct Arrival<'g> {
     pub(super) slot: Signal<'g>,
 }
 
-/// Whether the oldest of `slots` (a power of two) slots, used in turn from 0 at `start` on, is answered and goes: in a
-/// cycle in which `may_go` is set. A slot is used again only after it went.
+/// True if the oldest of `slots` (a power of two) slots is answered and leaves, in a cycle in which `may_go` is set.
+/// Slots are used in turn from 0 at `start`; a slot is used again only after it left.
 ///
 /// `answered` is set a cycle after a response came that a request waits for; `slot` is the response's in the cycle in
-/// which it came. The marks lie by age and move up when the oldest goes, so that nobody looks for the oldest among all
-/// slots.
+/// which it came. The marks are ordered by age and move up when the oldest leaves, so that no
+/// search for the oldest is needed.
 pub(super) fn goes_in_order<'g>(
     graph: &'g Graph,
     slots: u32,

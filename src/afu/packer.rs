@@ -1,5 +1,5 @@
-//! The packer: takes records in their order and packs them into lines. Where a record comes back for every pair it also
-//! counts what they are; where only contacts do, the [sieve](super::sieve) has counted.
+//! The packer: takes records in order and packs them into lines. If a record comes back for every pair, it also counts
+//! contacts and invalid pairs; with `--results hits`, the [sieve](super::sieve) counts them.
 
 use std::sync::Arc;
 
@@ -8,11 +8,11 @@ use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
 use super::{COUNT_BITS, Spec, status};
 
-/// From a group's records to the line that they fill: shifted to their place, merged.
+/// Cycles from the records of a group to the line that they fill: shifted into place, merged.
 pub(super) const CYCLES_TO_LINE: u32 = 2;
-/// As many more for a last line that is not full.
+/// Additional cycles for a last line that is not full.
 pub(super) const CYCLES_TO_FLUSH: u32 = 2;
-/// To what is known of a job without pairs: that all has come.
+/// Cycles until a job without pairs is known to be complete.
 pub(super) const CYCLES_TO_NOTHING: u32 = 1;
 
 /// Builds the module `contact_afu_packer`.
@@ -23,7 +23,7 @@ pub(super) fn packer(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     }
 }
 
-/// Results of a cycle in order of pairs, a record for each.
+/// Results of a cycle in the order of the pairs, one record each.
 fn of_all(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new("contact_afu_packer");
     graph.about("packs results into destination lines, counts contacts and invalid pairs");

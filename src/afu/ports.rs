@@ -1,4 +1,4 @@
-//! PORTS.md: what a stranger needs to drive the AFU.
+//! PORTS.md: everything that is needed to drive the AFU.
 
 use std::fmt::Write as _;
 
@@ -38,7 +38,7 @@ impl Afu {
         out + &self.shell().protocol(self) + "\n" + &self.records()
     }
 
-    /// Which numbers of SCPUs there can be.
+    /// The possible numbers of SCPUs, in words.
     fn scpus(&self) -> String {
         let spec = self.spec();
         let mut out = format!("`SCPUS` (1 to {MAX_SCPUS}) is a Verilog parameter. ");

@@ -1,4 +1,5 @@
-//! Turns at an interval above 1: an SCPU's pairs come a multiple of the interval apart, whatever made the feeder wait.
+//! Turns at an interval above 1: the pairs of an SCPU are a multiple of the interval apart, however long the feeder
+//! waited.
 //!
 //! A phase counter runs freely through the interval. Where a line has L pairs, SCPUs 0 to L − 1 take theirs in phase 0
 //! alone, the next L in phase 1, and so on round: a group stays within such a block. With N SCPUs an interval of II
@@ -18,12 +19,12 @@ pub(super) struct Rounds<'g> {
     /// The phase in which the SCPU in turn takes a pair.
     turn_phase: Register<'g>,
     scpus: Signal<'g>,
-    /// Whether it is that phase.
+    /// True in that phase.
     pub may_go: Signal<'g>,
 }
 
 impl<'g> Rounds<'g> {
-    /// The turns of `scpus` SCPUs. `None` at an interval of 1: every cycle will do then.
+    /// The turns of `scpus` SCPUs; `None` at an interval of 1, where every cycle is suitable.
     pub fn new(graph: &'g Graph, spec: &Spec, scpus: Signal<'g>, turn: Signal<'g>) -> Option<Self> {
         let (interval, lanes) = (spec.config.interval, spec.lanes());
         if interval <= 1 {
@@ -37,7 +38,7 @@ impl<'g> Rounds<'g> {
         Some(Self { graph, interval, lanes, turn, turn_phase, scpus, may_go })
     }
 
-    /// Whether a group from the present turn on may have a pair on that lane.
+    /// True if a group that begins with the present turn may have a pair on this lane.
     pub fn admits(&self, lane: u32) -> Signal<'g> {
         let reach = self.turn.extend(SCPU_BITS + 1).plus(u128::from(lane));
         let exists = reach.less_than(self.scpus.extend(SCPU_BITS + 1));
@@ -47,7 +48,7 @@ impl<'g> Rounds<'g> {
         }
     }
 
-    /// Whether a group of so many pairs is the last of its block.
+    /// True if a group of this number of pairs is the last of its block.
     pub fn ends_block(&self, pairs: u32) -> Signal<'g> {
         match self.within() {
             None => self.graph.constant(1, u128::from(pairs > 0)),
@@ -55,7 +56,7 @@ impl<'g> Rounds<'g> {
         }
     }
 
-    /// Takes the next turn's phase along: `wraps` when turns begin anew with this group, `ends_block` when its block
+    /// Takes the next turn's phase along: `wraps` when turns restart with this group, `ends_block` when its block
     /// ends.
     pub fn advance(&self, start: Signal<'g>, ends_block: Signal<'g>, wraps: Signal<'g>) {
         let moved = ends_block.named("ends_block").select(following(*self.turn_phase, self.interval), *self.turn_phase);

@@ -1,5 +1,5 @@
-//! The sieve: where only contacts come back, gives each its pair's number and moves those of a cycle together, in their
-//! order; counts contacts and invalid pairs.
+//! The sieve, for `--results hits`: gives each contact its pair's number, moves the contacts of a cycle together in
+//! order, and counts contacts and invalid pairs.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use super::{COUNT_BITS, Spec, status};
 #[derive(Clone, Copy)]
 struct Lane<'g> {
     valid: Signal<'g>,
-    /// Lanes it has still to move.
+    /// Number of lanes that it still has to move.
     distance: Signal<'g>,
     entry: Signal<'g>,
 }
@@ -29,7 +29,7 @@ pub(super) fn sieve(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
 
     let start = graph.input("start", 1);
     let count = graph.input("count", COUNT_BITS);
-    // It comes a cycle before what it counts.
+    // It comes one cycle before the results that it counts.
     let group = graph.input("group", group_bits).registered("group_here");
     let mut records = Vec::new();
     let mut contacts = Vec::new();
@@ -65,7 +65,7 @@ pub(super) fn sieve(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
         row[0].entry = row[0].entry.delay(1);
     }
 
-    // How many contacts there are travels beside them; how many pairs were none is known at once.
+    // The number of contacts travels beside them; the number of pairs without contact is known at once.
     let mut put = hits;
     let mut on_its_way = graph.constant(1, 0);
     for rank in 0..ranks(lanes) {
@@ -83,8 +83,8 @@ pub(super) fn sieve(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     graph.finish()
 }
 
-/// What is in a lane after a step of the compaction: the contact `2^step` lanes on if it moves that far, else the
-/// lane's own if it stays.
+/// The content of a lane after a step of the compaction: the contact from `2^step` lanes on if it moves that far, else
+/// the lane's own contact if it stays.
 fn moved<'g>(row: &[Lane<'g>], lane: usize, step: u32) -> Lane<'g> {
     let own = row[lane];
     let stays = own.valid & !own.distance.bit(step);

@@ -39,7 +39,7 @@ pub(super) fn slot(spec: &Spec, scpu: &Arc<Module>) -> Result<Arc<Module>, Build
         chosen = here.select(pairs.slice(number * layout.pair_bits(), layout.pair_bits()), chosen);
     }
     let unit = if spec.config.interval > 1 {
-        // The pair stays until the next one; the SCPU hears of it a cycle before.
+        // The pair stays until the next one; the SCPU gets its valid bit one cycle ahead.
         let in_group = graph.input("in_group", group_bits);
         let width = SCPU_BITS.max(group_bits);
         let takes = in_lane.extend(width).less_than(in_group.extend(width)).registered("takes");

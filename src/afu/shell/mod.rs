@@ -1,4 +1,4 @@
-//! What stands around the core: a shell is a value behind `ShellDesign`, and `of` alone knows which there are.
+//! Shells around the core. A shell is a value behind `ShellDesign`; only `of` lists them.
 
 mod line;
 pub mod spl2;
@@ -12,7 +12,7 @@ use crate::hdl::{BuildErrors, Module};
 use super::port::Ports;
 use super::{Afu, Spec};
 
-/// What is a shell's own of an AFU.
+/// The part of an AFU that its shell decides.
 pub(super) trait ShellDesign: Debug + Sync {
     /// The name of the top module.
     fn top_name(&self) -> &'static str;
@@ -23,12 +23,12 @@ pub(super) trait ShellDesign: Debug + Sync {
     /// The top module's ports.
     fn ports(&self, spec: &Spec) -> Ports;
 
-    /// The input that holds a top in reset that resets itself, and the level at which it does.
+    /// For a top that resets itself: the input that holds it in reset, and its active level.
     fn held(&self) -> Option<(&'static str, u128)> {
         None
     }
 
-    /// What PORTS.md says of how the ports are used.
+    /// The section of PORTS.md about the use of the ports.
     fn protocol(&self, afu: &Afu) -> String;
 
     /// The test bench.
@@ -48,7 +48,7 @@ pub(super) struct BenchText {
     pub(super) first_line: usize,
 }
 
-/// The shell of that name. There is none of `axi` yet, which [`crate::config::Config::check`] refuses.
+/// The shell of this name; `axi` does not exist yet, and [`crate::config::Config::check`] refuses it.
 pub(super) fn of(shell: Shell) -> &'static dyn ShellDesign {
     match shell {
         Shell::Spl2 => &spl2::Spl2,

@@ -32,7 +32,7 @@ impl ShellDesign for Line {
 
     fn bench(&self, afu: &Afu) -> BenchText {
         let Ports { inputs, outputs } = self.ports(afu.spec());
-        // What the bench gives ports that it has no signal of the same name for.
+        // Connections of ports for which the bench has no signal of the same name.
         let value = |name| match name {
             "rst_n" => "~rst",
             "source" => "SOURCE",

@@ -1,11 +1,11 @@
-//! How jobs go over the line port, for PORTS.md.
+//! The protocol of the line port, for PORTS.md.
 
 use std::fmt::Write as _;
 
 use crate::afu::{Afu, EPOCH_BITS, JobError};
 use crate::config::Results;
 
-/// How a job goes on the line port, and when.
+/// The protocol of a job on the line port, with its timing.
 pub(super) fn protocol(afu: &Afu) -> String {
     let spec = afu.spec();
     let hits = spec.config.results == Results::Hits;

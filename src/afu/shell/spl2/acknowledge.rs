@@ -1,4 +1,4 @@
-//! Write responses come on either receive channel, or on both at once; the core takes one a cycle.
+//! Write responses come on either receive channel, or on both at once; the core takes one per cycle.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use crate::afu::counter::up_down;
 use crate::afu::{EPOCH_BITS, Spec};
 
 /// Builds the module `spl2_acknowledge`. Channel 0 goes straight to the core; channel 1 waits for a cycle in which
-/// channel 0 brings nothing. As many can wait as writes can be outstanding, and those of other jobs are dropped before.
+/// channel 0 is idle. As many can wait as writes can be outstanding, and those of other jobs are dropped before.
 pub(super) fn acknowledge(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new("spl2_acknowledge");
     graph.about("brings write responses of two channels to the core, one a cycle");

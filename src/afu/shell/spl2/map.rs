@@ -9,7 +9,7 @@ use std::fmt::Write as _;
 use crate::afu::JobError;
 use crate::hdl::{Graph, Signal};
 
-/// Says which accelerator this is: DSM line 0, and again in the status. It never changes.
+/// Identity of the accelerator, in DSM line 0 and in the status. It never changes.
 pub const AFU_ID: u128 = 0xf885_f921_48fc_4b0b_8fd1_f127_a3a0_b8e2;
 /// The version of this map: it changes with every change that software must know of. `CHANGELOG.md` has the rule.
 pub const VERSION: u32 = 2;
@@ -20,10 +20,10 @@ pub const START_WORD: u32 = 0x406C_CCFF;
 pub const IDLE_POLL_CYCLES: u32 = 32;
 /// The same while a job runs: only an abort can be found.
 pub(crate) const RUNNING_POLL_CYCLES: u32 = 512;
-/// Cycles after which a read of the shell's own that was not answered is asked again.
+/// Cycles after which an unanswered read of the shell is repeated.
 pub(crate) const RETRY_CYCLES: u32 = 1 << 16;
 
-/// DSM line that says who this is.
+/// DSM line of the identity.
 pub(crate) const IDENTITY_LINE: u32 = 0;
 /// DSM line of latencies.
 pub const LATENCY_LINE: u32 = 4;
@@ -33,7 +33,7 @@ pub const PERFORMANCE_LINE: u32 = 5;
 pub const SCRATCH_LINE: u32 = 63;
 /// Bytes of the DSM.
 pub const DSM_BYTES: u64 = 4096;
-/// Context line that says where the buffers are.
+/// Context line with the addresses of the buffers.
 pub(crate) const POINTERS_LINE: u32 = 0;
 /// Context line that the AFU writes when a job has ended.
 pub(crate) const STATUS_LINE: u32 = 1;
@@ -47,9 +47,9 @@ pub(crate) const DATA_LINE: u32 = 1;
 pub struct Csr {
     /// Byte offset.
     pub offset: u32,
-    /// Its name.
+    /// The name.
     pub name: &'static str,
-    /// What it does.
+    /// The purpose.
     pub meaning: &'static str,
 }
 
@@ -78,9 +78,9 @@ pub struct Field {
     pub low: u32,
     /// Its width, up to 128 bits.
     pub bits: u32,
-    /// Its name.
+    /// The name.
     pub name: &'static str,
-    /// What it holds.
+    /// The content.
     pub meaning: &'static str,
 }
 
@@ -133,9 +133,9 @@ pub mod identity {
     pub const AFU_ID: Field = field(0, 128, "afu_id", "says which accelerator this is");
     /// [`super::VERSION`].
     pub const VERSION: Field = field(4, 32, "version", "of this map");
-    /// What the core says of itself.
+    /// The core's capability word.
     pub const CAPABILITY: Field = field(6, 64, "capability", "as the core's port of that name");
-    /// All of them.
+    /// All fields.
     pub const FIELDS: [Field; 3] = [AFU_ID, VERSION, CAPABILITY];
 }
 
@@ -151,7 +151,7 @@ pub mod latency {
         field(1, 32, "first_write", "cycles from the job's start to its first write request");
     /// The job.
     pub const SEQUENCE: Field = field(2, 32, "sequence", "of the job");
-    /// All of them.
+    /// All fields.
     pub const FIELDS: [Field; 3] = [FIRST_READ, FIRST_WRITE, SEQUENCE];
 }
 
@@ -170,7 +170,7 @@ pub mod performance {
         field(4, 64, "cycles_output", "of these, cycles in which pairs waited for room for their results");
     /// The job.
     pub const SEQUENCE: Field = field(6, 32, "sequence", "of the job");
-    /// All of them.
+    /// All fields.
     pub const FIELDS: [Field; 4] = [BUSY, INPUT, OUTPUT, SEQUENCE];
 }
 
@@ -178,9 +178,9 @@ pub mod performance {
 pub mod scratch {
     use super::{Field, field};
 
-    /// What was written last.
+    /// The last value written.
     pub const VALUE: Field = field(0, 32, "scratch", "what the scratch register was written with");
-    /// All of them.
+    /// All fields.
     pub const FIELDS: [Field; 1] = [VALUE];
 }
 
@@ -188,14 +188,14 @@ pub mod scratch {
 pub mod pointers {
     use super::{Field, field};
 
-    /// Where the control memory is, and behind it the pairs.
+    /// Address of the control memory, which the pairs follow.
     pub const SOURCE: Field = field(2, 64, "source", "pSource: virtual byte address of the control memory");
-    /// Where contacts go.
+    /// Address of the first result.
     pub const DESTINATION: Field = field(4, 64, "destination", "pDest: virtual byte address of the first result");
-    /// How long both are.
+    /// Length of both buffers, in lines.
     pub const LINES: Field =
         field(6, 32, "lines", "lines from pSource on, and likewise from pDest on, that the AFU may touch");
-    /// All of them.
+    /// All fields.
     pub const FIELDS: [Field; 3] = [SOURCE, DESTINATION, LINES];
 }
 
@@ -222,7 +222,7 @@ pub mod control {
         "cycles without a response, while a request waits for one, that end the job with error 4; 0: never, but for an \
          aborted job, which ends after 65 536 such cycles",
     );
-    /// All of them.
+    /// All fields.
     pub const FIELDS: [Field; 6] = [START, COUNT, MODE, SEQUENCE, ABORT, WATCHDOG];
 }
 
@@ -232,7 +232,7 @@ pub mod status {
 
     /// The job has ended.
     pub const DONE: Field = field(0, 1, "done", "the job has ended");
-    /// How.
+    /// The error code.
     pub const ERROR: Field =
         Field { low: 8, bits: JobError::BITS, name: "error", meaning: "how: 0 well, else one of the errors below" };
     /// The job.
@@ -241,21 +241,21 @@ pub mod status {
     pub(crate) const CONTACTS: Field = field(2, 32, "contacts", "contacts of the job");
     /// Invalid pairs.
     pub(crate) const INVALID: Field = field(3, 32, "invalid", "invalid pairs of the job");
-    /// The first of them.
+    /// Number of the first invalid pair.
     pub(crate) const FIRST_INVALID: Field =
         field(4, 32, "first_invalid", "number of the first invalid pair, all ones if there is none");
     /// [`super::VERSION`].
     pub const VERSION: Field = field(5, 32, "version", "of this map");
-    /// What the core says of itself.
+    /// The core's capability word.
     pub const CAPABILITY: Field = field(6, 64, "capability", "as in DSM line 0");
     /// [`super::AFU_ID`].
     pub const AFU_ID: Field = field(8, 128, "afu_id", "as in DSM line 0");
-    /// All of them.
+    /// All fields.
     pub const FIELDS: [Field; 9] =
         [DONE, ERROR, SEQUENCE, CONTACTS, INVALID, FIRST_INVALID, VERSION, CAPABILITY, AFU_ID];
 }
 
-/// The lines by what they are: name, who writes, fields.
+/// The lines: name, writer, fields.
 pub const LINES: [(&str, &str, &[Field]); 7] = [
     ("DSM line 0: identity", "AFU", &identity::FIELDS),
     ("DSM line 4: latency", "AFU", &latency::FIELDS),

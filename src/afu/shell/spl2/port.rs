@@ -4,7 +4,7 @@ use super::words::{RX_HEADER_BITS, TX_HEADER_BITS};
 use crate::afu::port::interface;
 
 interface! {
-    /// What SPL says.
+    /// Inputs from SPL.
     SplInputs(spec) {
         reset_n: T => 1, "the system's reset, active low; at least one cycle";
         spl_enable: T => 1, "low: everything but the registers rests, as in reset";
@@ -25,7 +25,7 @@ interface! {
 }
 
 interface! {
-    /// What the AFU asks of SPL.
+    /// Outputs to SPL.
     SplOutputs(spec) {
         afu_tx_rd_valid: T => 1, "a read request, taken in this cycle";
         afu_tx_rd_hdr: T => TX_HEADER_BITS,

@@ -1,7 +1,7 @@
 //! The registers that the host writes, and the DSM lines that answer them.
 //!
-//! They are written while SPL is not enabled yet, and on some platforms while it still holds its reset: so nothing here
-//! is reset with the rest, but for the system's reset, and a new reset of SPL's takes the addresses back.
+//! They are written before SPL is enabled, and on some platforms while it still holds its reset. So only the system's
+//! reset resets them; a new reset by SPL clears the addresses.
 
 use std::sync::Arc;
 
@@ -19,7 +19,7 @@ pub(super) fn registers(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new("spl2_registers");
     graph.about("takes CSR writes, answers them in the DSM");
     let power_on = graph.input("power_on", 1);
-    // Heard a cycle later, all of it; what is written is known by then.
+    // All inputs are registered; the written value is known by then.
     let heard = |name: &str, width: u32| graph.input(name, width).delay(1).named(&format!("{name}_heard"));
     let spl_reset = heard("spl_reset", 1);
     let (cfg_valid, cfg_offset) = (graph.input("cfg_valid", 1), graph.input("cfg_offset", MDATA_BITS));
@@ -56,7 +56,7 @@ pub(super) fn registers(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let scratch_due = flag(&graph, "scratch_due", scratch_written, clear | (take_scratch & !scratch_written));
     let due = graph.data_register("due", 1);
     due.next(dsm_valid & (identity_due | scratch_due) & !granted & !power_on);
-    // What is granted was chosen a cycle before.
+    // The granted line was chosen one cycle before.
     let was_identity = identity_due.delay(1).named("was_identity");
     take_identity.drive(granted & was_identity);
     take_scratch.drive(granted & !was_identity);

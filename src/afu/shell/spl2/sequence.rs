@@ -1,5 +1,5 @@
-//! A transaction's sequence: reads the context, polls the control memory, gives the core its job, and when that has
-//! ended writes counters, fence and status; then the next.
+//! The sequence of a transaction: reads the context, polls the control memory, starts the core's job, and at its end
+//! writes counters, fence and status; then it polls for the next job.
 
 use std::sync::Arc;
 
@@ -32,7 +32,7 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let read_number = graph.input("read_number", NUMBER_BITS);
     let response_valid = graph.input("rsp_valid", 1);
     let response_mdata = graph.input("rsp_mdata", MDATA_BITS);
-    // A cycle after the other two.
+    // One cycle after the other two.
     let received = graph.input("rsp_data", spec.line_bits);
     let write_granted = graph.input("wr_granted", 1);
     let told = JobOutputs::of(spec);
@@ -55,10 +55,10 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let (at_context, at_poll, at_start, at_run) = (*context, *poll, *begin, *run);
     let (at_latency, at_performance, at_fence, at_status) = (*latencies, *counters, *fence, *report);
 
-    // The shell's own reads, one at a time. A response that is overdue is given up and asked for again.
+    // The shell's own reads, one at a time. If a response is overdue, the read is repeated.
     let waiting = graph.register("waiting", 1, 0);
     let expected = graph.data_register("expected", NUMBER_BITS);
-    // A line is compared with what is waited for before it counts.
+    // A response is compared with the outstanding read before it is used.
     let response = received.delay(1).named("compared");
     let own = (response_valid & is_own(response_mdata, expected.value())).delay(1).named("is_own");
     let answered = graph.register("answered", 1, 0);
@@ -76,7 +76,7 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let asks = ((at_context | (at_poll & !switches) | at_run) & may_ask).registered("asks");
 
     // The context, read again between jobs when its address was written again: what a job reads and writes, its status
-    // included, is always of one context. Nothing that was asked for is on its way then.
+    // included, is always of one context. No request is in flight then.
     let is_due = graph.register("context_due", 1, 0);
     switches.drive(at_poll & *is_due & !*waiting & !read_granted & !asks);
     let reads_context = ((*idle & context_valid) | switches).named("reads_context");
@@ -118,7 +118,7 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let poll_pause = |cycles: u32| constant(pause_bits, cycles.into());
     let next_pause = runs.select(poll_pause(map::RUNNING_POLL_CYCLES), poll_pause(map::IDLE_POLL_CYCLES));
     let counted = pause.any().select(pause.minus(1), *pause);
-    // The next job is looked for as soon as one has ended.
+    // Polling for the next job begins as soon as one has ended.
     let set_pause = (answered & !at_context).select(next_pause, counted);
     pause.next(set_pause.gate(!at_status));
 
@@ -131,7 +131,7 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     };
     let source_fits = fits(layout.pairs_per_line(), map::DATA_LINE, "source_lines");
     let destination_fits = fits(layout.contacts_per_line(), 0, "destination_lines");
-    // How many lines contacts alone will take nobody knows: the core keeps to the room there is.
+    // The number of lines of hits is not known in advance; the core keeps to the available room.
     let only_hits = spec.config.results == Results::Hits;
     let fits = if only_hits { source_fits } else { (source_fits & destination_fits).named("fits") };
     let start = (at_start & fits).named("start");
@@ -196,7 +196,7 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let to_dsm = (at_latency | at_performance).named("to_dsm");
     let dsm_address = at_latency.select(dsm(map::LATENCY_LINE), dsm(map::PERFORMANCE_LINE));
     let dsm_data = at_latency.select(latency_line, performance_line);
-    // Without a DSM there are no counters; and a fence might never pass the write whose response the core gave up on.
+    // Without a DSM there are no counters. A fence might never complete if the core gave up on a write's response.
     let gave_up = core_error.is(JobError::Watchdog.code().into()).named("gave_up");
     let fences = (at_fence & !(gave_up & ran)).named("fences");
     let written = (write_granted | (to_dsm & !dsm_valid) | (at_fence & !fences)).named("written");

@@ -1,4 +1,4 @@
-//! The top of the shell: the core, and around it what brings SPL2's port and the core's together.
+//! The top of the shell: the core, and the parts that connect it to SPL2's port.
 
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ pub(super) fn afu_top(spec: &Spec, core: &Arc<Module>) -> Result<Arc<Module>, Bu
     let spl = SplInputs::of(spec).map(|port| port.input(&graph));
     let (rd_valid, data) = (spl.spl_rx_rd_valid, spl.spl_rx_data);
 
-    // Everything but the registers rests until SPL is enabled, and begins anew when it is enabled again.
+    // Everything except the registers is in reset until SPL is enabled, and restarts when it is enabled again.
     graph.reset_by((!spl.reset_n | spl.spl_reset | !spl.spl_enable).delay(1).named("in_reset"));
     let power_on = (!spl.reset_n).named("power_on");
     let mdata0 = spl.spl_rx_hdr0.low(MDATA_BITS);
@@ -88,7 +88,7 @@ pub(super) fn afu_top(spec: &Spec, core: &Arc<Module>) -> Result<Arc<Module>, Bu
             ("mdata_1", mdata1),
         ],
     );
-    // What is received is compared with the epoch before the core hears of it.
+    // A response is compared with the epoch before it is passed to the core.
     let core_answered = (rd_valid & is_core_s(mdata0, epoch, slot_bits)).delay(1).named("core_answered");
     let (rd_ready, wr_ready) = (wire("core_rd_ready", 1), wire("core_wr_ready", 1));
     let never = graph.constant(1, 0);

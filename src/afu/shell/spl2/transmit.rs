@@ -1,9 +1,9 @@
-//! Requests: from the core and the shell into SPL's two transmit ports, with a number in each by which its response is
-//! known.
+//! Requests: from the core and the shell into SPL's two transmit ports, each with a number that identifies its
+//! response.
 //!
-//! A request stands in the port's register for one cycle and is taken there and then; none is put there while SPL's
-//! queue is almost full. What must not be confused over a reset of SPL's is not reset by it: numbers and epoch count
-//! on.
+//! A request stands in the port's register for one cycle, in which SPL takes it. No request is put there while SPL's
+//! queue is almost full. Numbers and epoch are not reset by SPL's reset but continue, so that responses from before a
+//! reset are recognised.
 
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let start = graph.input("start", 1);
     let rd_almostfull = graph.input("rd_almostfull", 1);
     let wr_almostfull = graph.input("wr_almostfull", 1);
-    // The core has given up: what it still asks is taken from it and dropped, since SPL may never have room again.
+    // After the core has given up, its remaining requests are taken and dropped: SPL may never have room again.
     let discard = graph.input("discard", 1).delay(1).named("discards");
 
     let epoch = graph.data_register("epoch", SHELL_EPOCH_BITS);
@@ -116,8 +116,8 @@ pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     graph.finish()
 }
 
-/// Whose turn a port is, known a cycle before: the shell's where it has a request, else the core's. SPL takes four
-/// requests more once it is almost full; two come.
+/// The turn of a port, known one cycle ahead: the shell's if it has a request, else the core's. SPL accepts four more
+/// requests once it is almost full; at most two come.
 #[derive(Clone, Copy)]
 struct Turns<'g> {
     turn: Register<'g>,
@@ -139,8 +139,8 @@ impl<'g> Turns<'g> {
         Self { turn, open, almost_full, own_turn: *turn, own: *turn & room, core: *open }
     }
 
-    /// The next turn is the shell's if it `wants` it, though what it wants may be granted in this one: it asks seldom.
-    /// The core's, whatever room there is, while what it asks is discarded.
+    /// The next turn is the shell's if it `wants` it, even if its request may be granted in this one: its requests are
+    /// rare. The core's, whatever room there is, while what it asks is discarded.
     fn connect(self, wants: Signal<'g>, discard: Signal<'g>, power_on: Signal<'g>) {
         self.turn.next(wants & !power_on);
         self.open.next(discard | (!wants & !self.almost_full));

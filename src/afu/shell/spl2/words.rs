@@ -1,4 +1,4 @@
-//! The words of the HARP v1 port: headers, types, and what a request's `mdata` says.
+//! The words of the HARP v1 port: headers, types, and the fields of `mdata`.
 
 use crate::hdl::{Graph, Signal};
 
@@ -6,9 +6,9 @@ use crate::hdl::{Graph, Signal};
 pub(super) const TX_HEADER_BITS: u32 = 99;
 /// Bits of a receive header.
 pub(super) const RX_HEADER_BITS: u32 = 18;
-/// Bits of `mdata`; SPL keeps the uppermost for itself.
+/// Bits of `mdata`; SPL uses the uppermost.
 pub(super) const MDATA_BITS: u32 = 14;
-/// Bits of `mdata` below the one that tells the shell's own requests from the core's.
+/// Bits of `mdata` below the one that separates the shell's own requests from the core's.
 pub(super) const NUMBER_BITS: u32 = 12;
 /// Bits of the shell's epoch, whose low part is the core's.
 pub(super) const SHELL_EPOCH_BITS: u32 = 6;
@@ -57,13 +57,13 @@ pub(super) fn core_mdata<'g>(epoch: Signal<'g>, slot: Signal<'g>) -> Signal<'g> 
     epoch.concat(slot).extend(MDATA_BITS)
 }
 
-/// Whether a response's `mdata` is that of a request of the core's in this epoch.
+/// True if a response's `mdata` belongs to a request of the core in this epoch.
 pub(super) fn is_core_s<'g>(mdata: Signal<'g>, epoch: Signal<'g>, slot_bits: u32) -> Signal<'g> {
     let above = slot_bits + SHELL_EPOCH_BITS;
     mdata.slice(above, MDATA_BITS - above).is_zero() & mdata.slice(slot_bits, SHELL_EPOCH_BITS).equals(epoch)
 }
 
-/// Whether a response's `mdata` is that of the shell's own request of this number.
+/// True if a response's `mdata` belongs to the shell's own request of this number.
 pub(super) fn is_own<'g>(mdata: Signal<'g>, number: Signal<'g>) -> Signal<'g> {
     mdata.drop_low(NUMBER_BITS).is(0b01) & mdata.low(NUMBER_BITS).equals(number)
 }
