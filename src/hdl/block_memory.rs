@@ -22,7 +22,7 @@ pub enum Ports {
 /// `primitive`, if there is one.
 ///
 /// # Errors
-/// What the graph recorded.
+/// Returns the first error that the graph recorded.
 pub(crate) fn block_memory(
     depth: u32,
     width: u32,

@@ -18,7 +18,7 @@ const WIDTH: RangeInclusive<u32> = 24..=36;
 /// as primitives and where one fits; nothing elsewhere.
 ///
 /// # Errors
-/// What the graph recorded.
+/// Returns the first error that the graph recorded.
 pub fn delay_block(cycles: u32, width: u32, model: &DelayModel) -> Result<Option<Arc<Module>>, BuildErrors> {
     match model.memory_primitive {
         Some(primitive) if CYCLES.contains(&cycles) && WIDTH.contains(&width) => {

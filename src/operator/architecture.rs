@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::{Domain, Operator, corrected};
 use crate::hdl::DelayModel;
 
-/// How correctly rounded roots and reciprocals are made. It changes no bit of what they give.
+/// The architecture of correctly rounded roots and reciprocals. It does not change any bit of their results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Architecture {
@@ -22,7 +22,7 @@ impl Architecture {
         if model.multiplier_registers > 0 && !model.spares_multipliers { Self::Table } else { Self::Recurrence }
     }
 
-    /// Its name in reports.
+    /// The name in reports.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Table => "table",

@@ -16,7 +16,7 @@ pub fn at_most<'g>(a: Signal<'g>, b: Signal<'g>, domain: Domain) -> Signal<'g> {
     !(greater | unordered)
 }
 
-/// Whether a > b, if neither is a NaN; and whether one is.
+/// Two bits: a > b if neither is a NaN, and whether one is a NaN.
 fn order<'g>(a: Signal<'g>, b: Signal<'g>, domain: Domain) -> (Signal<'g>, Signal<'g>) {
     let (a, b) = (Operand::unpack(a, domain, "a"), Operand::unpack(b, domain, "b"));
     let b_is_smaller = b.magnitude().less_than(a.magnitude()).named("b_magnitude_is_smaller");

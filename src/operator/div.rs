@@ -14,7 +14,7 @@ pub fn div<'g>(a: Signal<'g>, b: Signal<'g>, domain: Domain) -> Signal<'g> {
 
     // Two significands in [1, 2) have a quotient in (1/2, 2): one digit before the point, and as many behind it as
     // make significand and guard bit when the first is 0.
-    // Toward zero nobody asks for the guard bit.
+    // Rounding toward zero needs no guard bit.
     let toward_zero = domain.rounding() == Rounding::TowardZero;
     let guard_bits = u32::from(!toward_zero);
     let precision = domain.significand_bits();
@@ -60,7 +60,7 @@ pub fn div<'g>(a: Signal<'g>, b: Signal<'g>, domain: Domain) -> Signal<'g> {
 pub struct Step<'g> {
     /// What is left: at least −divisor and less than it, in two's complement with one bit more than it.
     pub partial: Signal<'g>,
-    /// Whether that is negative: the divisor does not fit, the digit is 0.
+    /// True if it is negative: the divisor does not fit, and the digit is 0.
     pub negative: Signal<'g>,
 }
 

@@ -5,7 +5,7 @@ use std::fmt;
 use super::parts::Rounding;
 use crate::number::{self, Format};
 
-/// Which values of a format an operator's operands take. What never comes costs no logic.
+/// The values of a format that an operator's operands can take. Excluded values cost no logic.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Values {
     /// Every word.
@@ -60,12 +60,12 @@ impl Domain {
         self.values
     }
 
-    /// Whether no infinity and no NaN comes.
+    /// True if operands are neither infinite nor NaN.
     pub const fn is_finite(self) -> bool {
         !matches!(self.values, Values::Any)
     }
 
-    /// Whether operands and result are zero or normal.
+    /// True if operands and result are zero or normal.
     pub const fn is_normal(self) -> bool {
         matches!(self.values, Values::Normal)
     }
@@ -75,7 +75,7 @@ impl Domain {
         self.format.keeps_subnormals() && !self.is_normal()
     }
 
-    /// How results are rounded.
+    /// The rounding of results.
     pub const fn rounding(self) -> Rounding {
         match self.format.rounding() {
             number::Rounding::Nearest => Rounding::NearestEven,

@@ -33,7 +33,7 @@ use crate::hdl::{BuildErrors, DelayModel, Graph, Module, cut};
 use crate::number::{self, Format, Roots};
 use parts::Rounding;
 
-/// What an operator computes, of operands `a`, `b`, `c` and `d` in one format.
+/// The function of an operator, of operands `a`, `b`, `c` and `d` in one format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Operator {
     /// a + b.
@@ -44,12 +44,12 @@ pub enum Operator {
     AddToOdd,
     /// a − b, rounded to odd.
     SubToOdd,
-    /// a + b in another format, of which both are made numbers first.
+    /// a + b in another format, to which both are converted first.
     WideningAdd {
         /// The format of the result.
         to: Format,
     },
-    /// a − b in another format, of which both are made numbers first.
+    /// a − b in another format, to which both are converted first.
     WideningSub {
         /// The format of the result.
         to: Format,
@@ -73,7 +73,7 @@ pub enum Operator {
     Greater,
     /// a ≤ b; one bit.
     AtMost,
-    /// Whether √a, rounded, is greater than b; one bit.
+    /// One bit: the rounded √a is greater than b.
     RootExceeds,
     /// a² − (b² + c² + d²) in another format, from exact squares in a window; NaN where that leaves a doubt.
     SquareExcess {
@@ -88,7 +88,7 @@ pub enum Operator {
 }
 
 impl Operator {
-    /// How many operands it has: 1, 2 or 4.
+    /// The number of operands: 1, 2 or 4.
     pub const fn operands(self) -> usize {
         match self {
             Self::SquareExcess { .. } => 4,
@@ -97,7 +97,7 @@ impl Operator {
         }
     }
 
-    /// The format of its result for operands in `format`; nothing where the result is one bit.
+    /// The format of the result for operands in `format`; `None` if the result is one bit.
     pub const fn result_format(self, format: Format) -> Option<Format> {
         match self {
             Self::Greater | Self::AtMost | Self::RootExceeds => None,
@@ -169,7 +169,7 @@ impl Operator {
     }
 }
 
-/// The names of an operator's inputs, of which it has the first ones.
+/// The names of inputs; an operator has the first ones.
 pub const INPUTS: [&str; 4] = ["a", "b", "c", "d"];
 
 /// The operator as a combinational module: its [`INPUTS`], and the output `result`. It is made for the values in
@@ -178,7 +178,7 @@ pub const INPUTS: [&str; 4] = ["a", "b", "c", "d"];
 /// Of several architectures it has that of [`Architecture::Recurrence`].
 ///
 /// # Errors
-/// What the graph recorded.
+/// Returns the first error that the graph recorded.
 pub fn build(operator: Operator, domain: impl Into<Domain>) -> Result<Arc<Module>, BuildErrors> {
     build_as(operator, domain, Architecture::Recurrence)
 }
@@ -186,7 +186,7 @@ pub fn build(operator: Operator, domain: impl Into<Domain>) -> Result<Arc<Module
 /// [`build`] in a certain architecture, where the operator has it for such values.
 ///
 /// # Errors
-/// What the graph recorded.
+/// Returns the first error that the graph recorded.
 pub fn build_as(
     operator: Operator,
     domain: impl Into<Domain>,
@@ -236,7 +236,7 @@ pub fn build_as(
 /// latency is in the module.
 ///
 /// # Errors
-/// What the graph recorded, or what the cut could not meet.
+/// Returns the first error that the graph recorded, or an error if the cut cannot meet the clock.
 pub fn pipelined(
     operator: Operator,
     domain: impl Into<Domain>,
@@ -247,7 +247,7 @@ pub fn pipelined(
     cut(&combinational, model, clock_mhz)
 }
 
-/// How correct roots are made, where there are several ways.
+/// The architecture of correct roots, if there are several.
 fn about_architecture(operator: Operator, domain: Domain, architecture: Architecture) -> Option<&'static str> {
     if !Architecture::Table.is_possible(operator, domain) {
         return None;

@@ -1,4 +1,4 @@
-//! Whether the rounded root of one number is greater than another, without the root.
+//! Compares the rounded root of one number with another number, without computing the root.
 //!
 //! RN(√a) > b exactly when a > (b + ½ulp(b))², or equal and b odd: the middle between b and the next number has one
 //! bit more than b, and its square is taken whole. Toward zero the next number itself stands in the middle's place, and

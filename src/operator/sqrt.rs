@@ -32,7 +32,7 @@ pub fn radicand_of<'g>(significand: Signal<'g>, is_odd: Signal<'g>) -> Signal<'g
     is_odd.select(significand.append_zeros(1), significand.extend(significand.width() + 1))
 }
 
-/// Digits of the root. Toward zero nobody asks for what is below the significand.
+/// Number of digits of the root. Rounding toward zero needs none below the significand.
 pub fn digits(domain: Domain) -> u32 {
     domain.significand_bits() + u32::from(domain.rounding() != Rounding::TowardZero)
 }

@@ -1,4 +1,4 @@
-//! What an operator must give, computed with integers alone.
+//! The correct result of an operator, computed with integers only.
 
 use super::Operator;
 use crate::number::{Format, Number, Soft, Window};

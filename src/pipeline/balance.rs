@@ -1,4 +1,4 @@
-//! When each value of a kernel is there: as soon as possible, so that operands that meet are of the same cycle.
+//! The cycle of each value of a kernel: as soon as possible, with operands that meet delayed to the same cycle.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -9,7 +9,7 @@ use crate::kernel::{Arithmetic, Filtered, contact, exact};
 use crate::number::{Format, Number};
 use crate::query::{Fields, Flow, GROUPS, Query, Rule};
 
-/// What decides a kernel's bits and stages.
+/// The parameters that decide a kernel's bits and stages.
 #[derive(Clone, Debug)]
 pub struct Settings {
     /// The query.
@@ -29,7 +29,7 @@ pub struct Settings {
     /// Whether `valid` comes a cycle after the pair, from logic that has to look at all of it. Not at an interval above
     /// 1.
     pub valid_is_late: bool,
-    /// How long the target takes for each operation.
+    /// The target's delay model.
     pub model: DelayModel,
 }
 
@@ -45,7 +45,7 @@ pub struct Settings {
 /// which stay for the interval; and the output `invalid_pair` is the complement of `valid`.
 ///
 /// # Errors
-/// What a graph recorded, or a clock no operator can be cut for.
+/// Returns the first error that a graph recorded, or an error if an operator cannot be cut for the clock.
 pub fn contact_kernel(settings: &Settings) -> Result<Arc<Module>, BuildErrors> {
     let kernel = trace(settings.query.shape().kernel, |ports| read(ports, settings))?;
     match settings.interval {
@@ -58,7 +58,7 @@ pub fn contact_kernel(settings: &Settings) -> Result<Arc<Module>, BuildErrors> {
 /// [`crate::operator::Values::Normal`].
 ///
 /// # Errors
-/// What a graph recorded.
+/// Returns the first error that a graph recorded.
 pub fn is_normal(query: Query, arithmetic: Arithmetic, fields: Fields) -> Result<bool, BuildErrors> {
     let settings = Settings {
         query,

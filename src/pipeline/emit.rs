@@ -14,7 +14,7 @@ impl Kernel {
     /// come out of registers, in the same cycle. What no output needs is left out; inputs stay as ports.
     ///
     /// # Errors
-    /// What a graph recorded, or a clock no operator can be cut for.
+    /// Returns the first error that a graph recorded, or an error if an operator cannot be cut for the clock.
     pub fn pipeline(&self, model: &DelayModel, clock_mhz: f64) -> Result<Arc<Module>, BuildErrors> {
         let kernel = &self.with_widening_sums();
         let schedule = Schedule::new(kernel, |(operator, domain)| pipelined(operator, domain, model, clock_mhz))?;
@@ -37,10 +37,10 @@ struct Emitter<'a, 'g> {
     schedule: &'a Schedule,
     graph: &'g Graph,
     names: Names,
-    /// Values when they come to be.
+    /// Values in the cycle in which they are computed.
     signals: Vec<Option<Signal<'g>>>,
     model: &'a DelayModel,
-    /// Values as of a cycle, out of block memories.
+    /// Values delayed to a cycle by block memories.
     waiting: BTreeMap<(ValueId, u32), Signal<'g>>,
 }
 
@@ -66,8 +66,8 @@ impl<'g> Emitter<'_, 'g> {
         Ok(())
     }
 
-    /// The value as of `cycle`, at or after the one it comes to be in. The graph makes one chain of a value's delays,
-    /// but for those that fill a block memory.
+    /// The value delayed to `cycle`, at or after the one in which it is computed. The graph makes one chain of a
+    /// value's delays, but for those that fill a block memory.
     fn at(&mut self, id: ValueId, cycle: u32) -> Result<Option<Signal<'g>>, BuildErrors> {
         let Some(signal) = self.signals[id.index()] else { return Ok(None) };
         if let Some(known) = self.waiting.get(&(id, cycle)) {

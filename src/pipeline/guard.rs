@@ -1,4 +1,4 @@
-//! What no output shows: results that are selected away whenever they are wrong.
+//! Finds results that no output shows when they are wrong, because a selection replaces them.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -38,7 +38,7 @@ impl Guards {
     }
 }
 
-/// Whether some output depends on one of the `wrong` values when the Booleans are as supposed.
+/// True if some output depends on one of the `wrong` values under the assumed Booleans.
 fn shows(kernel: &Kernel, wrong: &[ValueId], supposed: &Supposed) -> bool {
     let mut known = HashMap::new();
     kernel.outputs.iter().any(|(_, id)| depends(kernel, *id, wrong, supposed, &mut known))

@@ -17,7 +17,7 @@ impl ValueId {
     }
 }
 
-/// What a value is.
+/// The type of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Kind {
     Number(Format),
@@ -40,7 +40,7 @@ impl Kind {
     }
 }
 
-/// Where a value comes from. All but operators is glue: a level of plain logic, without a register of its own.
+/// The source of a value. Everything but operators is glue: one level of plain logic, without a register of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Source {
     /// An input, by its number, which keeps two inputs apart.
@@ -72,7 +72,7 @@ pub(super) struct Promise {
     pub not_negative: bool,
 }
 
-/// What a kernel computes: operators and the values between them. Made by [`super::trace`].
+/// The graph of a kernel: operators and the values between them. [`super::trace`] makes it.
 #[derive(Clone, Debug)]
 pub struct Kernel {
     pub(super) name: String,
@@ -236,7 +236,7 @@ impl Kernel {
         super::range::Ranges::of(self).short
     }
 
-    /// Which values some output needs.
+    /// The values that some output needs.
     pub(super) fn live(&self) -> Vec<bool> {
         let mut live = vec![false; self.values.len()];
         for (_, id) in &self.outputs {

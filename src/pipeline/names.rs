@@ -6,7 +6,7 @@ use super::kernel::{Kernel, Kind, Source, ValueId};
 use crate::number::Soft;
 use crate::operator::Operator;
 
-/// A longer derived name tells less than a number.
+/// Above this length, a number is clearer than a derived name.
 const LONGEST: usize = 44;
 
 /// The names of one kernel.
@@ -38,7 +38,7 @@ impl Names {
         Self { signals, instances: HashSet::new() }
     }
 
-    /// The value's name; nothing for unnamed glue.
+    /// The value's name; `None` for unnamed glue.
     pub fn signal(&self, id: ValueId) -> Option<&str> {
         self.signals[id.index()].as_deref()
     }

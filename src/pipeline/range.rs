@@ -1,4 +1,4 @@
-//! How small and how large the values of a kernel can be, worked out on its graph; and which operators therefore need
+//! The smallest and largest values of a kernel, derived on its graph; and which operators therefore need
 //! no logic for infinities, NaN, subnormals, overflow and underflow.
 
 use super::guard::Guards;
@@ -6,7 +6,7 @@ use super::kernel::{Kernel, Kind, Source, ValueId};
 use crate::number::{Format, Soft};
 use crate::operator::{Domain, Operator, Values};
 
-/// What is known of a number that is neither infinite nor NaN. Bounds are powers of two, which rounding respects.
+/// The known range of a number that is neither infinite nor NaN. Bounds are powers of two, which rounding keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Range {
     /// It is a multiple of 2^unit.
@@ -32,7 +32,7 @@ impl Range {
         Self { unit, smallest, largest: format.bias() + 1, not_negative, may_be_zero: true }
     }
 
-    /// One number; nothing if it is infinite or NaN.
+    /// The range of one number; `None` if it is infinite or NaN.
     fn constant(format: Format, bits: u128) -> Option<Self> {
         let magnitude = bits & !format.sign_mask();
         let not_negative = bits == magnitude || magnitude == 0;
@@ -49,7 +49,7 @@ impl Range {
         Some(Self { unit, smallest, largest: exponent + 1, not_negative, may_be_zero: false })
     }
 
-    /// A result that is at least 2^smallest and at most 2^largest, rounded to so many fraction bits.
+    /// A result that is at least 2^smallest and at most 2^largest, rounded to this number of fraction bits.
     fn rounded(smallest: i32, largest: i32, fraction: i32) -> Self {
         Self { unit: smallest - fraction, smallest, largest, not_negative: false, may_be_zero: false }
     }
@@ -68,7 +68,7 @@ impl Range {
         let both = self.either(other);
         let is_sum_of_magnitudes = !subtract && both.not_negative;
         Self {
-            // What cancels leaves at least a unit.
+            // Cancellation leaves at least one unit.
             smallest: if is_sum_of_magnitudes { both.smallest } else { both.unit },
             largest: both.largest + 1,
             not_negative: is_sum_of_magnitudes,
@@ -87,7 +87,7 @@ impl Range {
         }
     }
 
-    /// Of numbers that are not zero.
+    /// The bounds of numbers that are not zero.
     fn quotient(self, divisor: Self, fraction: i32) -> Self {
         let (smallest, largest) = (self.smallest - divisor.largest, self.largest - divisor.smallest);
         Self {
@@ -118,16 +118,16 @@ impl Range {
 /// An operator as it is built: which one, and for which values.
 pub(super) type Unit = (Operator, Domain);
 
-/// What the analysis finds.
+/// The result of the analysis.
 pub(super) struct Ranges {
-    /// Each operator's unit, by value; nothing for other values.
+    /// The unit of each operator, by value; `None` for other values.
     pub units: Vec<Option<Unit>>,
     /// The first operator with room for improvement, and why.
     pub short: Option<String>,
 }
 
 impl Ranges {
-    /// Looks at every value once. Nothing is known of inputs of which nothing was promised.
+    /// Analyses every value once. Inputs without a promise have no known range.
     pub fn of(kernel: &Kernel) -> Self {
         let guards = Guards::new(kernel);
         let mut known: Vec<Option<Range>> = Vec::with_capacity(kernel.values.len());

@@ -1,4 +1,4 @@
-//! What a kernel is made of, for a manifest.
+//! The operators of a kernel, for a manifest.
 
 use serde::Serialize;
 
@@ -9,7 +9,7 @@ use crate::hdl::{Module, Op};
 pub struct OperatorUse {
     /// The name of its module.
     pub module: String,
-    /// How many instances there are.
+    /// The number of instances.
     pub instances: usize,
     /// Cycles from its operands to its result.
     pub latency: u32,

@@ -16,7 +16,7 @@ thread_local! {
 /// Tells kernels apart, in all threads.
 static SERIAL: AtomicU64 = AtomicU64::new(0);
 
-/// What wires and bits are inside: a value of one kernel, or nothing after an error.
+/// The content of wires and bits: a value of one kernel, or `None` after an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Handle {
     kernel: u64,
@@ -101,7 +101,7 @@ impl Ports {
         });
     }
 
-    /// An input that carries a number.
+    /// A numeric input.
     #[track_caller]
     pub fn input(&self, name: &str, format: Format) -> Wire {
         Wire(input(name, Kind::Number(format), Location::caller()))
@@ -135,7 +135,7 @@ impl Ports {
         }
     }
 
-    /// An output that carries a number.
+    /// A numeric output.
     #[track_caller]
     pub fn output(&self, name: &str, value: Wire) {
         output(name, value.0, Location::caller());

@@ -32,7 +32,7 @@ impl Kernel {
         kernel
     }
 
-    /// What a value was converted from, and its format.
+    /// The source of a converted value, and its format.
     fn converted(&self, id: ValueId) -> Option<(ValueId, Format)> {
         match (self.value(id).source, self.value(id).operands.as_slice()) {
             (Source::Operator(Operator::Convert { .. }, from), &[whole]) => Some((whole, from)),

@@ -1,5 +1,5 @@
-//! Roots for numbers that come a few cycles apart: a digit recurrence of which one rank of registers does several
-//! steps, a step or a few a cycle, in place of a rank for each.
+//! Roots for numbers that arrive a few cycles apart: a digit recurrence in which one rank of registers does several
+//! steps, one or a few per cycle, instead of one rank for each step.
 
 mod rank;
 mod recip;
@@ -25,7 +25,7 @@ use crate::number::Roots;
 /// smallest.
 ///
 /// # Errors
-/// What a graph recorded, or a clock it cannot be cut for.
+/// Returns the first error that a graph recorded, or an error if it cannot be cut for the clock.
 pub fn iterative(
     operator: Operator,
     domain: impl Into<Domain>,

@@ -12,7 +12,7 @@ const MOST_STEPS: u32 = 8;
 /// The smallest by `area` of those that do one step a cycle, two, and so on as far as the clock allows.
 ///
 /// # Errors
-/// What a graph recorded, or a clock it cannot be cut for.
+/// Returns the first error that a graph recorded, or an error if it cannot be cut for the clock.
 pub(super) fn smallest(
     recurrence: &dyn Recurrence,
     operator: Operator,
@@ -37,7 +37,7 @@ pub(super) fn smallest(
     best.ok_or_else(|| BuildErrors(Vec::new()))
 }
 
-/// How long so many steps take, and the choice behind them.
+/// Delay of this number of steps, and of the choice after them.
 fn longest(recurrence: &dyn Recurrence, model: &DelayModel, at_once: u32) -> Result<f64, BuildErrors> {
     let graph = Graph::new("steps");
     let (first, kept) = recurrence.begin(graph.input("a", recurrence.domain().width()));
@@ -60,7 +60,7 @@ fn longest(recurrence: &dyn Recurrence, model: &DelayModel, at_once: u32) -> Res
 struct Unit<'a> {
     recurrence: &'a dyn Recurrence,
     operator: Operator,
-    /// Steps a cycle.
+    /// Steps per cycle.
     at_once: u32,
     interval: u32,
 }
@@ -137,7 +137,7 @@ impl Unit<'_> {
         Ok(module)
     }
 
-    /// What comes before the first step.
+    /// The logic before the first step.
     fn before(&self, name: &str) -> Result<Arc<Module>, BuildErrors> {
         let graph = Graph::new(format!("{name}_first"));
         graph.about(format!("what comes before the steps of {}", self.operator.name()));
@@ -148,7 +148,7 @@ impl Unit<'_> {
         graph.finish()
     }
 
-    /// What comes behind the last.
+    /// The logic after the last step.
     fn after(&self, name: &str) -> Result<Arc<Module>, BuildErrors> {
         let recurrence = self.recurrence;
         let widths = {

@@ -1,4 +1,4 @@
-//! What a digit recurrence is: a state, a step of it, and what comes before and after.
+//! A digit recurrence: a state, a step, and the logic before and after.
 
 use crate::hdl::Signal;
 use crate::operator::Domain;
@@ -8,7 +8,7 @@ pub(super) trait Recurrence {
     /// The values it is made for.
     fn domain(&self) -> Domain;
 
-    /// How many steps it takes.
+    /// The number of steps.
     fn steps(&self) -> u32;
 
     /// From the operand: the state before the first step, and what all steps need as it is.
@@ -20,7 +20,7 @@ pub(super) trait Recurrence {
     /// The state a step later, as wide as before. The step's number is for names.
     fn step<'g>(&self, state: &[Signal<'g>], kept: &[Signal<'g>], index: u32) -> Vec<Signal<'g>>;
 
-    /// What counts of the state after all steps.
+    /// The part of the state that is the result after all steps.
     fn outcome<'g>(&self, state: &[Signal<'g>]) -> Vec<Signal<'g>>;
 
     /// The result's word, from the operand and the outcome.

@@ -1,4 +1,4 @@
-//! How many bits are clear above the leading one: a tree of two-way choices, as deep as the logarithm of the width.
+//! Counts the leading zeros by a tree of two-way choices, whose depth is the logarithm of the width.
 
 use crate::hdl::Signal;
 

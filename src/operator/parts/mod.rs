@@ -1,4 +1,4 @@
-//! What operators are put together from: operands taken apart, shifters, counters, products, rounding.
+//! Parts of operators: unpacking of operands, shifters, counters, products, rounding.
 
 mod leading_zeros;
 mod normalise;

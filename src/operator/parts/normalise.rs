@@ -8,7 +8,7 @@ use crate::hdl::Signal;
 pub struct Normalised<'g> {
     /// As wide as the value; the top bit is set unless the value is zero.
     pub value: Signal<'g>,
-    /// How many leading zeros there were; of zero the most that can be counted.
+    /// The number of leading zeros; for zero the largest count.
     pub zeros: Signal<'g>,
 }
 

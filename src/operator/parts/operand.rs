@@ -35,7 +35,7 @@ impl<'g> Operand<'g> {
         }
     }
 
-    /// What the names of its fields begin with.
+    /// The prefix of the names of its fields.
     pub fn prefix(&self) -> &'static str {
         self.prefix
     }
@@ -87,7 +87,7 @@ impl<'g> Operand<'g> {
         self.name(leading.concat(self.fraction), "significand")
     }
 
-    /// As [`Operand::significand`], but where operands are zero or normal that of zero is zero.
+    /// As [`Operand::significand`]; if operands are zero or normal, the significand of zero is zero.
     #[track_caller]
     pub fn true_significand(&self) -> Signal<'g> {
         if self.domain.is_normal() {

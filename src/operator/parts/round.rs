@@ -33,7 +33,7 @@ impl Unrounded<'_> {
     }
 }
 
-/// The fields of a result that nothing but rounding is left of.
+/// The fields of a result that only has to be rounded.
 #[derive(Clone, Copy)]
 pub struct Fields<'g> {
     /// The exponent field.
@@ -46,7 +46,7 @@ pub struct Fields<'g> {
     pub sticky: Signal<'g>,
     /// One bit: the exponent is one more than said. Only where results are normal and rounded to nearest.
     pub doubled: Option<Signal<'g>>,
-    /// How what lies below the fraction is rounded off.
+    /// Rounds off what lies below the fraction.
     pub rounding: Rounding,
     /// One bit: too large for the format.
     pub overflow: Signal<'g>,
@@ -54,7 +54,7 @@ pub struct Fields<'g> {
     pub underflow: Signal<'g>,
 }
 
-/// How what does not fit is rounded off.
+/// Rounds off what does not fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rounding {
     /// To the nearest, ties to even.

@@ -5,7 +5,7 @@ use super::{Fields, Rounding, Unrounded, round};
 use crate::hdl::Signal;
 use crate::operator::Domain;
 
-/// Which special value the operands call for. At most one of `infinity` and `zero` is set; `nan` beats both.
+/// The special result of the operands. At most one of `infinity` and `zero` is set; `nan` takes precedence.
 #[derive(Clone, Copy)]
 pub struct Special<'g> {
     /// The canonical NaN.
@@ -56,7 +56,7 @@ pub fn pack<'g>(domain: Domain, sign: Signal<'g>, fields: Fields<'g>, special: S
     (sign & !nan).named("sign").concat(magnitude)
 }
 
-/// Which special value a result is, and its fields.
+/// The special value of a result, and its fields.
 struct Chosen<'g> {
     /// One bit: any at all.
     is_special: Signal<'g>,
@@ -72,7 +72,7 @@ impl<'g> Chosen<'g> {
         let overflow = overflow & !special.zero;
         let zero = (special.zero | underflow).named("is_zero");
         if domain.rounding() == Rounding::TowardZero {
-            // What is too large becomes the largest finite number.
+            // A value that is too large becomes the largest finite number.
             let infinity = special.infinity.named("is_infinity");
             let largest = (overflow & !infinity & !nan).named("is_largest");
             let beyond = nan | infinity;

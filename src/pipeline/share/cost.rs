@@ -1,4 +1,4 @@
-//! What sharing costs and saves, in look-up tables of four inputs: an estimate to choose by, never a figure.
+//! Estimates what sharing costs and saves, in LUTs of four inputs. The estimate guides choices and is never reported.
 
 use crate::hdl::{Module, Node, NodeId, Op};
 
@@ -29,7 +29,7 @@ fn registers(module: &Module) -> u32 {
     own + module.instances.iter().map(|instance| registers(&instance.module)).sum::<u32>()
 }
 
-/// A choice among so many words of `width` bits: trees of two-way choices, of which a table takes two.
+/// A choice among this number of words of `width` bits: trees of two-way choices, two per LUT.
 pub(super) fn choice(words: u32, width: u32) -> u32 {
     words.saturating_sub(1) * width / 2
 }

@@ -13,7 +13,7 @@ use crate::pipeline::kernel::{Kernel, Source, ValueId};
 use crate::pipeline::names::Names;
 
 /// # Errors
-/// What the graph recorded.
+/// Returns the first error that the graph recorded.
 pub(super) fn emit(kernel: &Kernel, kinds: &Kinds, plan: &Plan) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new(kernel.name.as_str());
     kernel.about.iter().for_each(|line| graph.about(line.as_str()));
@@ -86,7 +86,7 @@ impl<'g> Emitter<'_, 'g> {
         &self.kinds.all[self.plan.instances[instance].kind]
     }
 
-    /// Instances with registers before them, of which nothing is connected yet: results come back as operands.
+    /// Instances with registers before them, not yet connected: results come back as operands.
     fn shared(&self) -> Vec<Shared<'g>> {
         let mut made: Vec<Shared<'g>> = Vec::new();
         for (instance, of) in self.plan.instances.iter().enumerate() {

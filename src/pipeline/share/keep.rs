@@ -4,7 +4,7 @@ use std::collections::{BTreeSet, HashMap};
 
 use crate::hdl::{Graph, Signal};
 
-/// From so many registers in a row on, a memory takes less.
+/// From this number of registers in a row on, a memory is smaller.
 const LONGEST_ROW: u32 = 6;
 /// Narrower values always wait in registers.
 const NARROWEST_MEMORY: u32 = 12;
@@ -21,7 +21,7 @@ pub(super) struct Phases<'g> {
 }
 
 impl<'g> Phases<'g> {
-    /// A ring of `interval` phases that begins anew a cycle after `take`.
+    /// A ring of `interval` phases that restarts one cycle after `take`.
     pub fn new(graph: &'g Graph, interval: u32, take: Signal<'g>) -> Self {
         let registers: Vec<_> = (0..interval).map(|index| graph.register(&format!("phase_{index}"), 1, 0)).collect();
         let now: Vec<_> = registers.iter().map(|register| register.value()).collect();
@@ -95,7 +95,7 @@ impl<'g> Keeper<'g> {
         this
     }
 
-    /// Which of its forms is there in `cycle`.
+    /// The form in which it exists in `cycle`.
     pub fn form(&self, cycle: u32) -> Option<usize> {
         self.0.iter().position(|kept| (kept.first..=kept.last).contains(&cycle))
     }

@@ -1,4 +1,4 @@
-//! Which operations can take turns in one instance, and how many instances there are.
+//! Kinds of operations that can take turns in one instance, and the number of instances.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -12,7 +12,7 @@ use crate::pipeline::range::{Ranges, Unit};
 
 /// Operations of one module.
 pub(super) struct Kind {
-    /// What computes them.
+    /// The unit that computes them.
     pub unit: Unit,
     pub module: Arc<Module>,
     /// By value.
@@ -21,7 +21,7 @@ pub(super) struct Kind {
 }
 
 impl Kind {
-    /// Whether some instance serves more than one operation: its operands are then chosen, and registered.
+    /// True if some instance serves more than one operation: its operands are then multiplexed and registered.
     pub fn is_shared(&self) -> bool {
         (self.instances as usize) < self.uses.len()
     }
@@ -43,7 +43,7 @@ pub(super) struct Kinds {
 
 impl Kinds {
     /// # Errors
-    /// What the library could not make.
+    /// Returns an error if the library cannot make a unit.
     pub fn of(kernel: &Kernel, interval: u32, library: &mut Library<'_>) -> Result<Self, BuildErrors> {
         let units = Ranges::of(kernel).units;
         let live = kernel.live();
@@ -60,7 +60,7 @@ impl Kinds {
             negated[index] = sum.is_some();
             uses.entry((sum.unwrap_or(operator), domain)).or_default().push(index);
         }
-        // What a more general operator can do as well.
+        // Operations that a more general operator can do as well.
         for (special, general) in [(Operator::AddMagnitudes, Operator::Add), (Operator::Square, Operator::Mul)] {
             merge(&mut uses, special, general, interval, library)?;
         }

@@ -56,7 +56,7 @@ impl Kernel {
     /// cycle, [`Module::latency`] cycles after the first in which the inputs are.
     ///
     /// # Errors
-    /// What a graph recorded, or a clock no operator can be cut for.
+    /// Returns the first error that a graph recorded, or an error if an operator cannot be cut for the clock.
     pub fn pipeline_every(
         &self,
         model: &DelayModel,

@@ -39,7 +39,7 @@ impl<'g> Chooser<'g> {
     }
 }
 
-/// Whether the choice of the next cycle has that bit.
+/// True if the choice of the next cycle has this bit.
 fn wanted<'g>(graph: &'g Graph, phases: &Phases<'g>, by_phase: &[Option<usize>], bit: u32) -> Signal<'g> {
     let has = |index: &Option<usize>| index.is_some_and(|index| index >> bit & 1 == 1);
     let of = by_phase.iter().zip(&phases.next).filter(|(index, _)| has(index)).map(|(_, next)| *next);

@@ -18,14 +18,14 @@ pub(in crate::pipeline) struct Instance {
 /// A time table of one pair. Cycle 0 is that of the inputs.
 pub(super) struct Plan {
     pub interval: u32,
-    /// When each value's operands meet. Nothing for what is dead, and for constants.
+    /// The cycle in which each value's operands meet; `None` for dead code and constants.
     pub start: Vec<Option<u32>>,
-    /// When each value is there first; nothing as above.
+    /// The first cycle in which each value is available; `None` as above.
     pub ready: Vec<Option<u32>>,
     pub instances: Vec<Instance>,
     /// Index into `instances`, by value.
     pub instance: Vec<Option<usize>>,
-    /// When all outputs are there.
+    /// The cycle in which all outputs are available.
     pub latency: u32,
     /// Levels of glue between the last register and the value.
     glue: Vec<u32>,
@@ -127,7 +127,7 @@ impl Plan {
         }
     }
 
-    /// How many cycles a value is there by itself: inputs are held.
+    /// The number of cycles for which a value is held on its own, as inputs are.
     pub fn stays(&self, kernel: &Kernel, index: usize) -> u32 {
         if matches!(kernel.values[index].source, Source::Input(_)) { self.interval } else { 1 }
     }
@@ -149,7 +149,7 @@ impl Plan {
     }
 }
 
-/// How long it is from each value's operands to the outputs, at least.
+/// The minimum number of cycles from each value's operands to the outputs.
 fn heights(kernel: &Kernel, kinds: &Kinds) -> Vec<u32> {
     let mut height = vec![0; kernel.values.len()];
     for index in (0..kernel.values.len()).rev() {
