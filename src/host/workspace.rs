@@ -224,7 +224,7 @@ mod tests {
     fn impossible_sizes_say_what_to_do() {
         let text = |result: Result<Workspace, HostError>| result.unwrap_err().to_string();
         assert_eq!(text(Workspace::new(layout(), 0, 1)), "a workspace of 0 pages of 2 MB: expected 1 to 1024 pages");
-        assert!(text(Workspace::for_pairs(layout(), 1 << 33, 1)).contains("give it 1 to 1024"));
+        assert!(text(Workspace::for_pairs(layout(), 1 << 33, 1)).contains("expected 1 to 1024 pages"));
         let with = |source, destination, lines| {
             Workspace::new(layout(), 1, 1).unwrap().with_buffers(source, destination, lines).map(|it| it.capacity())
         };

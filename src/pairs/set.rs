@@ -164,7 +164,7 @@ mod tests {
             assert!(wrong.parse::<Set>().is_err(), "{wrong}");
         }
         let error = "diamond:many".parse::<Set>().unwrap_err().to_string();
-        assert_eq!(error, "set of pairs `diamond:many`: `many` must be a number from 1 to 100");
+        assert_eq!(error, "set of pairs `diamond:many`: expected a number from 1 to 100, found `many`");
     }
 
     #[test]

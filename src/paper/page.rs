@@ -150,7 +150,8 @@ mod tests {
     #[test]
     fn the_page_has_everything_and_loads_nothing() {
         let page = page(&example(), &claims(&Published::PAPER), &Published::PAPER);
-        assert_eq!(page.matches("<svg class=\"plot\"").count(), 3);
+        // Each of the three figures is drawn for a wide and for a narrow screen.
+        assert_eq!(page.matches("<svg class=\"plot\"").count(), 6);
         for text in ["4.98 ×", "15.7 % less time", "a &lt;processor&gt;", "afu paper --out", "90 000"] {
             assert!(page.contains(text), "{text}");
         }

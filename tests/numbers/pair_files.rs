@@ -354,7 +354,7 @@ fn an_absent_file_and_a_strange_name_are_refused() {
         pairs::load(Query::SphereSphere, "diamond:x", 0)
             .unwrap_err()
             .to_string()
-            .contains("`x` must be a number from 1 to 100")
+            .contains("expected a number from 1 to 100, found `x`")
     );
     assert!(
         pairs::load(Query::SphereSphere, "diamnd:3", 0).unwrap_err().to_string().ends_with("did you mean diamond:3?")

@@ -186,7 +186,7 @@ fn a_wrong_engine_is_an_error_and_never_a_contact() {
     let mut world = World::new(&ode).unwrap();
     let [first, second] = [0.0, 0.5].map(|x| world.add_sphere([x, 0.0, 0.0], 0.5, 1.0).unwrap());
     let error = world.contacts_by(&mut Broken).unwrap_err();
-    assert_eq!(error.to_string(), "the engine in the place of ODE's collider: it is broken");
+    assert_eq!(error.to_string(), "the engine that replaces ODE's collider: it is broken");
 
     let good = Reference::new(Format::WIDE, Fields::ALL).run(&world.record([first, second]));
     let says = |contacts: &[ContactRecord]| world.contacts_by(&mut Parrot(contacts.to_vec()));

@@ -58,7 +58,8 @@ fn a_quick_study_needs_no_synthesis() {
         assert_eq!(folder.join(file).is_file(), there, "{file}");
     }
     let page = std::fs::read_to_string(folder.join("report.html")).expect("the page");
-    assert_eq!(page.matches("<svg class=\"plot\"").count(), 2);
+    // Each picture is drawn for a wide and for a narrow screen.
+    assert_eq!(page.matches("<svg class=\"plot\"").count(), 4);
     assert!(page.contains("Left out: areas") && !page.contains("LUTs"), "no empty columns");
 
     // What another run left does not stay as if it were of this one.

@@ -83,15 +83,15 @@ fn a_port_that_does_not_fit_is_named() {
     let text = |error: SimulationError| error.to_string();
     assert_eq!(
         text(afu.input("rd_rsp_tag", 9).unwrap_err()),
-        "port `rd_rsp_tag`: expected an input of 9 bits, the model has an input of 10 bits"
+        "port `rd_rsp_tag`: expected an input of 9 bits, found an input of 10 bits in the model"
     );
     assert_eq!(
         text(afu.output("rd_rsp_tag", 10).unwrap_err()),
-        "port `rd_rsp_tag`: expected an output of 10 bits, the model has an input of 10 bits"
+        "port `rd_rsp_tag`: expected an output of 10 bits, found an input of 10 bits in the model"
     );
     assert_eq!(
         text(afu.input("nothing", 1).unwrap_err()),
-        "port `nothing`: expected an input of 1 bits, the model has no such port"
+        "port `nothing`: expected an input of 1 bits, found no such port in the model"
     );
     assert!(afu.output("wr_req_data", 256).is_err() && afu.clock("count").is_err());
 }
@@ -308,7 +308,7 @@ fn a_missing_tool_is_named_with_what_installs_it() {
     };
     let verilator = says(("AFU_VERILATOR", "/nowhere/verilator_bin"));
     assert!(verilator.starts_with("Verilator is missing (AFU_VERILATOR is `/nowhere/verilator_bin`"), "{verilator}");
-    assert!(verilator.contains("install it: scripts/setup"), "{verilator}");
+    assert!(verilator.contains("install it with: scripts/setup"), "{verilator}");
     let not_one = says(("AFU_VERILATOR", "/bin/true"));
     assert!(not_one.starts_with("Verilator is missing"), "{not_one}");
     let compiler = says(("CXX", "/nowhere/c++"));

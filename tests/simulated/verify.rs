@@ -56,7 +56,10 @@ fn one_radius_is_in_no_record_and_changes_no_bit() {
         let mut other = pairs.clone();
         other[7].0[7] = 0.5_f32.to_bits();
         let error = bench.run(&other, &LinkModel::ideal(), 1).expect_err("another radius").to_string();
-        assert!(error.starts_with("pair 7: its r2 is 0.5, and this AFU computes with radius 0.375"), "{error}");
+        assert!(
+            error.starts_with("pair 7: expected r2 = 0.375, the radius of all spheres (--radius), found 0.5"),
+            "{error}"
+        );
     }
 }
 
