@@ -41,7 +41,7 @@ pub fn claims(p: &Published) -> Vec<Claim> {
     let zero = 0.0_f32.sqrt();
     vec![
         Claim {
-            says: format!("a speed-up of {} %; {afu} ns a collision by the AFU against {ode} ns by ODE", p.speed_up_percent),
+            says: format!("a speed-up of {} %; {afu} ns per collision by the AFU against {ode} ns by ODE", p.speed_up_percent),
             place: "abstract, VI, VII",
             arithmetic: format!("({ode} − {afu}) / {ode} = {less:.1} % less time; {ode} / {afu} − 1 = {faster:.1} % faster"),
             follows: format!("{} % is neither", p.speed_up_percent),

@@ -61,12 +61,12 @@ impl Summary {
             row("f32 kernel in batch (measured)", self.batch_ns, self.speed_up_over_batch, self.crossover_over_batch),
         ];
         let title = format!(
-            "{} collisions; the link allows {:.2} ns each, and the AFU reaches {:.1} % of that, set-up apart",
+            "{} collisions; link limit {:.2} ns each, of which the AFU reaches {:.1} % without set-up",
             grouped(self.collisions as u64),
             self.link_limit_ns,
             100.0 * self.link_share
         );
-        format!("{title}\n{}", table(&["who", "ns a collision", "time over the AFU's", "AFU faster from"], rows))
+        format!("{title}\n{}", table(&["who", "ns per collision", "time over the AFU's", "AFU faster from"], rows))
     }
 }
 

@@ -3,9 +3,9 @@
 /// The figures in the paper's text. It has no table, and its plots no values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Published {
-    /// ns a collision by ODE (section VI, of Figure 7).
+    /// ns per collision by ODE (section VI, of Figure 7).
     pub ode_ns: f64,
-    /// ns a collision by the AFU (section VI, of Figure 7).
+    /// ns per collision by the AFU (section VI, of Figure 7).
     pub afu_ns: f64,
     /// Collisions above which the AFU is always better (section VI, of Figure 6).
     pub crossover: f64,

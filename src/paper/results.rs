@@ -141,7 +141,7 @@ pub struct Experiment {
 pub struct Summary {
     /// That number.
     pub collisions: usize,
-    /// ns a collision: ODE by the paper's rule, measured.
+    /// ns per collision: ODE by the paper's rule, measured.
     pub ode_rule_ns: f64,
     /// ODE in a loop, measured.
     pub ode_loop_ns: f64,
