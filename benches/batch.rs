@@ -1,8 +1,9 @@
 //! The batch kernel against a plain scalar loop, in one run: `cargo bench --bench batch`.
 //!
-//! The scalar loop is Algorithm 1 as one would write it by hand: an array of structures, `f32`, branches, compiled
-//! for the target's basic instruction set. Batches fit the cache (1024 pairs, 64 KiB in and out). Figures are medians.
-//! With `--check` the program fails unless AVX2 is at least 3 and AVX-512 at least 4 times as fast, on every mix.
+//! The scalar loop is Algorithm 1 as one would write it by hand: an array of structures, `f32`, branches, compiled for
+//! the target's basic instruction set. A batch fits in the cache (1024 pairs, 64 KiB of input and output). Figures are
+//! medians. With `--check` the program fails unless AVX2 is at least 3 times and AVX-512 at least 4 times as fast on
+//! every mix.
 
 use contact_afu::kernel::batch::{Batch, Level};
 use contact_afu::pairs::Set;
@@ -11,11 +12,11 @@ use std::hint::black_box;
 use std::time::Instant;
 
 const PAIRS: usize = 1024;
-/// Timings, of which the median counts, and passes over the batch in each.
+/// Number of timings, whose median is reported, and passes over the batch in each.
 const TIMINGS: usize = 101;
 const PASSES: usize = 40;
 
-/// Two spheres as a program would hold them.
+/// Two spheres as an ordinary program would store them.
 struct Pair {
     p1: [f32; 3],
     r1: f32,
@@ -58,7 +59,7 @@ fn scalar(pairs: &[Pair], contacts: &mut [Contact]) {
     }
 }
 
-/// Median nanoseconds a pair.
+/// Median time in ns per pair.
 fn time(mut pass: impl FnMut()) -> f64 {
     let mut timings: Vec<f64> = (0..TIMINGS)
         .map(|_| {
@@ -71,13 +72,13 @@ fn time(mut pass: impl FnMut()) -> f64 {
     timings[TIMINGS / 2]
 }
 
-/// Pairs that all touch, none of which does, and half of each in random order.
+/// Mixes of pairs: all touch, none touch, and half of each in random order.
 fn mixes() -> [(&'static str, Vec<PairRecord>); 3] {
     use contact_afu::kernel::Reference;
     use contact_afu::number::Format;
     use contact_afu::query::Flow;
     let reference = Reference::new(Format::BINARY32, Fields::HIT);
-    // The first of every ten random pairs is an ordinary one: numbers around 1.
+    // The first of every ten random pairs is ordinary, with numbers around 1.
     let ordinary = Set::Random(150_000).pairs(1).into_iter().step_by(10);
     let (real, fake): (Vec<_>, Vec<_>) = ordinary.partition(|pair| reference.run(pair).flow() == Some(Flow::Real));
     assert!(real.len() >= PAIRS && fake.len() >= PAIRS, "{} touch, {} do not", real.len(), fake.len());

@@ -1,6 +1,6 @@
-//! What a cold build of a model takes, N = 16 against N = 1: `cargo bench --bench build`. Each build has a new cache,
-//! so Verilator's runtime and the SCPU are compiled too. With `--check` the program fails unless N = 16 takes at most
-//! three times as long as N = 1, in CPU seconds of Verilator and the compiler (other programs' share does not count).
+//! Time of a cold build of a model, N = 16 against N = 1: `cargo bench --bench build`. Each build has a new cache, so
+//! Verilator's runtime and the SCPU are compiled too. With `--check` the program fails unless N = 16 takes at most
+//! three times as long as N = 1. Only CPU seconds of Verilator and the compiler count, not those of other programs.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -8,12 +8,12 @@ use std::time::Instant;
 
 use contact_afu::cosim::{Model, Source, Trace};
 
-/// How much longer N = 16 may take.
+/// Maximum ratio of the time for N = 16 to that for N = 1.
 const MOST: f64 = 3.0;
 
 type Failure = Box<dyn std::error::Error>;
 
-/// CPU seconds of the processes this one has waited for; on Linux, else none.
+/// CPU seconds of the child processes that this process has waited for; `None` if not on Linux.
 fn children_seconds() -> Option<f64> {
     let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
     // proc(5): cutime and cstime are fields 16 and 17, in ticks of 10 ms; the name, field 2, may hold spaces.
@@ -22,7 +22,7 @@ fn children_seconds() -> Option<f64> {
     Some((ticks()? + ticks()?) / 100.0)
 }
 
-/// CPU (where known) and wall seconds of a cold build.
+/// CPU seconds (if known) and wall-clock seconds of a cold build.
 fn build(scpus: u32, trace: Trace) -> Result<(f64, f64), Failure> {
     let rtl = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("rtl");
     let source = Source::from_folder(&rtl, "contact_afu")?.parameter("SCPUS", scpus.into());

@@ -1,10 +1,10 @@
 //! The accelerator beside software that does the same: `cargo bench --features ode,parry --bench peers`.
 //!
-//! All take the same pairs, the candidates of the paper's diamond of ten layers (12 354, of which 2 934 touch), eight
-//! times over: 98 832 pairs, more than a second-level cache holds. Software is measured on one thread of this machine,
-//! the median of many passes over data in the layout that it likes best. The accelerator is simulated: cycles of its
-//! Verilog at an assumed 200 MHz over a model of a link, from the start word to the status. Broad phase, packing and
-//! copying are left out for all. Prints the table of README.md and docs/paper.md.
+//! All take the same pairs: the candidates of the paper's diamond of ten layers (12 354 pairs; 2 934 touch), repeated
+//! eight times. These 98 832 pairs are more than a second-level cache holds. Software is measured on one thread of this
+//! machine: the median of many passes over data in its preferred layout. The accelerator is simulated: cycles of its
+//! Verilog at an assumed 200 MHz over a link model, from the start word to the status. Broad phase, packing and copying
+//! are left out for all. Prints the table of README.md and docs/paper.md.
 
 use contact_afu::config::Config;
 use contact_afu::kernel::batch::{Batch, Level};
@@ -21,7 +21,7 @@ const LAYERS: u32 = 10;
 const COPIES: usize = 8;
 const PASSES: usize = 41;
 
-/// Median nanoseconds per pair of a pass over so many pairs.
+/// Median time in ns per pair of passes over `pairs` pairs.
 fn median(pairs: usize, mut pass: impl FnMut()) -> f64 {
     pass();
     let mut times: Vec<f64> = (0..PASSES)
@@ -35,14 +35,14 @@ fn median(pairs: usize, mut pass: impl FnMut()) -> f64 {
     times[PASSES / 2]
 }
 
-/// The best kernel of this machine, in its own layout.
+/// The fastest kernel that this machine supports, in its own layout.
 fn simd(pairs: &[PairRecord]) -> (String, f64) {
     let (batch, mut contacts, level) = (Batch::from_pairs(pairs), Batch::zeros(pairs.len()), Level::best());
     let ns = median(pairs.len(), || level.run(black_box(&batch), black_box(&mut contacts), Fields::ALL));
     (format!("this crate's `f32` kernel, {}", level.name()), ns)
 }
 
-/// ODE's collider on spheres that it already has.
+/// ODE's collider on existing spheres.
 fn ode() -> Result<(String, f64), Box<dyn Error>> {
     let ode = Ode::start(Collider::Own)?;
     let simulation = Diamond::new(LAYERS, 0.0).build(&ode)?;
@@ -55,7 +55,7 @@ fn ode() -> Result<(String, f64), Box<dyn Error>> {
     Ok(("Open Dynamics Engine, `dCollide`, `f64`".to_owned(), ns))
 }
 
-/// parry on balls that it already has.
+/// parry on existing balls.
 #[cfg(feature = "parry")]
 fn parry(pairs: &[PairRecord]) -> (String, f64) {
     use parry3d::math::{Pose, Vector};
@@ -76,7 +76,7 @@ fn parry(pairs: &[PairRecord]) -> (String, f64) {
     ("parry3d, `query::contact`, `f32`".to_owned(), ns)
 }
 
-/// Nanoseconds per pair of the simulated accelerator.
+/// Time of the simulated accelerator in ns per pair.
 fn accelerator(config: &Config, link: &str, pairs: &[PairRecord]) -> Result<f64, Box<dyn Error>> {
     let link = link.parse::<Description>()?.at(config.clock_mhz)?;
     let verdict = Bench::new(config)?.run(pairs, &link, 1)?;

@@ -1,5 +1,5 @@
-// The loop that benches/step.rs measures itself against: the job and the ideal link as one would write them by hand in
-// C++ around the same model, without any check. It finds the model through the library the Rust side has loaded.
+// The reference loop for benches/step.rs: the job and the ideal link as one would write them by hand in C++ around the
+// same model, without any check. It finds the model through the library that the Rust side has loaded.
 
 #include <dlfcn.h>
 #include <time.h>
@@ -26,7 +26,7 @@ struct Ports {
 
 } // namespace
 
-// CPU seconds of this thread: what other programs take does not count.
+// CPU seconds of this thread, so that other programs do not affect the result.
 extern "C" double cpu_seconds() {
     timespec now;
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
@@ -40,8 +40,9 @@ extern "C" const afu_table *open_model(const char *library) {
     return model ? model() : nullptr;
 }
 
-// Runs `pairs` pairs from the lines `source` into `destination`, over a link that answers in the next cycle, on a new
-// instance; returns the cycles from start to done and the `seconds` they took, or 0 on an error or after `limit` cycles.
+// Runs `pairs` pairs from the lines at `source` into `destination` on a new instance, over a link that answers in the
+// next cycle. Returns the number of cycles from start to done, or 0 on an error or after `limit` cycles. Stores their
+// CPU time in `seconds`.
 extern "C" uint64_t run_job(const afu_table *table, const uint32_t *source, uint32_t *destination, uint32_t pairs,
                             uint64_t limit, double *seconds) {
     afu_instance *afu = table->create(0);

@@ -1,9 +1,9 @@
-//! Simulated cycles a second: this crate's driver, with its link model, its memory and every check, against a loop
-//! written by hand in C++ around the same model (`step.cpp`), in one run: `cargo bench --bench step`.
+//! Simulated cycles per second: this crate's driver, with its link model, its memory and every check, against a loop
+//! written by hand in C++ around the same model (`step.cpp`). Both run in one program: `cargo bench --bench step`.
 //!
-//! Both run the same job over the ideal link, by turns, on instances of their own; CPU seconds of the thread, medians.
-//! With `--check` the program fails unless the driver is within 5 % on the default AFU. An AFU of one SCPU is shown as
-//! the hard case: its cycle is so short that the checks are seen.
+//! Both run the same job over the ideal link, in alternation, each on its own instance. Figures are medians, in CPU
+//! seconds of the thread. With `--check` the program fails unless the driver is within 5 % on the default AFU. An AFU
+//! of one SCPU is shown as the hard case: its cycle is so short that the cost of the checks is measurable.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
@@ -13,9 +13,9 @@ use contact_afu::link::{Line, Link, LinkModel};
 use contact_afu::query::PairRecord;
 use libloading::os::unix::{Library, Symbol};
 
-/// Turns, of which the median counts.
+/// Number of alternations, whose median is reported.
 const TURNS: usize = 15;
-/// The share that the driver may be slower.
+/// How much slower the driver may be, as a fraction.
 const TOLERANCE: f64 = 0.05;
 
 type Failure = Box<dyn std::error::Error>;
@@ -30,7 +30,7 @@ struct Loop {
 }
 
 impl Loop {
-    /// Compiles and loads `step.cpp`, optimised as C++ programs are.
+    /// Compiles and loads `step.cpp` with the optimisation that is usual for C++ programs.
     fn build(folder: &Path) -> Result<Self, Failure> {
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
         let library = folder.join("step.so");
@@ -40,7 +40,7 @@ impl Loop {
         if !command.arg(root.join("benches/step.cpp")).arg("-ldl").status()?.success() {
             return Err("benches/step.cpp does not compile".into());
         }
-        // SAFETY: the library is the one above, and its functions have these types.
+        // SAFETY: the library was compiled from the source above, and its functions have these types.
         unsafe {
             let library = Library::new(&library)?;
             let found = Self {
@@ -54,7 +54,7 @@ impl Loop {
     }
 
     fn seconds(&self) -> f64 {
-        // SAFETY: it takes nothing and reads a clock.
+        // SAFETY: the function takes no argument and only reads a clock.
         unsafe { (self.cpu_seconds)() }
     }
 }
@@ -70,14 +70,15 @@ fn median(mut figures: Vec<f64>) -> f64 {
     figures[figures.len() / 2]
 }
 
-/// Cycles a second of the driver and of the loop on an AFU of `scpus`; the driver's as a share of the loop's.
+/// Prints cycles per second of the driver and of the loop for `scpus` SCPUs. Returns the driver's rate as a share of
+/// the loop's.
 fn compare(by_hand: &Loop, scpus: u32, pairs: u32) -> Result<f64, Failure> {
     let rtl = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("rtl");
     let source = Source::from_folder(&rtl, "contact_afu")?.parameter("SCPUS", scpus.into());
     let model = Model::build(&source, Trace::Off)?;
     let library = model.shared_object().ok_or("the model is not in a library")?;
     let library = std::ffi::CString::new(library.to_str().ok_or("the cache's path is not UTF-8")?)?;
-    // SAFETY: the text ends with a zero.
+    // SAFETY: the text ends with a zero byte.
     let table = unsafe { (by_hand.open_model)(library.as_ptr()) };
     if table.is_null() {
         return Err("the loop cannot open the model".into());

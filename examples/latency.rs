@@ -1,7 +1,7 @@
-//! Where the cycles of a small job go: the sum of the parts beside what the Verilog takes.
+//! Where the cycles of a small job go: the predicted parts and their sum beside the simulated cycles.
 //!
-//! `cargo run --release --example latency -- [LINK [PAIRS]...]`: a link's name or TOML file, whose tail is cut off
-//! (harp1), and numbers of pairs (1 2 20).
+//! `cargo run --release --example latency -- [LINK [PAIRS]...]`: LINK is a preset or a TOML file (default: harp1) and
+//! loses its latency tail. PAIRS are numbers of pairs (default: 1 2 20).
 
 use std::error::Error;
 use std::fs;

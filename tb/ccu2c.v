@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-// What Lattice's CCU2C does as this repository uses it: two bits of a carry chain, each behind a look-up table of four
-// inputs. For simulation in the primitive's place; written from its description, for tests.
+// A simulation model of Lattice's CCU2C as this repository uses it: two bits of a carry chain, each behind a four-input
+// look-up table. Written from the primitive's description, for tests.
 `default_nettype none
 
 module CCU2C #(
@@ -13,7 +13,8 @@ module CCU2C #(
   output wire S0, S1, COUT
 );
 
-  // The whole table says whether the carry is passed on; its lowest four words, by A and B, what it is where it is not.
+  // The whole table decides whether the carry is propagated. If it is not, the lowest four entries, indexed by A and B,
+  // give the carry.
   wire passes_0 = INIT0[{D0, C0, B0, A0}];
   wire passes_1 = INIT1[{D1, C1, B1, A1}];
   wire carry_0 = passes_0 ? CIN : INIT0[{2'b00, B0, A0}];
@@ -21,7 +22,7 @@ module CCU2C #(
   assign S1 = passes_1 ^ carry_0;
   assign COUT = passes_1 ? carry_0 : INIT1[{2'b00, B1, A1}];
 
-  // Only chains whose carry goes from cell to cell are made of it here.
+  // This model supports only chains whose carry passes from cell to cell.
   initial begin
     if (INJECT1_0 != "NO" || INJECT1_1 != "NO") $fatal(1, "CCU2C: a carry that is injected");
   end

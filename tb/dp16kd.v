@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-// What Lattice's DP16KD does as this repository and synthesis use it: a memory of 1024 words of 18 bits with two ports, each
-// with a register of its address and, in the mode OUTREG, one of its word. Ports of 36 bits take two words: then port A
-// writes and port B reads. For simulation in the primitive's place; written from its description, for tests.
+// A simulation model of Lattice's DP16KD as this repository and synthesis use it: a memory of 1024 words of 18 bits
+// with two ports. Each port registers its address and, in the mode OUTREG, its output word. Ports of 36 bits access two
+// words at once; port A then writes and port B reads. Written from the primitive's description, for tests.
 `default_nettype none
 
 module DP16KD #(
@@ -118,7 +118,7 @@ module DP16KD #(
   wire [17:0] written_a = {DIA17, DIA16, DIA15, DIA14, DIA13, DIA12, DIA11, DIA10, DIA9, DIA8, DIA7, DIA6, DIA5, DIA4, DIA3, DIA2, DIA1, DIA0};
   wire [17:0] written_b = {DIB17, DIB16, DIB15, DIB14, DIB13, DIB12, DIB11, DIB10, DIB9, DIB8, DIB7, DIB6, DIB5, DIB4, DIB3, DIB2, DIB1, DIB0};
 
-  // Words of 9 bits are halves of a word.
+  // A 9-bit port accesses one half of a word.
   function [17:0] half(input [17:0] word, input integer bits, input upper);
     half = (bits != 9) ? word : {9'd0, upper ? word[17:9] : word[8:0]};
   endfunction
@@ -146,7 +146,7 @@ module DP16KD #(
   assign {DOB17, DOB16, DOB15, DOB14, DOB13, DOB12, DOB11, DOB10, DOB9, DOB8, DOB7, DOB6, DOB5, DOB4, DOB3, DOB2, DOB1, DOB0}
     = (REGMODE_B == "OUTREG") ? register_b : word_b;
 
-  // This model has no resets, no decoding of chip selects, no second writer and no bytes.
+  // This model does not support resets, chip-select decoding, a second writer or byte enables.
   wire unused = &{1'b0, RSTA, RSTB, WEB, CSA0, CSA1, CSA2, CSB0, CSB1, CSB2, address_a[2:0], address_b[2:0],
                   address_a[3], address_b[3], INITIAL};
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-// What Lattice's MULT18X18D does as this repository uses it: unsigned, registers of factors and product, one clock.
-// For simulation in the primitive's place; written from its description, for tests.
+// A simulation model of Lattice's MULT18X18D as this repository uses it: unsigned, with registered factors and product,
+// and one clock. Written from the primitive's description, for tests.
 `default_nettype none
 
 module MULT18X18D #(
@@ -40,7 +40,7 @@ module MULT18X18D #(
           P17, P16, P15, P14, P13, P12, P11, P10, P9, P8, P7, P6, P5, P4, P3, P2, P1, P0}
     = (REG_OUTPUT_CLK == "CLK0") ? product_register : product;
 
-  // This model has neither signs nor cascades, nor a second clock.
+  // This model supports neither signed operands nor cascades, nor a second clock.
   wire unused = &{1'b0, SIGNEDA, SIGNEDB, SOURCEA, SOURCEB, RST1, RST2, RST3, CE1, CE2, CE3, CLK1, CLK2, CLK3};
 
 endmodule

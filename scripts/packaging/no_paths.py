@@ -23,7 +23,7 @@ def contents(path):
 
 def main():
     folder, *paths = sys.argv[1:]
-    # With a slash behind it, a short path such as /root is not found inside another word.
+    # With a trailing slash, a short path such as /root does not match inside another word.
     words = {f"{path.rstrip('/')}/".encode() for path in paths if path.strip("/")}
     words |= {path.encode() for path in paths if path.count("/") > 1}
     found, read = [], 0

@@ -63,11 +63,11 @@ def copy(path, out):
         to.parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(path, to)
         if path.suffix == ".md":
-            # mdBook makes index.html of README.md, but lets links to it name README.html.
+            # mdBook writes README.md as index.html, but turns links to it into README.html.
             text = to.read_text(encoding="utf-8")
             to.write_text(re.sub(r"(\]\([^)\s]*)README\.md(?=[)#])", r"\1index.md", text), encoding="utf-8")
     elif not (to / "index.html").exists():
-        # A link to a folder shows what is in it.
+        # A link to a folder shows its contents.
         to.mkdir(parents=True, exist_ok=True)
         names = sorted(entry.name for entry in path.iterdir() if entry.is_file())
         items = "\n".join(f'<li><a href="{name}">{name}</a></li>' for name in names)

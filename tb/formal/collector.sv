@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-// The collector alone, by induction: every slot of the reorder memory is free, asked for, or filled, never two of these;
-// no tag is used again before its line has left; lines leave in order, each once; requests are stable and in order.
+// The collector alone, by induction: every slot of the reorder memory is free, requested or filled, and never two of
+// these. No tag is reused before its line has left. Lines leave in order, each exactly once. Requests are stable and in
+// order.
 //
-// The link may answer what nobody asked for. A request that was given up may stand on the port when the next job begins.
+// The link may send responses that were never requested. An abandoned request may still be on the port when the next
+// job begins.
 //
-// Assumed, and proven elsewhere: a line is taken only when it is there (credits.sv: takes_a_line).
+// Assumed here and proven elsewhere: a line is taken only when it is available (credits.sv: takes_a_line).
 `default_nettype none
 
 module collector (
@@ -61,7 +63,7 @@ module collector (
   reg [31:0] accepted;
   reg [3:0]  waiting;
   wire mine = rd_rsp_valid & begun & ~start & (rd_rsp_tag[5:2] == job_epoch);
-  // A request of an earlier job, given up while it stood on the port, may still stand there.
+  // A request that an earlier job abandoned while it was on the port may still be there.
   reg        left;
   wire       asked = rd_req_valid & ~left;
   wire [3:0] asks = asked & rd_req_ready ? 4'd1 << rd_req_tag[1:0] : 4'd0;
@@ -93,7 +95,7 @@ module collector (
 
   `include "slots.svh"
 
-  // Filled slots: offered, known to have come, about to be known.
+  // Filled slots: offered at the output, known to be filled, and about to be known.
   wire [2:0] offers = {1'b0, \dut.two_valid , line_valid & ~\dut.two_valid };
   wire [3:0] offered = slots(\dut.head , offers);
   wire [3:0] come = aged(\dut.came , \dut.oldest );

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-// Credits of the whole accelerator, by induction, for a host and a link that do anything at all: a pair enters only when
-// its result has a place, every pair that entered comes out once, and the places are all accounted for. Counts, not data.
+// Credits of the whole accelerator, by induction, for a host and a link that do anything at all. A pair enters only
+// when there is room for its result, every pair that entered comes out once, and all the room is accounted for. This is
+// about counts, not data.
 //
-// The induction is longer than the pipeline, so that it needs no word about what is inside it.
+// The induction is longer than the pipeline, so it needs no invariant about the pipeline's contents.
 //
-// Where only hits come back, a pair's place is free again when it is known to be none, or when its hit has left the
-// backlog: so the backlog never holds more than it can, and no hit is lost between the sieve and the packer.
+// If only hits come back, a pair's room is free again when the pair is known to be no hit, or when its hit has left the
+// backlog. So the backlog never overflows, and no hit is lost between the sieve and the packer.
 //
-// Defines: LATENCY, of an SCPU; LINES, lines the dispatcher keeps; SCPUS, how many; EVERY_OTHER, an interval of 2, and
-// THREE, of 3 SCPUs; PER_LINE, only hits come back, so many per line; GATHERS, more than one.
+// Defines: LATENCY, that of an SCPU; LINES, the lines that the dispatcher can store; SCPUS, their number; EVERY_OTHER,
+// for an interval of 2; THREE, for 3 SCPUs at that interval; PER_LINE, the hits per line if only hits come back;
+// GATHERS, if that is more than one.
 `default_nettype none
 
 module credits (
-  // Free in every cycle.
+  // Inputs that are free in every cycle.
   `include "inputs.svh"
 );
 `ifdef PER_LINE
@@ -59,11 +61,11 @@ module credits (
   (* hierconn *) wire [ROOM_BITS-2:0]       \dut.backlog.head ;
   (* hierconn *) wire [ROOM_BITS-2:0]       \dut.backlog.tail ;
   (* hierconn *) wire [`PER_LINE-1:0]       \dut.backlog.group_out ;
-  // Pairs that have come out of the slots and are not counted yet.
+  // Pairs that have left the slots and are not counted yet.
   wire [1:0]  uncounted = \dut.sieve.group_here ;
   wire [31:0] emerged = \dut.sieve.emerged ;
 `ifdef GATHERS
-  // Lines between the backlog and the dispatcher, the one in hand among them.
+  // Lines between the backlog and the dispatcher, including the one being assembled.
   (* hierconn *) wire                       \dut.packer.place ;
   (* hierconn *) wire                       \dut.packer.went ;
   (* hierconn *) wire                       \dut.packer.goes ;
@@ -85,7 +87,7 @@ module credits (
   wire [31:0] emerged = \dut.packer.emerged ;
 `endif
 
-  // Groups of pairs where they must be, each a rank further every cycle, and how many pairs that makes.
+  // Expected positions of groups of pairs, which advance by one rank per cycle, and the number of pairs in them.
   reg [2*RANKS-1:0] ranks;
   reg after_reset = 1'b0;
   reg begun = 1'b0;
@@ -107,7 +109,7 @@ module credits (
     for (rank = 0; rank < RANKS; rank = rank + 1) inside = inside + {6'd0, ranks[2*rank +: 2]};
   end
 
-  // Pairs that the feeder still has to give.
+  // Pairs that the feeder has not issued yet.
   wire [ROOM_BITS-1:0] next_room = \dut.control.room + \dut.control.room_change ;
   wire [33:0] in_lines = \dut.feeder.lines_left == 32'd0 ? 34'd0
     : {1'b0, \dut.feeder.lines_left , 1'b0} - {33'd0, ~\dut.control.last_place };
@@ -144,7 +146,7 @@ module credits (
   end
 
 `ifdef PER_LINE
-  // Pairs of a cycle are hits or none; hits that left the backlog.
+  // The sieve's pairs of the previous cycle, each a hit or dropped, and the number of hits that have left the backlog.
   reg [1:0]  were_here;
   reg [31:0] left;
   wire [2:0] sifted = {1'b0, \dut.sieve.hits_rank_0 } + {1'b0, \dut.sieve.dropped_pairs };
@@ -163,7 +165,7 @@ module credits (
     reads_what_is_there: assert (\dut.backlog.readable <= \dut.backlog.stored );
   end
 `else
-  // Lines that have left the line in hand for the dispatcher's memory, or its memory for the link.
+  // `flushed`: the packer has flushed its partial last line. `leaving`: lines between the packer and the link.
   reg flushed;
   always @(posedge clk) flushed <= ~\dut.control.begin_job & (flushed | \dut.packer.flushes );
   wire [ROOM_BITS-1:0] leaving = {1'b0, \dut.dispatcher.stored } + \dut.packer.went + \dut.packer.goes
@@ -176,8 +178,8 @@ module credits (
   end
 `endif
 
-  // An SCPU that takes a pair every other cycle never takes two in a row: SCPUs 0 and 1 have theirs in phase 0, SCPU 2
-  // in phase 1, and a turn's phase is that of its SCPU.
+  // At an interval of 2 an SCPU never takes pairs in two consecutive cycles. SCPUs 0 and 1 take theirs in phase 0 and
+  // SCPU 2 in phase 1; a turn's phase is that of its SCPU.
 `ifdef EVERY_OTHER
   (* hierconn *) wire \dut.slots[0].unit.takes ;
   (* hierconn *) wire \dut.slots[1].unit.takes ;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-// The dispatcher alone, by induction: its memory never holds more than it can, no tag is used again before its
-// acknowledgement, no acknowledgement is lost or counted twice, requests are stable and in order of lines.
+// The dispatcher alone, by induction: its memory never overflows, and no tag is reused before its acknowledgement. No
+// acknowledgement is lost or counted twice. Requests are stable and in order of lines.
 //
-// The link may answer what nobody asked for. A request that was given up may stand on the port when the next job begins.
+// The link may send responses that were never requested. An abandoned request may still be on the port when the next
+// job begins.
 //
-// Assumed, and proven elsewhere: a line comes only when there is room (credits.sv: fits).
+// Assumed here and proven elsewhere: a line arrives only when there is room for it (credits.sv: fits).
 `default_nettype none
 
 module dispatcher (
@@ -64,7 +65,7 @@ module dispatcher (
   reg [57:0] accepted;
   reg [3:0]  waiting;
   wire mine = wr_rsp_valid & begun & ~start & (wr_rsp_tag[5:2] == job_epoch);
-  // A request of an earlier job, given up while it stood on the port, may still stand there.
+  // A request that an earlier job abandoned while it was on the port may still be there.
   reg        left;
   wire       asked = wr_req_valid & ~left;
   wire [3:0] asks = asked & wr_req_ready ? 4'd1 << wr_req_tag[1:0] : 4'd0;

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-// A job where only hits come back, over its line port: which lines are written, and with what. One symbolic pair is
-// followed: its number and its words are any, and stay. What is written for it, if it hits, is its number and its words,
-// behind as many records as pairs before it hit; behind the last record there is zero. With fewer lines of room than the
-// hits take, those beyond are not written, all hits are counted, and the job ends with error 6.
+// A job that returns only hits, over its line port: which lines are written, and their contents. The proof follows one
+// symbolic pair, whose number and words are arbitrary constants. If the pair hits, its record is its number and words.
+// The record's place follows those of the earlier pairs that hit. After the last record there are zeros. If there is
+// not enough room for all lines, the lines beyond it are not written, all hits are counted, and the job ends with error
+// 6.
 //
-// One job of up to three pairs, never aborted, over a link that answers in any order, at any time, without errors. The
-// port's protocol is line_port.sv's.
+// One job of up to three pairs, never aborted, over a link that answers in any order, at any time, without errors.
+// line_port.sv checks the port's protocol.
 //
-// Defines: SCPUS, how many; PER_LINE, hits of a line: 1 (number and words), or 2 (numbers alone).
+// Defines: SCPUS, their number; PER_LINE, hits per line: 1 (number and words) or 2 (numbers only).
 `default_nettype none
 
 module hits_job (
   input wire        clk,
-  // Free in every cycle: what the link does.
+  // Inputs that are free in every cycle: the link's behaviour.
   input wire        rd_req_ready,
   input wire        rd_rsp_valid,
   input wire [5:0]  rd_rsp_tag,
@@ -21,7 +22,7 @@ module hits_job (
   input wire        wr_rsp_valid,
   input wire [5:0]  wr_rsp_tag
 );
-  // ---- the job and the pair that is followed: any, and the same all the time ----
+  // ---- the job and the followed pair: arbitrary constants ----
   (* anyconst *) wire [3:0]  epoch;
   (* anyconst *) wire [2:0]  count;
   (* anyconst *) wire [2:0]  room;
@@ -32,7 +33,7 @@ module hits_job (
   always @(posedge clk) age <= age + {7'd0, age != 8'hff};
   wire rst = age == 8'd0;
 
-  // What the host gives and the link says, apart from these.
+  // All other signals of the host and the link.
   wire       start = age == 8'd1;
   wire [2:0] destination_lines = room;
   wire       source = 1'b0;
@@ -44,7 +45,7 @@ module hits_job (
   wire       wr_rsp_error = 1'b0;
   `include "dut.svh"
 
-  // ---- the link: line n is asked for with tag n, and answered later, once ----
+  // ---- the link: line n is requested with tag n, and answered later, once ----
   reg  [3:0] rd_waiting;
   reg  [3:0] wr_waiting;
   reg  [2:0] written;
@@ -53,7 +54,7 @@ module hits_job (
   wire [3:0] rd_answers = rd_rsp_valid ? 4'd1 << rd_rsp_tag[1:0] : 4'd0;
   wire [3:0] wr_answers = wr_rsp_valid ? 4'd1 << wr_rsp_tag[1:0] : 4'd0;
 
-  // ---- what pairs were read: hit, invalid ----
+  // ---- the kinds of pairs that were read: hit, invalid ----
   reg  [3:0] hits;
   reg  [3:0] invalids;
   reg  [1:0] came;
@@ -76,7 +77,7 @@ module hits_job (
       assume ((followed[0] ? rd_rsp_data[63:32] : rd_rsp_data[31:0]) == words);
   end
 
-  // ---- what must come of them ----
+  // ---- the expected results ----
   wire [3:0] of_job = (4'd1 << count) - 4'd1;
   wire [3:0] known = {came[1], came[1], came[0], came[0]};
   wire [3:0] job_hits = hits & of_job & known;
@@ -114,7 +115,7 @@ module hits_job (
     end
   end
 
-  // ---- that all this is about something ----
+  // ---- covers: the proof is not vacuous ----
   always @* if (~rst & done) begin
     whole_job: cover (count == 3'd3 & error == 4'd0 & job_hits == 4'b0101 & followed == 3'd2 & words == 32'h5a5a5a5b);
     overflow: cover (count == 3'd3 & error == 4'd6 & total == 3'd3 & written == 3'd1);

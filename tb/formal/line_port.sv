@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-// The accelerator over its line port, for yosys-smtbmc: what the link and the host may do is assumed, what the
-// accelerator then does is asserted. Data is followed by one symbolic pair: its number and its words are any, and stay.
+// The accelerator over its line port, for yosys-smtbmc: the behaviour of link and host is assumed, that of the
+// accelerator is asserted. To check data, the proof follows one symbolic pair, whose number and words are arbitrary
+// constants.
 //
-// The link answers requests in any order and whenever it likes, with or without an error. It may also bring responses
-// to jobs before the last reset or given up by the watchdog, and responses that nobody asked for, with any tag and any
-// data. A request that was given up while it stood on the port stays there; it is not the next job's.
-// The host resets, starts and aborts whenever it likes; each job's epoch differs from that of the job before.
+// The link answers requests in any order and at any time, with or without an error. It may also send responses to jobs
+// from before the last reset or abandoned by the watchdog, and responses that were never requested, with any tag and
+// any data. An abandoned request that is on the port stays there, and does not belong to the next job. The host resets,
+// starts and aborts at any time; each job's epoch differs from that of the job before.
 //
-// Defines: SCPUS, how many; PAIRS, most pairs of a job (1 to 15); PROMPT, a link that leaves no request and no response waiting for more
-// than so many cycles, over which each job must end within BOUND cycles; ONE_JOB, one job, in
-// the cycle after one reset.
+// Defines: SCPUS, their number; PAIRS, the maximum number of pairs of a job (1 to 15); PROMPT, the maximum number of
+// cycles for which the link leaves a request or a response waiting, so that each job must end within BOUND cycles;
+// ONE_JOB, for a single job, in the cycle after a single reset.
 `default_nettype none
 
 module line_port (
   input wire        clk,
-  // Free in every cycle: what host and link do.
+  // Inputs that are free in every cycle: the behaviour of host and link.
   input wire        rst,
   input wire        start,
   input wire [3:0]  epoch,
@@ -32,7 +33,7 @@ module line_port (
   input wire [5:0]  wr_rsp_tag,
   input wire        wr_rsp_error
 );
-  // ---- the job and the pair that is followed: any, and the same all the time ----
+  // ---- the job and the followed pair: arbitrary constants ----
   (* anyconst *) wire [4:0]  source;
   (* anyconst *) wire [4:0]  destination;
   (* anyconst *) wire [3:0]  followed;
@@ -42,7 +43,7 @@ module line_port (
   `include "dut.svh"
   (* hierconn *) wire \dut.control.run ;
 
-  // ---- what is known of the job ----
+  // ---- the state of the job ----
   reg [7:0] age = 8'd0;
   always @(posedge clk) age <= age + {7'd0, age != 8'hff};
 
@@ -65,7 +66,7 @@ module line_port (
     end
   end
 
-  // ---- requests of this job, and which of them wait for a response ----
+  // ---- requests of this job, and which of them await a response ----
   reg [3:0]  rd_lines;
   reg [3:0]  wr_lines;
   reg [3:0]  rd_waiting;
@@ -89,7 +90,7 @@ module line_port (
   wire wr_mine = wr_rsp_valid & (known | accept) & (wr_rsp_tag[5:2] == epoch_now);
   wire [3:0] rd_answered = rd_mine ? (4'd1 << rd_rsp_tag[1:0]) : 4'd0;
   wire [3:0] wr_answered = wr_mine ? (4'd1 << wr_rsp_tag[1:0]) : 4'd0;
-  // Somebody answered what nobody asked for: while the job ran, and long enough before its end to be told.
+  // A response arrived that was never requested, while the job ran and early enough to be reported.
   wire surprise = (rd_mine & (rd_waiting & rd_answered) == 4'd0) | (wr_mine & (wr_waiting & wr_answered) == 4'd0);
   reg [3:0] surprised;
   always @(posedge clk)
@@ -112,7 +113,7 @@ module line_port (
     if (follows) followed_tag <= rd_req_tag[1:0];
   end
 
-  // ---- what host and link do ----
+  // ---- assumptions about host and link ----
   always @* begin
     if (age == 8'd0) assume (rst);
     assume (count <= `PAIRS);
@@ -127,10 +128,10 @@ module line_port (
 `endif
   end
 
-  // ---- what the accelerator does ----
+  // ---- assertions about the accelerator ----
   wire [15:0] written = followed[0] ? wr_req_data[31:16] : wr_req_data[15:0];
   always @* if (age != 8'd0 & ~rst) begin
-    // Requests: of this job, in order of lines, each once; no tag that still waits.
+    // Requests belong to this job and are in order of lines, each once. No tag is reused while it awaits a response.
     if (rd_asked) begin
       rd_in_job: assert (busy & known);
       rd_in_order: assert (rd_req_address == {53'd0, source} + {54'd0, rd_lines} & rd_lines < lines);
@@ -143,7 +144,7 @@ module line_port (
       if (wr_lines == followed_line)
         wr_data: assert (written == (followed < job_count ? words : 16'd0));
     end
-    // The end.
+    // The end of the job.
     if (done) begin
       done_known: assert (known & ~busy);
       done_acknowledged: assert (error == 4'd4 | (rd_waiting == 4'd0 & wr_waiting == 4'd0));
@@ -159,7 +160,7 @@ module line_port (
     end
   end
 
-  // A request stays as it is until it is accepted.
+  // A request is stable until it is accepted.
   reg        rd_held = 1'b0;
   reg        wr_held = 1'b0;
   reg [63:0] rd_was;
@@ -176,7 +177,7 @@ module line_port (
   end
 
 `ifdef PROMPT
-  // ---- a prompt link, and the end in bounded time ----
+  // ---- a prompt link, and a bounded time to the end ----
   reg [3:0] rd_refused;
   reg [3:0] wr_refused;
   reg [7:0] taken;
@@ -207,7 +208,7 @@ module line_port (
   endgenerate
 `endif
 
-  // ---- that all this is about something ----
+  // ---- covers: the proof is not vacuous ----
   always @* if (age != 8'd0 & ~rst & done & error == 4'd0) begin
     whole_job: cover (job_count == `PAIRS);
     odd_job: cover (job_count == `PAIRS - 1 & followed == job_count - 1 & words == 16'h5a5a);

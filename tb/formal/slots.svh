@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-// Sets of the four slots, a bit each, for the proofs of the two that use slots in turn.
+// Sets of the four slots, one bit per slot, for the proofs of the two parts that use slots in turn.
 
-// So many slots from one on.
+// The set of `many` consecutive slots from `first` on.
 function [3:0] slots(input [1:0] first, input [2:0] many);
   reg [7:0] from_zero;
   reg [7:0] from_first;
@@ -12,7 +12,7 @@ function [3:0] slots(input [1:0] first, input [2:0] many);
   end
 endfunction
 
-// Marks by age, the oldest first, as slots: the oldest's is `first`.
+// Turns marks by age, the oldest first, into slots; the oldest slot is `first`.
 function [3:0] aged(input [3:0] ages, input [1:0] first);
   reg [7:0] from_first;
   begin

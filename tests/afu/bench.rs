@@ -1,5 +1,5 @@
-//! AFUs to test, jobs for them, and what memory must hold afterwards. The lines are laid out here by the words of the
-//! design, not by the `Layout` that the generator and the host share: a mistake in that one must show.
+//! AFUs to test, jobs for them, and the expected contents of memory. The expected lines are laid out here
+//! independently, not by the `Layout` that the generator and the host share, so that a mistake in it is found.
 
 use std::path::Path;
 
@@ -11,43 +11,42 @@ use contact_afu::link::{Line, Link};
 use contact_afu::pairs::Set;
 use contact_afu::query::{ContactRecord, Fields, Flow, PairRecord};
 
-/// The core in the committed `rtl/`, for any number of SCPUs: no text is generated.
+/// A model of the core in the committed `rtl/`, for any number of SCPUs: nothing is generated.
 pub fn committed(scpus: u32) -> Model {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("rtl");
     let source = Source::from_folder(&folder, "contact_afu").unwrap().parameter("SCPUS", scpus.into());
     Model::build(&source, Trace::Off).unwrap()
 }
 
-/// The same with SCPUs that each take a pair a cycle.
+/// The same with SCPUs that each take one pair per cycle.
 pub fn full_rate(scpus: u32) -> Model {
     generated(&of(scpus))
 }
 
-/// The default configuration but for the number of SCPUs, with the AFU's own port as its top: what the driver of these
-/// tests knows.
+/// The default configuration with `scpus` SCPUs and the AFU's own port as its top, which the driver of these tests
+/// uses.
 pub fn of(scpus: u32) -> Config {
     Config { scpus, shell: Shell::Line, ..Config::default() }
 }
 
-/// A configuration by its words.
+/// Like [`of`], with this profile and these fields of a contact.
 pub fn config(scpus: u32, profile: &str, contact: &str) -> Config {
     Config { profile: profile.parse().unwrap(), contact: contact.parse().unwrap(), ..of(scpus) }
 }
 
-/// The Verilog of a configuration as generated now. The number of SCPUs is a parameter and not in the text, so that
-/// models share what is the same in them.
+/// The Verilog of a configuration as generated now. The number of SCPUs is a parameter and not in the text, so models
+/// share what they have in common.
 pub fn source(config: &Config) -> Source {
     let afu = Afu::generate(Spec::from(Config { scpus: Config::default().scpus, ..config.clone() })).unwrap();
     let files = afu.verilog().into_iter().map(|(name, text)| File { name, text }).collect();
     Source::new("contact_afu", files).parameter("SCPUS", config.scpus.into())
 }
 
-/// A model of a configuration as generated now.
+/// A model of the Verilog as generated now.
 pub fn generated(config: &Config) -> Model {
     Model::build(&source(config), Trace::Off).unwrap()
 }
 
-/// A link like a preset.
 pub fn link(name: &str, seed: u64) -> Link {
     Link::new(name.parse().unwrap(), seed).unwrap()
 }
@@ -57,18 +56,18 @@ pub fn driver<'a>(afu: &'a Instance, name: &str, seed: u64) -> Driver<'a> {
     Driver::new(afu, link(name, seed)).unwrap()
 }
 
-/// Pairs for an AFU, and what must come of them.
+/// Pairs for an AFU, and the expected results.
 pub struct Case {
     pub pairs: Vec<PairRecord>,
     source: Vec<Line>,
-    /// The destination.
+    /// The expected destination lines.
     pub lines: Vec<Line>,
-    /// Lines of room where only contacts come back, and how many of them share one.
+    /// If only contacts come back: the number of lines they fill, and contacts per line.
     hits: Option<(u64, u32)>,
     status: Status,
 }
 
-/// Contacts, invalid pairs, the number of the first invalid one.
+/// Numbers of contacts and invalid pairs, and the first invalid pair.
 type Status = (u32, u32, Option<u32>);
 
 fn status(outcome: &Outcome) -> Status {
@@ -103,7 +102,7 @@ impl Case {
         }
     }
 
-    /// The first `count` pairs of all flows.
+    /// Random pairs of all flows; the first `count` of them.
     pub fn random(config: &Config, count: u64, seed: u64) -> Self {
         Self::new(config, Set::Random(count).pairs(seed))
     }
@@ -114,12 +113,12 @@ impl Case {
         Job { hits_per_line, ..Job::new(&self.source, self.pairs.len() as u32, room) }
     }
 
-    /// The same job with room for so many lines only.
+    /// The same job with room for only `lines` lines.
     pub fn job_with_room(&self, lines: u64) -> Job<'_> {
         Job { destination_lines: lines, ..self.job() }
     }
 
-    /// Every word and every figure of a job that went well.
+    /// Checks every word and every figure of a successful job.
     #[track_caller]
     pub fn check(&self, outcome: &Outcome, what: &str) {
         assert_eq!(outcome.job_error(), None, "{what}");
@@ -131,13 +130,13 @@ impl Case {
         assert!(outcome.cycles_input + outcome.cycles_output <= outcome.cycles_busy, "{what}: waiting for one thing");
     }
 
-    /// Bytes read and written.
+    /// Bytes that a job reads and writes.
     pub fn traffic(&self) -> (u64, u64) {
         let bytes = |lines: &[Line]| 64 * lines.len() as u64;
         (bytes(&self.source), bytes(&self.lines))
     }
 
-    /// Whatever was written is right; how many lines were.
+    /// Checks every line that was written; returns their number.
     #[track_caller]
     pub fn check_written(&self, outcome: &Outcome, what: &str) -> usize {
         if self.hits.is_none() {
@@ -153,18 +152,18 @@ impl Case {
         written
     }
 
-    /// Whether the figures beside the lines are right.
+    /// True if all figures except the lines are right.
     pub fn status_is_right(&self, outcome: &Outcome) -> bool {
         status(outcome) == self.status
     }
 
-    /// Destination lines that are not what they should be.
+    /// Indices of wrong destination lines.
     pub fn wrong_lines(&self, outcome: &Outcome) -> Vec<usize> {
         (0..self.lines.len()).filter(|&line| outcome.lines[line] != Some(self.lines[line])).collect()
     }
 }
 
-/// A contact where only contacts come back: its pair's number, then the words asked for, padded to a power of two.
+/// A contact's record if only contacts come back: its pair's number, then the selected words, padded to a power of two.
 fn hit_words(fields: Fields, pair: u32, record: &ContactRecord) -> Vec<u32> {
     let mut words = vec![pair];
     let any = fields != Fields::HIT;
@@ -177,14 +176,14 @@ fn hit_words(fields: Fields, pair: u32, record: &ContactRecord) -> Vec<u32> {
     words
 }
 
-/// Words in lines, the unused part of the last zero.
+/// Packs words into lines; the unused part of the last line is zero.
 fn lines(words: &[u32]) -> Vec<Line> {
     let line = |words: &[u32]| std::array::from_fn(|word| words.get(word).copied().unwrap_or(0));
     words.chunks(16).map(line).collect()
 }
 
-/// Contacts as the design lays them out: position, normal, depth, flags, those in use, padded to 1, 2, 4 or 8 words;
-/// with nothing but the hit asked for, one bit each.
+/// Contacts as the design lays them out: the selected words of position, normal, depth and flags, padded to 1, 2, 4 or
+/// 8 words. If only the hit is selected, a contact is one bit.
 fn destination(fields: Fields, records: &[ContactRecord]) -> Vec<Line> {
     if fields == Fields::HIT {
         let word = |records: &[ContactRecord]| {

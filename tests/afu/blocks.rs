@@ -1,5 +1,5 @@
-//! The whole AFU as synthesis for an ECP5 reads it: lines, tables, products and chains in that target's primitives, for
-//! which models in `tb/` stand here.
+//! The whole AFU as synthesis for an ECP5 reads it: lines, look-up tables, products and chains in the target's
+//! primitives, simulated by the models in `tb/`.
 
 use contact_afu::afu::{Afu, Spec};
 use contact_afu::config::{Config, Results};
@@ -19,7 +19,7 @@ fn model_in_primitives(config: &Config) -> Model {
     Model::build(&source.parameter("SCPUS", config.scpus.into()), Trace::Off).unwrap()
 }
 
-/// Over links that keep lines waiting in the memories: reads that come in any order, writes that stall.
+/// Uses links that keep lines waiting in the memories: out-of-order reads, and writes that stall.
 #[test]
 fn lines_in_block_memories_come_back_whole() {
     for results in [Results::All, Results::Hits] {

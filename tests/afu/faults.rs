@@ -1,5 +1,4 @@
-//! Each comparison is able to fail: faults planted in the Verilog or on the link are found, and the text they are
-//! planted in is right without them.
+//! Each comparison can fail: faults planted in the Verilog or on the link are found, and the unchanged Verilog passes.
 
 use std::fs;
 
@@ -13,7 +12,7 @@ use contact_afu::verify::{Bench, Verdict};
 
 use crate::bench::{Case, committed, config, driver, of, source};
 
-/// Changes the right side of the one assignment in `text` whose line has `left` in it.
+/// Changes the right-hand side of the only assignment in `text` whose line contains `left`.
 fn change(text: &str, left: &str, right: impl Fn(&str) -> String) -> String {
     assert_eq!(text.lines().filter(|line| line.contains(left)).count(), 1, "one line with `{left}` in\n{text}");
     let edit = |line: &str| match line.split_once("= ").filter(|_| line.contains(left)) {
@@ -23,7 +22,7 @@ fn change(text: &str, left: &str, right: impl Fn(&str) -> String) -> String {
     text.lines().map(edit).collect()
 }
 
-/// The way of `afu cosim --rtl`: a folder that `afu rtl` wrote, one line of which was changed.
+/// Does what `afu cosim --rtl` does with a folder that `afu rtl` wrote, after changing one line.
 fn verdict(config: &Config, file: &str, left: &str, right: impl Fn(&str) -> String) -> Verdict {
     let folder = tempfile::tempdir().unwrap();
     let files = Afu::generate(Spec::from(config.clone())).unwrap().files();
@@ -43,26 +42,26 @@ fn a_wrong_gate_a_wrong_rounding_and_a_flipped_bit_are_mismatches() {
     let config = config(2, "bfloat", "depth");
     let right = verdict(&config, "fp_square_e8f7.v", "wire round_up = ", str::to_owned);
     assert!(right.is_good(), "without a fault: {:?} {:?}", right.mismatches.first(), right.failed_checks);
-    // Truncated squares; a gate of another kind; the lowest bit of what a subtraction takes away.
+    // Faults: a square that truncates; a different kind of gate; a subtrahend whose lowest bit is flipped.
     let truncated = verdict(&config, "fp_square_e8f7.v", "wire round_up = ", |_| "1'b0".to_owned());
     let gate = verdict(&config, "fp_sub_e8f7.v", "wire effective_subtraction = ", |value| value.replace('^', "|"));
     let flipped = verdict(&config, "fp_sub_e8f7.v", " addend = ", |value| format!("({value}) ^ 1"));
     for (what, verdict) in [("truncated", truncated), ("gate", gate), ("flipped", flipped)] {
         assert!(!verdict.mismatches.is_empty() && !verdict.is_good(), "{what}");
-        // And nothing else: most pairs don't meet the fault, and what they give is right.
+        // Only some pairs are affected: most do not trigger the fault, and their results are right.
         assert!(verdict.mismatches.len() < 1_500, "{what}: {}", verdict.mismatches.len());
     }
 }
 
-/// How a fault shows.
+/// How a fault was detected.
 #[derive(Debug, PartialEq)]
 pub enum Found {
     Nothing,
-    /// So many destination lines differ from the reference's.
+    /// This many destination lines differ from the reference's.
     WrongLines(usize),
-    /// All lines are right, the figures beside them are not.
+    /// All lines are right, but other figures are not.
     WrongStatus,
-    /// The job breaks the protocol or does not end.
+    /// The job violates the protocol or does not end.
     Error(DriveError),
 }
 
@@ -77,27 +76,28 @@ pub fn judge(case: &Case, outcome: Result<Outcome, DriveError>) -> Found {
     }
 }
 
-/// Faults of the controller. All are in one model, and a job chooses one by the top bits of its watchdog (which is so
-/// long then that it never ends a job): each wants only a line, but a model of its own would take some seconds.
+/// Faults of the controller. One model contains all of them, because a separate model for each would take seconds. A
+/// job selects one by the top bits of its watchdog, which is then so long that it never ends a job.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(u32)]
 enum Controller {
     Nothing,
-    /// The last line is neither taken nor missed, and a pair of the one before it lost, as if that were it.
+    /// The last line is not taken and not waited for, and one pair of the line before it is lost, as if that line were
+    /// the last.
     LastPairDropped,
     /// Each of two neighbours gets the other's result.
     LanesSwapped,
-    /// Nobody waits for acknowledgements.
+    /// The job ends without waiting for acknowledgements.
     DoneEarly,
-    /// Responses to jobs before a reset are taken for this job's.
+    /// Responses to jobs from before a reset are taken for this job's.
     EpochIgnored,
-    /// Pairs enter whether or not there is room for their results.
+    /// Pairs enter even if there is no room for their results.
     CreditsIgnored,
-    /// Invalid pairs count in one lane only.
+    /// Invalid pairs are counted in one lane only.
     HalfCounted,
 }
 
-/// File, the assignment's line, the fault's number from 1, and what is assigned then.
+/// File, left-hand side of the assignment, number of the fault from 1, and the expression assigned then.
 pub type Planted = (&'static str, &'static str, u32, &'static str);
 
 const FAULTS: [Planted; 8] = [
@@ -123,7 +123,7 @@ const FAULTS: [Planted; 8] = [
 
 pub const SELECTOR_BIT: u32 = 28;
 
-/// A model with all these faults, none of which acts in a job whose watchdog has zero at the top.
+/// A model with all these faults. None is active in a job whose watchdog has zeros at the top.
 pub fn model_of_faults(config: &Config, faults: &[Planted]) -> Model {
     let mut files: Vec<File> = source(config).files().to_vec();
     for &(name, left, planted, wrong) in faults {
@@ -144,7 +144,7 @@ fn faults_of_the_controller_are_found() {
     let config = config(2, "e8f3z", "depth");
     let model = model_of_faults(&config, &FAULTS);
     let case = Case::random(&config, 4_003, 3);
-    // Writes so slow that results wait for them in all the room there is.
+    // Writes are so slow that results waiting for them fill all the room there is.
     let (read, name) = (Direction::steady(3, 0), "slow writes".to_owned());
     let write = Direction { lines_per_cycle: 0.05, ..read };
     let link = LinkModel { name, read, write, order: Order::InOrder, ..LinkModel::ideal() };
@@ -165,7 +165,7 @@ fn faults_of_the_controller_are_found() {
     assert!(!matches!(crowded, Found::Nothing | Found::WrongStatus), "{crowded:?}");
     assert_eq!(run(Controller::HalfCounted), Found::WrongStatus);
 
-    // This one shows only after a reset.
+    // This fault shows only after a reset.
     let spoilt = Case::random(&config, 301, 4);
     let harm_after_resets = |planted: Controller| {
         let afu = model.instance(1).unwrap();
@@ -182,13 +182,13 @@ fn faults_of_the_controller_are_found() {
     assert!(harm_after_resets(Controller::EpochIgnored));
 }
 
-/// The host's side of the same: what the link does to the data is seen in the contacts.
+/// The same on the host's side: faults of the link's data show in the contacts.
 #[test]
 fn faults_of_the_link_are_found() {
     let case = Case::random(&of(3), 301, 5);
     let afu = committed(3).instance(1).unwrap();
     let mut driver = driver(&afu, "shuffled", 1);
-    // Two pairs a line, as many contacts: a line's number is its read's.
+    // Each line holds two pairs or two contacts, so a line's number is its read's number.
     assert_eq!(judge(&case, driver.run(&case.job())), Found::Nothing);
     for (fault, wrong) in
         [(Fault::ReadSwapped(40), vec![40, 41]), (Fault::ReadFlipped { read: 100, bit: 22 }, vec![100])]

@@ -14,13 +14,13 @@ fn hits(scpus: u32, profile: &str, contact: &str) -> Config {
     Config { results: Results::Hits, ..config(scpus, profile, contact) }
 }
 
-/// Two spheres that touch or don't.
 fn pair(touching: bool, number: u16) -> PairRecord {
     let far = if touching { 1.5 } else { 2.5 };
     PairRecord::from_spheres([f32::from(number), 0.0, 0.0, 1.0], [f32::from(number), far, 0.0, 1.0])
 }
 
-/// None, a few, all, and invalid pairs among them; none, one, two, many.
+/// Pairs of which none, one in twenty or all touch, with and without invalid pairs; and random pairs: 0, 1, 2, 3 and
+/// 177.
 fn cases(config: &Config) -> Vec<Case> {
     let kinds: [fn(u16) -> bool; 3] = [|_| false, |number| number % 20 == 7, |_| true];
     let mut cases: Vec<Case> = [0, 1, 2, 3, 177].into_iter().map(|n| Case::random(config, n, n + 5)).collect();
@@ -35,12 +35,12 @@ fn cases(config: &Config) -> Vec<Case> {
     cases
 }
 
-/// The whole record, one a line.
+/// The whole record, one per line.
 const WHOLE: &str = "depth,normal,position";
 
 #[test]
 fn the_same_hits_for_every_number_of_scpus_over_every_link() {
-    // One, four and sixteen records a line. (In the evaluator `tests/afu_controller` has each with each.)
+    // One, four and sixteen records per line. (`tests/afu_controller` runs all combinations in the evaluator.)
     for (numbers, contact) in [(&[1, 2, 3, 10][..], WHOLE), (&[7], "depth"), (&[16], "hit")] {
         let cases = cases(&hits(1, "e8f3z", contact));
         for &scpus in numbers {
@@ -63,7 +63,7 @@ fn afu(scpus: u32) -> Instance {
     generated(&hits(scpus, "e8f3z", WHOLE)).instance(1).unwrap()
 }
 
-/// One pair in twenty touches: a line of pairs a cycle goes in, and 64 bytes come out for a contact.
+/// One pair in twenty touches: one line of pairs enters per cycle, and each contact takes 64 bytes of output.
 #[test]
 fn few_hits_cost_no_time_and_few_bytes() {
     let config = hits(2, "e8f3z", WHOLE);
@@ -78,7 +78,7 @@ fn few_hits_cost_no_time_and_few_bytes() {
     }
 }
 
-/// What there is no room for is not written, but all contacts are counted: the host knows how much room to give.
+/// Contacts without room are not written, but all contacts are counted, so the host knows how much room to provide.
 #[test]
 fn more_hits_than_room_end_in_an_error_of_their_own() {
     let case = Case::new(&hits(3, "e8f3z", WHOLE), (0..100).map(|number| pair(number % 3 > 0, number)).collect());
@@ -113,7 +113,7 @@ fn aborts_resets_and_faults_of_the_link_leave_nothing_to_the_next_job() {
                 while !driver.step().unwrap() {}
                 let outcome = driver.finish().unwrap();
                 match outcome.job_error() {
-                    // It came with the last acknowledgement, or after it.
+                    // The abort came with the last acknowledgement or after it.
                     None => spoilt.check(&outcome, &what),
                     error => assert_eq!(error, (!done).then_some(JobError::Aborted), "{what}"),
                 }
@@ -134,7 +134,7 @@ fn aborts_resets_and_faults_of_the_link_leave_nothing_to_the_next_job() {
     }
 }
 
-/// A job and an AFU that don't fit are no job.
+/// A job that does not match the AFU is refused.
 #[test]
 fn a_job_that_expects_all_results_is_refused() {
     let case = Case::random(&config(3, "e8f3z", WHOLE), 10, 1);
@@ -142,8 +142,8 @@ fn a_job_that_expects_all_results_is_refused() {
     assert_eq!(error, DriveError::Results { expected: Results::All, found: Results::Hits });
 }
 
-/// File, the assignment's line, what is assigned instead: a number, the order of two neighbours, a count, the last
-/// line.
+/// File, left-hand side of the assignment, and the expression assigned instead. The faults: a wrong number, two
+/// neighbours swapped, a wrong count, a wrong last line.
 const FAULTS: [Planted; 4] = [
     ("contact_afu_sieve.v", "number_1 = ", 1, "emerged"),
     ("contact_afu_sieve.v", "comes_to_0_in_0 = ", 2, "1'b0"),
@@ -163,7 +163,7 @@ fn planted_faults_are_found() {
         let found = judge(&case, driver(&afu, "shuffled", 1).run(&job));
         assert_eq!(found == Found::Nothing, fault == 0, "fault {fault}: {found:?}");
     }
-    // A radius' exponent: the link's fault, seen in the contacts.
+    // The link flips a bit of a radius' exponent, which shows in the contacts.
     let afu = model.instance(1).unwrap();
     let mut driver = driver(&afu, "shuffled", 1);
     driver.link_mut().plan(&[Fault::ReadFlipped { read: 100, bit: 126 }]);

@@ -1,5 +1,5 @@
-//! Intervals above 1: every word over every link, after aborts too, and as many pairs as there are SCPUs in an
-//! interval.
+//! Intervals above 1: every word over every link, also after aborts, and a throughput of SCPUs / interval pairs per
+//! cycle.
 
 use contact_afu::config::{Config, Profile, Results};
 use contact_afu::link::LinkModel;
@@ -8,7 +8,7 @@ use contact_afu::verify::Bench;
 
 use crate::bench::{Case, driver, generated, of};
 
-/// Every word over every link, on an AFU that is never reset; then the pairs a cycle over the ideal one.
+/// Checks every word over every link on an AFU that is never reset, then the pairs per cycle over the ideal link.
 fn check(config: &Config) {
     let (scpus, interval) = (config.scpus, config.interval);
     let model = generated(config);
@@ -27,7 +27,7 @@ fn check(config: &Config) {
     let afu = model.instance(1).unwrap();
     let outcome = driver(&afu, "ideal", 1).run(&case.job()).unwrap();
     case.check(&outcome, "diamond:10");
-    // Turns go round whole lines a cycle where there are more SCPUs than that.
+    // With more SCPUs than `whole`, only a multiple of `whole` take turns.
     let whole = 2 * interval;
     let in_turn = if scpus > whole { scpus / whole * whole } else { scpus };
     let pairs_a_cycle = (f64::from(in_turn) / f64::from(interval)).min(2.0);
@@ -52,7 +52,7 @@ fn three_at_two_take_three_in_two_cycles() {
     check(&every(2, 3));
 }
 
-/// The fifth never has a turn, and is not there.
+/// The fifth SCPU would never have a turn, so it is not generated.
 #[test]
 fn five_at_two_use_four() {
     check(&Config { profile: "half".parse().unwrap(), ..every(2, 5) });

@@ -1,4 +1,4 @@
-//! Numbers of SCPUs, counts of pairs and links, each with each.
+//! All combinations of numbers of SCPUs, counts of pairs and links.
 
 use std::thread;
 
@@ -27,7 +27,7 @@ fn every_word_for_every_number_of_scpus_over_every_link() {
         [0, 1, 2, 3, 177].into_iter().map(|count| Case::random(&of(1), count, count + 5)).collect();
     cases.insert(3, Case::new(&of(1), Set::Diamond(10).pairs(0)));
     assert_eq!(cases[3].pairs.len(), 12_354);
-    // Two threads, about equal work: the more SCPUs, the more to simulate.
+    // Splits about equal work over two threads: simulation time grows with the number of SCPUs.
     thread::scope(|scope| {
         for numbers in [[1, 7, 10], [2, 3, 16]] {
             let cases = &cases;
@@ -40,7 +40,7 @@ fn every_word_for_every_number_of_scpus_over_every_link() {
     });
 }
 
-/// As many as there can be: turns and lanes at the end of their range.
+/// The largest number of SCPUs: turns and lanes at the end of their range.
 #[test]
 fn sixty_four_scpus() {
     let cases = [0, 1, 63, 64, 65, 1_001].map(|count| Case::random(&of(64), count, count));
@@ -56,7 +56,7 @@ fn a_hundred_thousand_pairs() {
     case.check(&outcome, "random:100000");
 }
 
-/// IEEE binary32 step by step: subnormals, infinities and NaN inside.
+/// IEEE binary32 in every operation, with subnormals, infinities and NaN.
 #[test]
 fn the_paper_s_arithmetic() {
     let config = config(2, "paper", &Fields::ALL.to_string());

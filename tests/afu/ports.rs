@@ -1,5 +1,4 @@
-//! Ports that mean nothing at the moment: whatever is on them, nothing comes of it. And addresses as far apart as there
-//! are.
+//! The values of ports that are not valid have no effect. Addresses may be anywhere in their range.
 
 use contact_afu::afu::ADDRESS_BITS;
 use contact_afu::cosim::Job;
@@ -7,7 +6,7 @@ use contact_afu::link::LinkModel;
 
 use crate::bench::{Case, committed, driver, of};
 
-/// Any bits, the same each time.
+/// Pseudo-random bits, the same in each run.
 fn junk(state: &mut u64) -> u64 {
     *state ^= *state << 13;
     *state ^= *state >> 7;
@@ -32,7 +31,7 @@ fn responses_that_are_not_valid_and_starts_while_busy_are_not_looked_at() {
         for _ in 0..3 {
             driver.start(&case.job()).unwrap();
             let outcome = loop {
-                // Of a valid response the driver sets all of this before the clock's edge.
+                // For a valid response the driver overwrites all of this before the clock edge.
                 data.set_words(&[(); 16].map(|()| junk(&mut state) as u32));
                 for (port, bits) in ports {
                     port.set(junk(&mut state) >> (64 - bits));

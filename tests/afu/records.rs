@@ -1,11 +1,11 @@
-//! Records of every size: which fields are asked for decides where words lie, and how many lines there are.
+//! Records of every size: the selected fields decide where words lie and how many lines there are.
 
 use contact_afu::link::LinkModel;
 use contact_afu::query::Fields;
 
 use crate::bench::{Case, config, driver, generated};
 
-/// Bits a record takes, and so how many share a line.
+/// Bits per record, which decide how many records share a line.
 fn record_bits(fields: Fields) -> u64 {
     match (fields.position, fields.normal, fields.depth) {
         (false, false, false) => 1,
@@ -30,14 +30,14 @@ fn every_count_about_a_line(fields: Fields, profile: &str, scpus: u32) {
             let case = Case::random(&config, count, count + 3);
             assert_eq!(case.lines.len() as u64, count.div_ceil(per_line));
             let what = format!("{fields} in {profile}, {link}, {count} pairs");
-            // The driver ends with an error where anything but these lines is written.
+            // The driver returns an error if any other line is written.
             let outcome = driver.run(&case.job()).unwrap_or_else(|e| panic!("{what}: {e}"));
             case.check(&outcome, &what);
         }
     }
 }
 
-/// All but the full record, which every other test has.
+/// All but the full record, which every other test covers.
 #[test]
 fn every_subset_of_fields() {
     for mask in 1..7 {

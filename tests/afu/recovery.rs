@@ -1,5 +1,5 @@
-//! Resets, aborts and faults of the link in mid-job: each ends as it should, nothing wrong is ever written, and the
-//! next job is right, also while the link still answers what an earlier one asked.
+//! Resets, aborts and faults of the link during a job: each ends as specified, nothing wrong is ever written, and the
+//! next job is right, even while the link still answers requests of an earlier job.
 
 use contact_afu::afu::{Afu, JobError, Spec};
 use contact_afu::cosim::drive::{DriveError, Waiting};
@@ -11,7 +11,7 @@ use crate::bench::{Case, config, driver, full_rate, of};
 
 const SCPUS: u32 = 3;
 
-/// Early cycles one by one, later ones with growing distance: the whole life of a job of some hundred cycles.
+/// Early cycles one by one, later ones at growing distances: the whole life of a job of some hundred cycles.
 fn moments() -> impl Iterator<Item = u64> {
     (0..12).chain((12..100).step_by(7)).chain((100..1000).step_by(53))
 }
@@ -20,12 +20,12 @@ fn afu(seed: u64) -> Instance {
     full_rate(SCPUS).instance(seed).unwrap()
 }
 
-/// A job that is to be spoilt, and one that must be right after it.
+/// A job to be disturbed, and one that must be right after it.
 fn two_cases() -> (Case, Case) {
     (Case::random(&of(SCPUS), 301, 21), Case::random(&of(SCPUS), 57, 22))
 }
 
-/// The job after a spoilt one writes elsewhere: what was sent before a reset, or given up by the watchdog, may be
+/// The job after a disturbed one writes elsewhere: requests from before a reset, or abandoned by the watchdog, may be
 /// written at any time.
 fn elsewhere(case: &Case) -> Job<'_> {
     Job { destination_address: 1 << 41, ..case.job() }
@@ -56,8 +56,8 @@ fn reset_at_any_time_and_the_next_job_is_right() {
     }
 }
 
-/// A short job stopped in each of its cycles, one after the other, over links that are never twice the same: what was
-/// written is right, and nothing of it is lost, doubled or torn in the job that follows.
+/// A short job is stopped in each of its cycles, one after the other, over links that differ every time. What was
+/// written is right, and nothing of the following job is lost, duplicated or torn.
 #[test]
 fn reset_and_abort_at_every_cycle_of_a_short_job() {
     let (spoilt, next) = (Case::random(&of(SCPUS), 15, 31), Case::random(&of(SCPUS), 9, 32));
@@ -84,7 +84,7 @@ fn reset_and_abort_at_every_cycle_of_a_short_job() {
     }
 }
 
-/// The other kind of reset: low, and without a clock edge. What differs from the default is in every module.
+/// This reset differs from the default in every module.
 #[test]
 fn an_asynchronous_reset_that_is_low() {
     let config = config(2, "e8f3z", "depth");
@@ -137,7 +137,7 @@ fn abort_at_any_time_and_the_next_job_is_right() {
     }
 }
 
-/// A job with faults of the link in it, then the next without.
+/// Runs a job with faults of the link, then the next one without.
 fn spoil(link: &str, faults: &[Fault], watchdog: u32, expected: JobError) {
     let (spoilt, next) = two_cases();
     let afu = afu(7);
@@ -155,7 +155,7 @@ fn spoil(link: &str, faults: &[Fault], watchdog: u32, expected: JobError) {
     }
 }
 
-/// The first, some in the middle, the last of 151 lines each way.
+/// The first, some middle ones and the last of 151 lines in each direction.
 const PLACES: [u64; 6] = [0, 1, 63, 64, 100, 150];
 
 #[test]
@@ -166,7 +166,7 @@ fn error_responses_end_the_job_with_their_code() {
     }
 }
 
-/// The second response finds its tag free. (That of the last write comes when the job has ended.)
+/// The second response finds its tag free. (That of the last write arrives after the job has ended.)
 #[test]
 fn a_response_that_comes_twice_ends_the_job_with_its_code() {
     for link in ["ideal", "late"] {
@@ -177,7 +177,7 @@ fn a_response_that_comes_twice_ends_the_job_with_its_code() {
 
 #[test]
 fn the_watchdog_ends_jobs_whose_responses_are_lost() {
-    // Longer than any response takes that is not lost.
+    // Longer than the latency of any response that is not lost.
     let watchdog = 900;
     for link in LinkModel::PRESETS {
         spoil(link, &PLACES.map(Fault::ReadLost), watchdog, JobError::Watchdog);
@@ -185,7 +185,7 @@ fn the_watchdog_ends_jobs_whose_responses_are_lost() {
     }
 }
 
-/// Whatever else went wrong before: that responses may still come is what the host must know.
+/// Takes precedence over earlier errors, because the host must know that responses may still arrive.
 #[test]
 fn the_watchdog_has_the_last_word() {
     spoil("late", &[Fault::ReadError(70)], 900, JobError::Read);
@@ -207,7 +207,8 @@ fn the_watchdog_has_the_last_word() {
     }
 }
 
-/// A watchdog shorter than the link's latency: the job ends, and every response it gave up comes in the next one.
+/// A watchdog shorter than the link's latency: the job ends, and every response that it abandoned arrives during the
+/// next one.
 #[test]
 fn responses_after_the_watchdog_disturb_nobody() {
     let (spoilt, next) = two_cases();
@@ -225,7 +226,7 @@ fn responses_after_the_watchdog_disturb_nobody() {
             }
             spoilt.check_written(&outcome, &what);
             let mut outcome = driver.run(&elsewhere(&next)).unwrap_or_else(|e| panic!("{what}: {e}"));
-            // Requests that were given up on the port are the link's to accept in the next job: one in each direction.
+            // The link accepts requests that were abandoned on the port in the next job: at most one in each direction.
             let (read, written) = next.traffic();
             let more = (outcome.bytes_read - read, outcome.bytes_written - written);
             assert!(more.0 <= 64 && more.1 <= 64 && (more == (0, 0) || error.is_some()), "{what}: {more:?} bytes more");
@@ -236,7 +237,7 @@ fn responses_after_the_watchdog_disturb_nobody() {
     }
 }
 
-/// Without a watchdog the driver ends the wait, and says for what it was.
+/// Without a watchdog the driver ends the wait, and reports what it was waiting for.
 #[test]
 fn a_lost_response_without_a_watchdog_is_a_time_out() {
     let (spoilt, next) = two_cases();

@@ -1,4 +1,4 @@
-//! What the AFU alone allows, and what its counters say when something else is slower.
+//! The throughput of the AFU alone, and its counters when something else is slower.
 
 use contact_afu::link::{Direction, Link, LinkModel, Order};
 use contact_afu::pairs::Set;
@@ -21,7 +21,7 @@ fn one_line_a_cycle_or_one_pair_a_cycle_and_scpu() {
     }
 }
 
-/// A slow direction is the one the AFU says it waits for.
+/// The AFU's counters attribute the wait to the slow direction.
 #[test]
 fn the_counters_name_the_slower_side() {
     let case = Case::random(&of(3), 4_000, 9);
@@ -35,7 +35,8 @@ fn the_counters_name_the_slower_side() {
         let outcome = driver.run(&case.job()).unwrap();
         case.check(&outcome, "lopsided");
         assert!(outcome.efficiency() > 0.95, "{} cycles for {}", outcome.cycles, outcome.limit_cycles);
-        // Three cycles of four it waits; for its output once the pipeline and the lines behind it are full.
+        // It waits in three of four cycles. It waits for its output only once the pipeline and the lines behind it are
+        // full.
         let (waits, rests) = match read == slow {
             true => (outcome.cycles_input, outcome.cycles_output),
             false => (outcome.cycles_output, outcome.cycles_input),

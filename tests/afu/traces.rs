@@ -1,4 +1,4 @@
-//! Waveforms: a job's VCD and FST have the AFU's ports, and the VCD what happened on them.
+//! Waveforms: a job's VCD and FST contain the AFU's ports, and the VCD contains their changes.
 
 use std::collections::HashMap;
 use std::fs;
@@ -8,7 +8,6 @@ use contact_afu::cosim::{Instance, Model, Trace};
 
 use crate::bench::{Case, config, driver, source};
 
-/// The ports, and the cycles that were traced.
 struct Traced {
     ports: Vec<(String, u32)>,
     cycles: u64,
@@ -57,7 +56,8 @@ fn a_vcd_has_the_ports_and_the_whole_job() {
     let end = times.last().unwrap() * picoseconds(header);
     let (whole, edge) = (2 * HALF_PERIOD_PS * cycles, 2 * HALF_PERIOD_PS);
     assert!((whole - edge..=whole).contains(&end), "{end} ps for {cycles} cycles");
-    // One bit's changes are lines of its value and its code: the clock has two a cycle, `done` is high at the end.
+    // A change of a one-bit signal is a line with its value and its code. The clock changes twice per cycle; `done`
+    // ends high.
     let of = |name: &str| -> Vec<&str> {
         let code = &codes[name].1;
         changes.lines().filter(|line| line.len() == code.len() + 1 && line.ends_with(code.as_str())).collect()
@@ -67,7 +67,7 @@ fn a_vcd_has_the_ports_and_the_whole_job() {
     assert!(of("start").len() >= 3, "low, high, low");
 }
 
-/// Picoseconds of a VCD's time unit.
+/// A VCD's time unit in picoseconds.
 fn picoseconds(header: &str) -> u64 {
     let unit =
         header.split_once("$timescale").unwrap().1.split("$end").next().unwrap().split_whitespace().collect::<String>();
@@ -75,7 +75,7 @@ fn picoseconds(header: &str) -> u64 {
     1
 }
 
-/// GTKWave's format, as far as its header block tells: times, numbers of scopes and variables, who wrote it.
+/// Reads the header block of GTKWave's format: times, numbers of scopes and variables, and the writer.
 #[test]
 fn an_fst_has_variables_and_the_whole_job() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! The oldest Verilator that is supported gives the bits and cycles of the newest.
+//! The oldest supported Verilator gives the same bits and cycles as the newest.
 
 use std::env;
 use std::path::Path;
@@ -11,7 +11,8 @@ use crate::bench::{Case, config, driver, generated};
 /// What a child process prints before its result.
 const MARK: &str = "small job: ";
 
-/// A small job through a model of whatever Verilator this process finds, in a line: all lines and figures.
+/// Runs a small job through a model of whichever Verilator this process finds; returns all lines and figures as one
+/// line.
 fn run() -> String {
     let config = config(3, "e8f3z", "depth");
     let case = Case::random(&config, 501, 4);

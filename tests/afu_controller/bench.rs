@@ -1,5 +1,5 @@
-//! The controller around a kernel of fixed delay, in the evaluator, at one end of a small link of its own; and what
-//! must come back.
+//! The controller around a kernel of fixed delay, in the evaluator, connected to a small model of a link; and the
+//! expected results.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -12,7 +12,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 const LATENCY: u32 = 5;
 
-/// A kernel that passes words through: hit where x1's lowest bit is set, fields from x1 on.
+/// A kernel that passes words through. A pair hits if x1's lowest bit is set; the fields are its words from x1 on.
 fn kernel() -> Arc<Module> {
     let graph = Graph::new("sphere_kernel");
     let words: Vec<_> = ["x1", "y1", "z1", "r1", "x2", "y2", "z2", "r2"].map(|name| graph.input(name, 32)).to_vec();
@@ -40,22 +40,22 @@ impl Ports {
 
 pub struct Bench {
     spec: Spec,
-    /// Which pairs hit.
+    /// Decides which pairs hit.
     pub hits: fn(u64) -> bool,
     pub run: Evaluator,
     ports: Ports,
     random: Xoshiro256PlusPlus,
-    /// Chance in 8 that the link is ready or answers in a cycle; 8 is an ideal link.
+    /// The link is ready or answers in a cycle with a chance of `eagerness` in 8; 8 is an ideal link.
     eagerness: u32,
-    /// The same of what is written.
+    /// The same for writes.
     pub write_eagerness: u32,
     pub reads: Vec<(u64, u64)>,
     pub writes: VecDeque<u64>,
     pub written: Vec<(u64, Vec<u64>)>,
-    /// Whether the link accepts requests, and answers them.
+    /// True if the link accepts and answers requests.
     pub accepts: bool,
     pub answers: bool,
-    /// A response of the next cycle in place of the link's: port and tag.
+    /// A response that replaces the link's in the next cycle: port and tag.
     pub forged: Option<(&'static str, u64)>,
 }
 
@@ -64,7 +64,7 @@ impl Bench {
         Self::of(Spec::from(Config { scpus, ..Config::default() }), eagerness, seed)
     }
 
-    /// The core alone, whatever shell the specification names.
+    /// The core alone, whichever shell the specification names.
     pub fn of(mut spec: Spec, eagerness: u32, seed: u64) -> Self {
         spec.config.shell = Shell::Line;
         let scpus = spec.config.scpus;
@@ -151,7 +151,7 @@ impl Bench {
         self.run.step();
     }
 
-    /// A line of pairs.
+    /// A source line of pairs.
     fn line(&self, address: u64) -> Vec<u64> {
         let per_line = u64::from(self.spec.line_bits / 256);
         let first = per_line * (address - 1000);
@@ -159,7 +159,7 @@ impl Bench {
         words.chunks(2).map(|two| two[0] | two[1] << 32).collect()
     }
 
-    /// The first word of a pair: a number of its own, never a NaN or an infinity.
+    /// The first word of a pair: a number that identifies it, never a NaN or an infinity.
     fn x1(&self, pair: u64) -> u64 {
         mixed(pair) & !1 | u64::from((self.hits)(pair))
     }
@@ -174,7 +174,7 @@ impl Bench {
         self.set("start", 0);
     }
 
-    /// Runs to the end of the job; gives the cycles it took.
+    /// Runs to the end of the job; returns the number of cycles.
     pub fn finish(&mut self) -> u64 {
         for cycles in 1..200_000 {
             if self.get("done") == 1 {
@@ -203,13 +203,14 @@ impl Bench {
         assert_eq!(self.get("contacts"), contacts);
     }
 
-    /// Only contacts, in order, densely packed, as far as there is room for their lines; but all are counted.
+    /// Checks a job that returns only contacts: they are in order and densely packed while there is room, and all are
+    /// counted.
     pub fn check_hits(&mut self, count: u64, room: u64) {
         let what = format!("{count} pairs, {:?}", self.spec);
         let hits: Vec<u64> = (0..count).filter(|pair| (self.hits)(*pair)).collect();
         let contact = self.spec.config.contact;
         let record = |&pair: &u64| {
-            // Number, then the words in use, up to a power of two.
+            // A record is the number, then the selected words, padded to a power of two.
             let full = expected(self.x1(pair), pair);
             let word = |index: usize| full[index / 2] >> (index % 2 * 32) & 0xffff_ffff;
             let mut words = vec![pair];
@@ -235,7 +236,7 @@ impl Bench {
     }
 }
 
-/// A number of its own for each pair.
+/// A different number for each pair.
 pub fn mixed(pair: u64) -> u64 {
     (pair.wrapping_mul(2_654_435_761) ^ pair << 3) & 0x3fff_ffff
 }

@@ -1,4 +1,4 @@
-//! Only contacts come back: in order, densely packed, however many there are in a row.
+//! Only contacts come back: in order and densely packed, however many there are in a row.
 
 use contact_afu::afu::Spec;
 use contact_afu::config::{Config, Results};
@@ -10,7 +10,8 @@ fn only_hits(scpus: u32, contact: &str, line_bits: u32) -> Spec {
     Spec { line_bits, ..Spec::from(config) }
 }
 
-/// One, two, four and eight pairs a line; from less than a record a cycle to sixteen a line; none, few, half, all.
+/// One, two, four and eight pairs per line; from less than one record per cycle to sixteen per line; no, few, half and
+/// all pairs hit.
 #[test]
 fn hits_come_back_in_order_and_dense() {
     let kinds: [fn(u64) -> bool; 4] = [|_| false, |pair| pair % 19 == 3, |pair| mixed(pair) & 1 == 1, |_| true];
@@ -31,8 +32,8 @@ fn hits_come_back_in_order_and_dense() {
     }
 }
 
-/// However few lines the dispatcher is asked to keep: none is lost where pairs come at once and the link takes a line
-/// now and then.
+/// With a dispatcher as small as possible, no hit is lost when pairs arrive at full rate and the link rarely accepts a
+/// line.
 #[test]
 fn a_small_dispatcher_loses_no_hits() {
     for dispatch_cycles in [1, 4, 8] {
@@ -49,7 +50,7 @@ fn a_small_dispatcher_loses_no_hits() {
     }
 }
 
-/// What there is no room for is not written, but counted; and the next job knows nothing of it.
+/// Contacts without room are counted but not written, and the next job is not affected.
 #[test]
 fn more_hits_than_there_is_room_for_end_in_an_error() {
     for contact in ["position,normal,depth", "depth"] {
@@ -66,14 +67,14 @@ fn more_hits_than_there_is_room_for_end_in_an_error() {
 #[test]
 fn few_hits_leave_the_input_at_full_speed() {
     let mut bench = Bench::of(only_hits(2, "position,normal,depth", 512), 8, 1);
-    // A tenth hit, and now and then forty in a row.
+    // One pair in ten hits, and sometimes forty in a row.
     bench.hits = |pair| pair % 20 == 7 || pair % 800 < 40;
     bench.set("destination_lines", 4000);
     bench.start(4000, 1);
     let cycles = bench.finish();
     bench.check_hits(4000, 4000);
     assert!(cycles < 2000 + 80, "4000 pairs on two SCPUs took {cycles} cycles");
-    // All of them: a line a cycle goes out.
+    // All pairs hit: one line per cycle leaves.
     bench.hits = |_| true;
     bench.start(1000, 2);
     let cycles = bench.finish();

@@ -1,5 +1,5 @@
-//! The controller around a kernel of fixed delay, run in the evaluator over small links of the test's own: every
-//! pair comes back once, in order, whatever the link does.
+//! The controller around a kernel of fixed delay, run in the evaluator over small link models of its own: every pair
+//! comes back once, in order, whatever the link does.
 
 mod bench;
 mod hits;
@@ -23,7 +23,7 @@ fn every_pair_comes_back_once_and_in_order() {
     }
 }
 
-/// A line that waits for more results than there is room for would wait for ever.
+/// If a line waited for more results than there is room for, it would wait for ever.
 #[test]
 fn a_small_dispatcher_keeps_no_pair_out() {
     for (dispatch_cycles, contact) in [(1, "hit"), (1, "position,normal,depth"), (2, "hit")] {

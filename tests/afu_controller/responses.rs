@@ -1,5 +1,5 @@
-//! Responses that no request waits for, that come at the last moment, or that never come; requests that the link never
-//! accepts.
+//! Responses that were not requested, that arrive at the last moment, or that never arrive; requests that the link
+//! never accepts.
 
 use contact_afu::afu::{DRAIN_CYCLES, JobError};
 
@@ -11,13 +11,13 @@ fn code(error: JobError) -> u64 {
     error as u64
 }
 
-/// Runs to the end of the job, which must come within so many cycles.
+/// Runs to the end of the job, and fails if it takes more than `cycles` cycles.
 fn ends_within(bench: &mut Bench, cycles: u64, what: &str) {
     let took = bench.finish();
     assert!(took <= cycles, "{what}: {took} cycles");
 }
 
-/// The next job is right, whatever the last one left behind.
+/// Checks that the next job is right, whatever state the last one left behind.
 fn next_is_right(bench: &mut Bench, epoch: u64) {
     bench.set("abort_job", 0);
     bench.start(33, epoch);
@@ -25,8 +25,8 @@ fn next_is_right(bench: &mut Bench, epoch: u64) {
     bench.check(33);
 }
 
-/// A response to a request that was answered before, or never made, in each cycle of a job: with the job's epoch, as
-/// after 16 jobs it may be again.
+/// In each cycle of a job, a response arrives whose request was already answered or never made. It has the job's epoch,
+/// as can happen after 16 jobs.
 #[test]
 fn a_response_that_no_request_waits_for_is_an_error() {
     for port in ["rd", "wr"] {
@@ -59,12 +59,12 @@ fn a_response_that_no_request_waits_for_is_an_error() {
             assert!(bench.reads.is_empty() && bench.writes.is_empty(), "ended with requests unanswered");
             next_is_right(&mut bench, 2);
         }
-        // Only as a job completes it can be too late.
+        // It can be too late only in the cycles in which a job completes.
         assert!(found > 50 && late <= 5, "{port}: {found} found, {late} too late");
     }
 }
 
-/// A job whose last acknowledgement comes so many cycles after its request was accepted; its error.
+/// The error of a job whose last acknowledgement arrives `cycles` cycles after its request was accepted.
 fn acknowledged_after(cycles: u64) -> u64 {
     let mut bench = Bench::new(1, 8, 1);
     bench.set("watchdog", WATCHDOG);
@@ -87,17 +87,17 @@ fn acknowledged_after(cycles: u64) -> u64 {
     error
 }
 
-/// The watchdog has one boundary, and no job is complete beyond it: an acknowledgement is in time, or it is not.
+/// The watchdog has a single boundary: an acknowledgement is either in time, or the job ends with the watchdog's error.
 #[test]
 fn the_last_acknowledgement_is_in_time_until_the_watchdog_has_expired() {
     let errors: Vec<u64> = (1..=WATCHDOG + 6).map(acknowledged_after).collect();
     let in_time = errors.iter().take_while(|error| **error == 0).count() as u64;
     assert!(errors[in_time as usize..].iter().all(|error| *error == code(JobError::Watchdog)), "{errors:?}");
-    // The cycle in which the request stands on the port is one of them.
+    // The count includes the cycle in which the request is on the port.
     assert_eq!(in_time, WATCHDOG - 1);
 }
 
-/// Without a watchdog too an abort ends, and says that responses may still come.
+/// An abort ends even without a watchdog, and reports that responses may still arrive.
 #[test]
 fn an_abort_ends_though_a_response_is_lost() {
     let most = u64::from(DRAIN_CYCLES) + 100;
@@ -121,8 +121,8 @@ fn an_abort_ends_though_a_response_is_lost() {
     }
 }
 
-/// A link that accepts nothing any more: the job ends, its request stays on the port as it is, and the next job is
-/// right once the link accepts again.
+/// The link stops accepting requests: the job ends, its request stays on the port unchanged, and the next job is right
+/// once the link accepts again.
 #[test]
 fn a_link_that_accepts_nothing_does_not_keep_a_job() {
     for (watchdog, aborts) in [(WATCHDOG, false), (WATCHDOG, true), (0, true)] {
