@@ -1,5 +1,5 @@
-//! The accelerators as they are proven: the controller that the generator writes for users, with short lines, few tags,
-//! small buffers, and an SCPU that is a delay.
+//! The accelerators that are proven: the controller that the generator writes for users, but with short lines, few
+//! tags, small buffers, and a plain delay as SCPU.
 
 use std::sync::Arc;
 
@@ -9,25 +9,25 @@ use contact_afu::hdl::{Graph, Module};
 
 const TAGS: u32 = 4;
 
-/// An accelerator that is proven, but for the delay of its SCPUs. A line holds two pairs.
+/// A proven accelerator, except for the delay of its SCPUs. A line holds two pairs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Design {
-    /// Two SCPUs that each take a pair per cycle; every pair comes back, two in a line.
+    /// Two SCPUs that each take one pair per cycle. Every pair has a record, two per line.
     EachCycle,
-    /// Two SCPUs that each take a pair every other cycle.
+    /// Two SCPUs that each take one pair every two cycles.
     EveryOther,
-    /// Three of these: their turns do not go round in one cycle.
+    /// Three such SCPUs, whose turns do not fit in one cycle.
     ThreeEveryOther,
-    /// Only the numbers of pairs that touch come back, two in a line.
+    /// Only the numbers of pairs that touch come back, two per line.
     Hits,
-    /// Only pairs that touch come back, each a line: its number, and two words.
+    /// Only pairs that touch come back, one per line: the number and two words.
     Records,
 }
 
 use Design::{EachCycle, EveryOther, Hits, Records, ThreeEveryOther};
 
 impl Design {
-    /// How a report tells it from [`EachCycle`].
+    /// The suffix in reports that distinguishes it from [`EachCycle`].
     pub fn label(self) -> &'static str {
         match self {
             EachCycle => "",
@@ -42,9 +42,9 @@ impl Design {
         matches!(self, Hits | Records)
     }
 
-    /// Macros by which a harness knows it, around SCPUs of that delay.
+    /// Macros that describe it to a harness, with SCPUs of this delay.
     pub fn defines(self, latency: u32) -> Vec<String> {
-        // What the dispatcher keeps: `afu::results::Room`.
+        // The lines that the dispatcher stores, as computed by `afu::results::Room`.
         let lines = if latency <= 2 && !self.only_hits() { 8 } else { 16 };
         let own: &[&str] = match self {
             EachCycle => &["SCPUS=32'd2"],
@@ -57,7 +57,7 @@ impl Design {
         own.chain([format!("LATENCY={latency}"), format!("LINES={lines}")]).collect()
     }
 
-    /// Of a pair's words, those that come back.
+    /// The number of a pair's words that come back.
     fn record_bits(self) -> u32 {
         match self {
             EachCycle | EveryOther | ThreeEveryOther => 16,
@@ -80,12 +80,12 @@ impl Design {
             Hits => of_hits("hit"),
             Records => of_hits("depth"),
         };
-        // A pair has eight words; a hit's number has 32 bits.
+        // A pair has eight words. A hit's number has 32 bits.
         let word_bits = if self.only_hits() { 4 } else { 2 };
         Spec { line_bits: 16 * word_bits, word_bits, max_outstanding: TAGS, dispatch_cycles: 1, ..Spec::from(config) }
     }
 
-    /// Verilog files, name and text, of the accelerator around SCPUs of that delay; and what harnesses include.
+    /// Verilog files (name and text) of the accelerator with SCPUs of this delay, and of what harnesses include.
     pub fn files(self, latency: u32) -> Vec<(String, String)> {
         let spec = self.spec();
         let scpu = scpu(&spec, latency, self.record_bits());
@@ -95,15 +95,15 @@ impl Design {
     }
 }
 
-/// The accelerator's inputs as those of a harness.
+/// The accelerator's inputs, declared as inputs of a harness.
 fn inputs(afu: &Afu) -> String {
     let inputs = afu.top().ports.iter().filter(|port| !port.output);
     let inputs: String = inputs.map(|port| format!(",\n  input wire [{}:0] {}", port.width - 1, port.name)).collect();
     format!("  input wire clk,\n  input wire rst{inputs}\n")
 }
 
-/// The accelerator `dut` and wires for its outputs. Its inputs are the harness's signals of these names, which may be
-/// narrower: the bits above are zero.
+/// Instantiates the accelerator as `dut` and declares wires for its outputs. Its inputs are the harness's signals of
+/// the same names. Those may be narrower; the upper bits are then zero.
 fn instance(afu: &Afu) -> String {
     let ports = &afu.top().ports;
     let outputs = ports.iter().filter(|port| port.output);
@@ -113,7 +113,7 @@ fn instance(afu: &Afu) -> String {
     format!("{wires}  {} #(.SCPUS(`SCPUS)) dut (\n{}\n  );\n", afu.top_name(), connections.join(",\n"))
 }
 
-/// An SCPU that gives its pair back, as far as a record holds it: a contact if bit 0 is set, invalid if bit 1 is set
+/// An SCPU that returns as many bits of its pair as a record holds: a contact if bit 0 is set, invalid if bit 1 is set
 /// and bit 0 is not. At an interval of 2 it reads the upper half one cycle later.
 fn scpu(spec: &Spec, latency: u32, record_bits: u32) -> Arc<Module> {
     let graph = Graph::new("scpu");

@@ -1,7 +1,8 @@
-//! The controller, proven: properties of `tb/formal`, held by Yosys and Yices for the accelerator that `design`
-//! generates, and for mutants of it, each of which breaks one.
+//! Proofs of the controller: Yosys and Yices check the properties of `tb/formal` for the accelerator that `design`
+//! generates. Each mutant of it breaks one property.
 //!
-//! The test command runs a share. `scripts/prove` runs all; `docs/verification.md` says what is proven and what is not.
+//! The test command runs only some of the proofs. `scripts/prove` runs all; `docs/verification.md` says what is proven
+//! and what is not.
 
 mod design;
 mod mutants;
@@ -19,7 +20,7 @@ fn holds(proof: &Proof) {
     assert_eq!(verdict, Verdict::Proven, "{proof}");
 }
 
-/// What is wrong if the mutant does not break its property.
+/// An error text if the mutant does not break its property.
 fn stands(mutant: &Mutant) -> Option<String> {
     let proof = mutant.proof();
     let began = std::time::Instant::now();
@@ -34,7 +35,7 @@ fn all_fall<'a>(mutants: impl Iterator<Item = &'a Mutant>) {
     assert!(standing.is_empty(), "{standing:#?}");
 }
 
-/// Whether the long command has it: all, or those whose line contains `PROOFS`, as in "SCPU 3".
+/// True if the long command runs this proof: `PROOFS` is not set or is part of the proof's line, as in "SCPU 3".
 fn is_chosen(proof: &Proof) -> bool {
     std::env::var("PROOFS").map_or(true, |part| proof.to_string().contains(&part))
 }
@@ -49,7 +50,7 @@ fn a_share_of_the_mutants_falls() {
     all_fall(mutants::all().iter().filter(|mutant| mutant.is_short));
 }
 
-/// Every mutant's text is where its table says, exactly once, whether or not it is proven here.
+/// Each mutant's original text occurs exactly once in its file, even if the mutant is not run here.
 #[test]
 fn every_mutant_is_one_change() {
     for mutant in mutants::all() {
@@ -57,7 +58,7 @@ fn every_mutant_is_one_change() {
     }
 }
 
-/// Every property can be broken: some mutant breaks it.
+/// Every property can fail: some mutant breaks it.
 #[test]
 fn every_property_has_a_mutant() {
     let mutants = mutants::all();

@@ -1,4 +1,4 @@
-//! What is proven: harness, method, depth.
+//! The list of proofs: harness, method, depth.
 
 use std::fmt;
 use std::fs;
@@ -6,47 +6,44 @@ use std::path::Path;
 
 use crate::design::Design;
 
-/// How a proof is made.
 #[derive(Clone, Copy, Debug)]
 pub enum Method {
-    /// Every assertion holds in the first so many cycles after power-up.
+    /// Every assertion holds in the first `n` cycles after power-up.
     Bounded(u32),
-    /// Every assertion holds for ever: in the first so many cycles, and in a cycle after any so many in which it held.
+    /// Every assertion holds for ever: in the first `n` cycles, and in each cycle that follows `n` cycles in which it
+    /// held.
     Inductive(u32),
-    /// Some assertion fails in that cycle after power-up, if any does: for mutants.
+    /// For mutants: if an assertion fails, it fails in this cycle after power-up.
     At(u32),
-    /// Every cover is reached in so many cycles: the proofs are about something.
+    /// Every cover is reached within `n` cycles, which shows that the proofs are not vacuous.
     Reached(u32),
 }
 
-/// A proof.
 #[derive(Clone, Copy, Debug)]
 pub struct Proof {
     pub name: &'static str,
-    /// Of which accelerator.
     pub design: Design,
-    /// The file in `tb/formal`, and its module.
+    /// The file in `tb/formal`, and the name of its module.
     pub harness: &'static str,
-    /// Cycles of an SCPU.
+    /// Latency of an SCPU in cycles.
     pub latency: u32,
-    /// Further macros of the harness.
+    /// Additional macros of the harness.
     pub defines: &'static [&'static str],
     /// Cycles within which a job must end.
     pub bound: Option<u32>,
     pub method: Method,
-    /// Whether the test command has it.
+    /// True if the test command runs it.
     pub is_short: bool,
 }
 
 impl Proof {
-    /// The macros of the harness.
     pub fn defines(&self) -> Vec<String> {
         let bound = self.bound.map(|cycles| format!("BOUND={cycles}"));
         let own = self.defines.iter().map(|define| (*define).to_owned()).chain(bound);
         self.design.defines(self.latency).into_iter().chain(own).collect()
     }
 
-    /// Verilog files, name and text, of the accelerator.
+    /// Verilog files (name and text) of the accelerator.
     pub fn files(&self) -> Vec<(String, String)> {
         self.design.files(self.latency)
     }
@@ -86,7 +83,7 @@ impl fmt::Display for Proof {
 
 use Method::{Bounded, Inductive, Reached};
 
-/// All of them, around an SCPU of so many cycles: depths grow with it.
+/// The proofs that are run for each latency of an SCPU. Their depths grow with the latency.
 fn around(latency: u32) -> [Proof; 5] {
     let of = |name, harness, method| Proof::new(name, harness, latency, method);
     let one_job = &["PAIRS=3", "ONE_JOB"];
@@ -101,7 +98,7 @@ fn around(latency: u32) -> [Proof; 5] {
     ]
 }
 
-/// Of SCPUs that take a pair every other cycle: what hands them pairs differs.
+/// The proofs at an interval of 2, where pairs are handed out differently.
 fn every_other(latency: u32) -> [Proof; 4] {
     let of = |name, design, harness, method| Proof::new(name, harness, latency, method).of(design);
     let three = Design::ThreeEveryOther;
@@ -114,7 +111,7 @@ fn every_other(latency: u32) -> [Proof; 4] {
     ]
 }
 
-/// Where only hits come back: sieve, backlog, overflow.
+/// The proofs for jobs that return only hits: sieve, backlog, overflow.
 fn of_hits(latency: u32) -> [Proof; 6] {
     let of = |name, design, harness, method| Proof::new(name, harness, latency, method).of(design);
     [
@@ -127,8 +124,8 @@ fn of_hits(latency: u32) -> [Proof; 6] {
     ]
 }
 
-/// All of them. The collector and the dispatcher alone know nothing of SCPUs but how many lines are kept for them:
-/// twice as many from a delay of 3 on.
+/// All proofs. The collector and the dispatcher on their own depend on SCPUs only by the number of lines stored for
+/// them, which doubles at a latency of 3.
 pub fn proofs() -> Vec<Proof> {
     let alone = [("collector", 1), ("dispatcher", 1), ("dispatcher", 3)]
         .map(|(name, latency)| Proof::new(name, name, latency, Inductive(2)).short());
@@ -139,12 +136,12 @@ pub fn proofs() -> Vec<Proof> {
     alone.into_iter().chain(around).chain(others).collect()
 }
 
-/// The proof of that name, around the fastest SCPU.
+/// The proof with this name, at the smallest latency.
 pub fn proof(name: &str) -> Proof {
     proofs().into_iter().find(|proof| proof.name == name).unwrap_or_else(|| panic!("no proof is called {name}"))
 }
 
-/// Harness and name of every assertion that a proof has.
+/// Harness and name of every assertion in the proofs.
 pub fn properties() -> Vec<(&'static str, String)> {
     let mut found = Vec::new();
     let mut harnesses: Vec<_> = proofs().iter().map(|proof| proof.harness).collect();

@@ -1,4 +1,4 @@
-//! Yosys and a solver at work on one proof.
+//! Runs Yosys and a solver on one proof.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -6,12 +6,12 @@ use std::process::{Command, Output};
 
 use crate::proofs::{Method, Proof};
 
-/// What came of a proof.
+/// The result of a proof.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// Every assertion holds (or, for covers, everything was reached).
+    /// Every assertion holds, or every cover was reached.
     Proven,
-    /// Assertions that do not hold, or a cover that is not reached.
+    /// Assertions that fail, or a cover that is not reached.
     Falsified(Vec<String>),
 }
 
@@ -29,7 +29,7 @@ fn text(output: &Output) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
 }
 
-/// The harness, in which nothing is asserted but `only`, if that is some property: others might fail instead.
+/// The text of the harness. If `only` is given, all other assertions are removed, because they might fail first.
 fn harness(name: &str, only: Option<&str>) -> String {
     let text = fs::read_to_string(root().join("tb/formal").join(name)).expect("the harness");
     let Some(only) = only else { return text };
@@ -39,7 +39,7 @@ fn harness(name: &str, only: Option<&str>) -> String {
     marked.replace(": assert (", ": cover (").replace("ASSERT", "assert")
 }
 
-/// Proves `proof` of the accelerator in `files`: every property, or the one.
+/// Runs `proof` on the accelerator in `files`, for every property or only one.
 pub fn check(proof: &Proof, only: Option<&str>, files: &[(String, String)]) -> Verdict {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let harness = format!("{}.sv", proof.harness);
@@ -77,7 +77,7 @@ pub fn check(proof: &Proof, only: Option<&str>, files: &[(String, String)]) -> V
     }
 }
 
-/// The solver's name to smtbmc: `PROVER`, else Yices, else Z3, which comes to the same in some ten times the time.
+/// The solver's name for smtbmc: `PROVER`, else Yices, else Z3, which gives the same verdicts about ten times slower.
 fn solver() -> String {
     let program = |name: &str| if name == "yices" { "yices-smt2" } else { "z3" };
     let is_there = |name: &str| root().join(".venv/bin").join(program(name)).exists();
@@ -101,7 +101,7 @@ fn smtbmc(folder: &Path, mode: &[&str], cycles: &str) -> Verdict {
     verdict(&said).unwrap_or_else(|| panic!("{said}"))
 }
 
-/// The verdict in what smtbmc says.
+/// Parses the verdict from smtbmc's output.
 fn verdict(said: &str) -> Option<Verdict> {
     if said.contains("Status: PASSED") {
         return Some(Verdict::Proven);

@@ -2,7 +2,7 @@
 
 use contact_afu::hdl::{DelayModel, Evaluator, Graph, Module, Op, cut};
 
-/// Delays are round: gates 1, sums 2 + width, nothing else.
+/// Round delays: a gate takes 1 ns, a sum 2 ns plus 1 ns per bit.
 fn simple() -> DelayModel {
     DelayModel {
         name: "simple".to_owned(),
@@ -21,7 +21,7 @@ fn simple() -> DelayModel {
     }
 }
 
-/// The clock whose period is so many ns.
+/// The clock in MHz with a period of `ns`.
 fn period(ns: f64) -> f64 {
     1000.0 / ns
 }
@@ -65,7 +65,8 @@ fn an_operation_that_takes_too_long_stands_alone_and_is_reported() {
 fn a_product_of_one_block_has_its_registers_inside() {
     let g = Graph::new("blocks");
     let (a, b) = (g.input("a", 12), g.input("b", 18));
-    // A block's operands may come late in a stage, and what follows it begins a stage; a wider product is no block.
+    // Operands of a block may arrive late in a stage, and the logic after it begins a stage. A wider product is no
+    // block.
     let product = (a.plus(1) * b).named("product");
     g.output("y", product.high(18).plus(1) ^ b);
     g.output("z", a.concat(b) * a.concat(b));
@@ -91,7 +92,7 @@ fn a_product_of_one_block_has_its_registers_inside() {
     }
 }
 
-/// Values may share a name, as those of four squares do; instances that come of them have each their own.
+/// Values may share a name, as those of four squares do; their instances have different names.
 #[test]
 fn blocks_of_one_name_are_instances_of_two() {
     let g = Graph::new("twice");
@@ -146,9 +147,9 @@ fn operations_move_to_where_fewer_bits_wait() {
     let g = Graph::new("moves");
     let (a, b) = (g.input("a", 8), g.input("b", 8));
     let chain = (0..4).fold(b, |value, _| value + b);
-    // One bit of a is all that the end needs: it is made at once and waits, not a.
+    // The output needs only one bit derived from a, so that bit is computed early and delayed instead of a.
     let any = a.any().named("a_any");
-    // Sixteen bits of b, used at the end: made there, since b waits anyway.
+    // Sixteen bits derived from b are computed at the end, because b is delayed anyway.
     let twice = b.concat(!b).named("b_twice");
     g.output("y", any.repeat(16).named("spread") & chain.extend(16) & twice);
     let pipeline = cut(&g.finish().unwrap(), &simple(), period(10.0)).unwrap();
@@ -156,7 +157,7 @@ fn operations_move_to_where_fewer_bits_wait() {
     assert_eq!(stage_of(&pipeline, "a_any"), Some(0));
     assert_eq!(stage_of(&pipeline, "spread"), Some(4));
     assert_eq!(stage_of(&pipeline, "b_twice"), Some(4));
-    // b, its four sums and a_any one bit wait; then 16 bits at the output.
+    // Registers: b, its four sums and a_any (one bit), then 16 bits at the output.
     assert_eq!(pipeline.timing.as_ref().unwrap().register_bits, 4 * 8 + 4 * 8 + 4 + 16);
 }
 

@@ -1,8 +1,8 @@
-//! Delays of one value become one chain, however they were written.
+//! Delays of one value become one chain, in whatever order they were requested.
 
 use contact_afu::hdl::{DelayModel, Evaluator, Graph, Module, Op, Primitive, Signal, delay_block};
 
-/// The delays of a module, each with its cycles and the name of what it delays, if that is not a delay.
+/// The delays of a module: cycles, and the name of the delayed value unless that is itself a delay.
 fn delays(module: &Module) -> Vec<(u32, Option<String>)> {
     let mut found: Vec<_> = module
         .nodes
@@ -25,7 +25,7 @@ fn different_distances_share_their_registers() {
     g.output("also_five", x.delay(2).delay(3));
     g.output("six", x.delay(1).delay(4).delay(1));
     let module = g.finish().unwrap();
-    // Six registers in all: a delay of a few cycles is as many registers.
+    // Six registers in total: a delay of a few cycles is made of registers.
     assert_eq!(delays(&module), [vec![(1, None); 5], vec![(1, Some("x".to_owned()))]].concat());
 
     let mut run = Evaluator::new(&module, &[]).unwrap();
@@ -56,7 +56,7 @@ fn delays_that_nothing_needs_lengthen_nothing() {
     assert_eq!(delays(&g.finish().unwrap()), [(7, Some("x".to_owned()))]);
 }
 
-/// What comes from registers, through wiring alone, goes into a memory as it is; what logic computes passes a register.
+/// A delay memory takes its input directly from registers and wiring. The result of logic passes a register first.
 #[test]
 fn what_logic_computes_passes_a_register_before_a_memory() {
     let cycles = |build: fn(&Graph) -> Signal<'_>, cycles: u32| {
@@ -67,10 +67,10 @@ fn what_logic_computes_passes_a_register_before_a_memory() {
     assert_eq!(cycles(|g| g.input("a", 24), 5), [5]);
     assert_eq!(cycles(|g| g.input("a", 30).low(12).concat(g.input("b", 12)), 5), [5]);
     assert_eq!(cycles(|g| g.input("a", 24) + g.input("b", 24), 5), [1, 4]);
-    // Of three cycles a wide delay is a memory already, but none for what would pass a register first.
+    // At three cycles a wide delay is already a memory, but not if its input would have to pass a register first.
     assert_eq!(cycles(|g| g.input("a", 24), 3), [3]);
     assert_eq!(cycles(|g| g.input("a", 24) + g.input("b", 24), 3), [1, 1, 1]);
-    // Few bits are no memory.
+    // A delay of few bits is not a memory.
     assert_eq!(cycles(|g| g.input("a", 4) + g.input("b", 4), 5), [5]);
 }
 
@@ -119,7 +119,7 @@ fn wires_in_a_circle_are_an_error_wherever_it_is_entered() {
     assert!(error.starts_with("wires: combinational loop through `"), "{error}");
 }
 
-/// A delay in a block memory is as long as it says, around every wrap of its pointer; what fills no block is none.
+/// A delay in a block memory has its exact length at every wrap of its pointer. Too small a delay gets no block memory.
 #[test]
 fn delays_in_blocks_are_as_long_as_they_say() {
     let plain = DelayModel::default();

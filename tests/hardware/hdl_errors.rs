@@ -1,4 +1,4 @@
-//! Bad operations: each is recorded with names and place, all come back together, and nothing panics.
+//! Invalid operations: each is recorded with names and place, all are reported together, and none panics.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ fn inner() -> Arc<Module> {
     g.finish().unwrap()
 }
 
-/// The one error of a graph in which `bad` was done with an 8-bit `a`, a 5-bit `b` and a 1-bit `c`.
+/// The only error of a graph after `bad` ran with an 8-bit `a`, a 5-bit `b` and a 1-bit `c`.
 fn error_of(bad: impl for<'g> FnOnce(&'g Graph, Signal<'g>, Signal<'g>, Signal<'g>)) -> String {
     let g = Graph::new("broken");
     let (a, b, c) = (g.input("a", 8), g.input("b", 5), g.input("c", 1));
@@ -205,7 +205,7 @@ fn errors_come_together_and_poison_adds_none() {
     let first = a + b;
     let line = line!() - 1;
     let second = b.slice(9, 9);
-    // What is made of poison is poison, silently.
+    // A result computed from poison is poison too, without another error.
     g.output("y", (first * second).any().select(first, !first).delay(3).append_zeros(2).msb());
     g.output("z", g.wire("loose", 3));
     let errors = g.finish().unwrap_err();
@@ -226,7 +226,7 @@ fn loops_are_found() {
     assert!(text.contains("combinational loop through `more`"), "{text}");
 }
 
-/// Any call with anything.
+/// Calls any operation with any arguments.
 fn call<'g>(
     g: &'g Graph,
     inner: &Arc<Module>,
@@ -322,12 +322,12 @@ proptest! {
             pool.push(other.parameter("P", 2, 1..=2, 8));
         }
         for one in &calls {
-            // Calls on a stranger are recorded in its own graph, and what comes of them is a stranger, too.
+            // Calls on a foreign signal are recorded in its own graph, and their results are foreign, too.
             pool.push(call(&g, &inner, &pool, one));
         }
         g.output("last", pool[pool.len() - 1]);
         for graph in [g, other] {
-            // Without an error it is a module, which runs and is cut or refused.
+            // A graph without an error is a module, which can be run and is cut or rejected.
             if let Ok(module) = graph.finish() {
                 if let Ok(mut run) = Evaluator::new(&module, &[]) {
                     run.step();

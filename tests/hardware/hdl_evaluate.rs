@@ -116,7 +116,7 @@ fn an_array_is_the_or_of_its_copies_and_each_knows_its_number() {
     assert_eq!(Evaluator::new(&top, &[("SCPUS", 1)]).unwrap_err().to_string(), "module `top` has no parameter `SCPUS`");
 }
 
-/// A module with two independent paths: a to x with nothing between, b to y.
+/// A module with two independent paths: a to x with no logic, b to y.
 fn two_paths() -> std::sync::Arc<contact_afu::hdl::Module> {
     let g = Graph::new("two_paths");
     let (a, b) = (g.input("a", 4), g.input("b", 4));
@@ -140,7 +140,7 @@ fn a_value_may_pass_twice_through_one_instance_but_not_in_a_circle() {
 
 #[test]
 fn a_loop_through_modules_is_named() {
-    // A hand-made module in which `paths` hides that x depends on a, as a wrong generator might.
+    // `paths` of this module was edited to hide that x depends on a, as a faulty generator might.
     let mut lying = (*two_paths()).clone();
     lying.paths.iter_mut().for_each(|path| path.clear());
     let g = Graph::new("circle");
@@ -204,8 +204,8 @@ fn values_are_cut_to_their_port() {
     assert_eq!(run.read(y), 2, "an output is not written");
 }
 
-/// An operation with a constant is folded as the graph is built: into nothing, or into less. Every constant on either
-/// side of every operation, for every value of the other.
+/// An operation with a constant is folded while the graph is built: into nothing, or into less. This runs every
+/// constant on either side of every operation, for every value of the other operand.
 #[test]
 fn operations_with_constants_come_to_what_they_would() {
     type Operation = (&'static str, for<'g> fn(Signal<'g>, Signal<'g>) -> Signal<'g>, fn(u128, u128) -> u128);

@@ -1,4 +1,4 @@
-//! Random modules: the graph, the evaluator and the stage cutter against a computation bit by bit.
+//! Random modules: the graph, the evaluator and the stage cutter against a bit-by-bit computation.
 
 use std::collections::HashMap;
 
@@ -6,7 +6,7 @@ use crate::recipe::{Bits, Recipe, lines, to_words};
 use contact_afu::hdl::{DelayModel, Evaluator, Module, NodeId, Op, cut};
 use proptest::prelude::*;
 
-/// Inputs for each cycle: zeros, ones and noise.
+/// Inputs for each cycle: all zeros, all ones and random bits.
 fn stimulus(recipe: &Recipe, cycles: usize, seed: u64) -> Vec<Vec<Bits>> {
     let mut state = seed | 1;
     let mut noise = move || {
@@ -29,7 +29,7 @@ fn set(run: &mut Evaluator, recipe: &Recipe, inputs: &[Bits]) {
     }
 }
 
-/// Everything an output depends on, by a walk of its own.
+/// The number of nodes that outputs depend on, counted independently.
 fn needed(module: &Module) -> usize {
     let mut open: Vec<NodeId> = module.ports.iter().filter(|p| p.output).filter_map(|p| p.node).collect();
     let mut seen = vec![false; module.nodes.len()];
@@ -48,7 +48,7 @@ fn needed(module: &Module) -> usize {
     count
 }
 
-/// The longest path between registers, in ns, by a walk of its own; and whether it has more than one operation in it.
+/// The longest path between registers in ns, computed independently, and whether it has more than one operation.
 fn longest(module: &Module, model: &DelayModel) -> (f64, bool) {
     fn arrival(module: &Module, delays: &[f64], id: NodeId, known: &mut HashMap<NodeId, (f64, u32)>) -> (f64, u32) {
         if let Some(known) = known.get(&id) {
@@ -125,14 +125,14 @@ proptest! {
 
         let timing = pipeline.timing.clone().unwrap();
         let (logic, several) = longest(&pipeline, &model);
-        // Of a line that chooses in several stages the cut counts all places, each stage only its own.
+        // If a selection spans several stages, the cutter counts all its inputs and each stage has only its own.
         prop_assert!(model.clock(logic) > timing.clock_mhz - 1e-3, "{} ns but {:?}", logic, timing);
         prop_assert!(!several || logic <= model.budget(clock) + 1e-6, "{} ns of {}: {:?}", logic, model.budget(clock), timing);
         for node in &pipeline.nodes {
             let is_placed = matches!(node.op, Op::Constant(_) | Op::Delay { .. }) || node.stage < Some(pipeline.latency);
             prop_assert!(is_placed && (node.stage.is_some() || matches!(node.op, Op::Constant(_) | Op::Delay { .. })), "{:?}", node);
         }
-        // Every output is a register, but what never changes.
+        // Every output is a register, unless it is constant.
         for port in pipeline.ports.iter().filter(|port| port.output) {
             let node = pipeline.node(port.node.unwrap());
             let registered = matches!(node.op, Op::Delay { .. });
@@ -141,7 +141,7 @@ proptest! {
     }
 }
 
-/// How many input nodes a value depends on.
+/// The number of input nodes that a value depends on.
 fn needed_inputs(module: &Module, id: NodeId) -> usize {
     let mut open = vec![id];
     let mut seen = vec![false; module.nodes.len()];

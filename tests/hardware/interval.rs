@@ -28,8 +28,7 @@ fn kernel(arithmetic: Arithmetic, fields: Fields, interval: u32) -> Arc<Module> 
     .unwrap()
 }
 
-/// What the pipeline gives for pairs that come a multiple of `interval` cycles one after the other; between them, and
-/// before the first, there is nonsense on its inputs.
+/// Runs pairs that arrive at multiples of `interval` cycles. Before and between them the inputs are random.
 fn run(module: &Arc<Module>, interval: u64, pairs: &[PairRecord], random: &mut impl RngExt) -> Vec<ContactRecord> {
     let mut evaluator = Evaluator::new(module, &[]).unwrap();
     let inputs: Vec<_> = Query::SphereSphere.shape().names().map(|name| evaluator.pin(name).unwrap()).collect();
@@ -78,7 +77,7 @@ fn run(module: &Arc<Module>, interval: u64, pairs: &[PairRecord], random: &mut i
     contacts
 }
 
-/// Of every flow: hard ones, words at random, coincident and touching spheres.
+/// Pairs of every flow: hard ones, random words, coincident and touching spheres.
 fn pairs(count: usize, random: &mut impl RngExt) -> Vec<PairRecord> {
     let hard = Set::Hard(count as u64 / 2).pairs(2);
     let mut made: Vec<PairRecord> = (0..count - hard.len())
@@ -95,7 +94,7 @@ fn pairs(count: usize, random: &mut impl RngExt) -> Vec<PairRecord> {
         })
         .collect();
     made.extend(hard);
-    // Hard and easy ones side by side.
+    // Shuffled, so that hard and easy pairs are neighbours.
     (0..made.len()).for_each(|index| made.swap(index, random.random_range(0..=index)));
     made
 }
@@ -142,7 +141,7 @@ fn fewer_fields() {
     }
 }
 
-/// At 16 one adder does all sums and differences, and one multiplier all products and squares.
+/// At an interval of 16 one adder does all sums and differences, and one multiplier all products and squares.
 #[test]
 fn operators_are_shared() {
     let instances = |interval: u32, name: &str| {

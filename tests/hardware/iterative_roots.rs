@@ -1,5 +1,5 @@
-//! Roots that take several cycles for a number, against their twins: every word of small formats, every significand of
-//! middling ones, and some of long ones, at intervals that divide their steps and at others.
+//! Roots that take several cycles per number, against their twins: every word of small formats, every significand of
+//! medium ones, and some of long ones. The intervals include divisors of the number of steps and others.
 
 use contact_afu::hdl::{DelayModel, Evaluator, Module};
 use contact_afu::number::Format;
@@ -11,12 +11,12 @@ use std::sync::Arc;
 const ROOTS: [Operator; 2] = [Operator::Recip, Operator::Sqrt];
 
 fn root(operator: Operator, domain: Domain, interval: u32, clock_mhz: f64) -> Arc<Module> {
-    // By the bits that are registered: any measure that prefers fewer ranks.
+    // Counts registered bits; any measure that prefers fewer ranks would do.
     let size = |module: &Module| module.nodes.iter().map(|node| node.width).sum();
     iterative(operator, domain, &DelayModel::default(), clock_mhz, interval, size).unwrap().expect("a root")
 }
 
-/// Every word a multiple of the interval after the one before, nonsense between them.
+/// Runs each word a multiple of the interval after the one before, with random bits between them.
 fn check(operator: Operator, domain: Domain, interval: u32, clock_mhz: f64, words: &[u128]) {
     let module = root(operator, domain, interval, clock_mhz);
     let latency = u64::from(module.latency);
@@ -82,7 +82,7 @@ fn some_of_long_formats() {
         let exponents = format.bias() as u128 - 100..format.bias() as u128 + 100;
         let words: Vec<u128> = (0..count)
             .map(|_| match wide {
-                // As the kernel has it: normal, and not negative.
+                // Operands as in the kernel: normal and not negative.
                 true => random.random_range(exponents.clone()) << 23 | u128::from(random.random::<u32>() >> 9),
                 false => random.random::<u128>() >> (128 - width),
             })
@@ -108,7 +108,7 @@ fn only_roots_that_are_rounded_correctly() {
     assert!(!of(Operator::Mul, "e10f23z") && !of(Operator::Div, "e10f23z"));
 }
 
-/// The Verilog, compiled by Verilator, of the default AFU's arithmetic.
+/// The Verilog of the default AFU's roots, compiled by Verilator.
 #[cfg(feature = "cosim")]
 mod verilated {
     use contact_afu::cosim::{File, Model, Source, Trace};
@@ -136,7 +136,7 @@ mod verilated {
                 phase.set(1 << later);
                 clock.tick(1).unwrap();
                 cycle += 1;
-                // Between numbers there is nonsense.
+                // Between numbers the input is meaningless.
                 a.set(u64::from(cycle));
                 if let Some(&(word, _)) = pending.front().filter(|(_, when)| *when == cycle) {
                     pending.pop_front();

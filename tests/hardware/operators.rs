@@ -1,5 +1,5 @@
 //! Every operator's graph against its exact twin: every pair of words of an 8-bit format, a million random words and
-//! corners of the formats in use, and fewer of the widest.
+//! corner cases of the formats in use, and fewer of the widest.
 
 use crate::support::made_for::is_made_for;
 use crate::support::{Words, corner};
@@ -44,7 +44,7 @@ impl Bench {
         Self::of(operator, domain, &build(operator, domain).unwrap())
     }
 
-    /// By table, where it has one.
+    /// Uses a table if the operator has one.
     fn by_table(operator: Operator, domain: Domain) -> Self {
         Self::of(operator, domain, &build_as(operator, domain, Architecture::Table).unwrap())
     }
@@ -55,13 +55,13 @@ impl Bench {
         Self { operator, domain, evaluator, a, result }
     }
 
-    /// The word for one operand of at most 64 bits, without a look-up.
+    /// The result for one operand of at most 64 bits. It uses pins, which avoids looking up ports by name.
     fn raw(&mut self, a: u64) -> u64 {
         self.evaluator.write(self.a, a);
         self.evaluator.read(self.result)
     }
 
-    /// What the hardware gives, and what it should.
+    /// The hardware's result and the expected one.
     fn both(&mut self, a: u128, b: u128) -> (u128, u128) {
         self.evaluator.set("a", a);
         if self.operator.operands() == 2 {
@@ -70,7 +70,7 @@ impl Bench {
         (self.evaluator.get("result"), self.operator.twin(self.domain.format(), a, b))
     }
 
-    /// Tells whether the hardware is made for these operands; the comparison is made if so.
+    /// Compares the results if the hardware is made for these operands. Returns false if it is not.
     #[track_caller]
     fn check(&mut self, a: u128, b: u128) -> bool {
         if !is_made_for(self.operator, self.domain, a, b) {
@@ -86,7 +86,7 @@ impl Bench {
     }
 }
 
-/// Every word, and for two operands every pair of words; and of these all that the hardware is made for.
+/// Tests every word, or every pair of words for two operands, that the hardware is made for.
 fn exhaust(operator: Operator, domain: impl Into<Domain>) {
     let domain = domain.into();
     exhaust_bench(Bench::new(operator, domain));
@@ -138,8 +138,8 @@ fn every_word_of_faithful_formats() {
     }
 }
 
-/// Correct roots by a table and a correcting step: every word of formats of every kind of table, and where there is
-/// none, digits.
+/// Correct roots by a table and a correcting step: every word of formats for each kind of table. Formats without a
+/// table use digit recurrence.
 #[test]
 fn every_word_of_roots_by_table() {
     for operator in [Operator::Sqrt, Operator::Recip] {
@@ -155,7 +155,8 @@ fn every_word_of_roots_by_table() {
     }
 }
 
-/// Sums in a wider format straight from narrower words, with and without the room that takes.
+/// Sums of narrower words that are rounded once, to a wider format, with and without the exponent range that this
+/// takes.
 #[test]
 fn every_pair_of_8_bit_words_added_in_another_format() {
     for from in ["e5f2", "e5f2z", "e5f2t", "e5f2zt"].map(format) {
@@ -176,7 +177,7 @@ fn a_million_of_records_added_in_wide() {
     }
 }
 
-/// Rounding toward zero, subnormals the other way round, and faithful roots at 24 bits and elsewhere.
+/// Rounding toward zero, the opposite treatment of subnormals, and faithful roots at 24 bits and elsewhere.
 #[test]
 fn a_million_of_other_arithmetic() {
     for operator in ARITHMETIC {
@@ -266,7 +267,8 @@ fn sums_rounded_to_odd() {
     }
 }
 
-/// The excess of squares: operands far from one another and near, sums that nearly cancel, words with few bits.
+/// The excess of squares: operands of very different and similar magnitude, sums that nearly cancel, words with few
+/// bits.
 #[test]
 fn the_excess_of_squares() {
     let (format, operator) = (Format::DIFFERENCE, Operator::SquareExcess { to: Format::TAIL });
@@ -277,7 +279,7 @@ fn the_excess_of_squares() {
         let ((a, b), (c, d)) = (words.two(), words.two());
         let mut operands = [a, b, c, d];
         if count % 4 != 0 {
-            // One scale, and zeros at the end of a random length.
+            // Operands of one scale, with a random number of trailing zeros.
             let zeros = count / 4 % 48;
             let exponent = 500 + u128::from(count % 7);
             for (operand, less) in operands.iter_mut().zip([0, 0, count % 3, count % 31]) {
@@ -286,7 +288,7 @@ fn the_excess_of_squares() {
             }
         }
         if count % 4 == 1 {
-            // The root of the others' squares, so that all cancels but what rounding leaves.
+            // The first operand is the root of the others' squares, so that everything but the rounding error cancels.
             let squares = operands[1..].iter().map(|&word| Soft::from_bits(format, word).to_f64().powi(2));
             operands[0] = Soft::from_f64(format, squares.sum::<f64>().sqrt()).bits();
         }
@@ -301,13 +303,12 @@ fn the_excess_of_squares() {
     assert!(settled > 100_000 && doubtful > 50_000, "{settled} settled, {doubtful} in doubt");
 }
 
-/// Digit recurrences have no table whose entries could be sampled, and a table has as many places to be wrong as it has
-/// words: every significand of binary32 is tried, under an even and an odd exponent for the root, against the machine's
-/// own arithmetic.
+/// A digit recurrence has no table entries to sample, and each word of a table may be wrong. So this tests every
+/// significand of binary32 against the machine's own arithmetic, with an even and an odd exponent for the root.
 #[test]
 fn every_significand_of_root_and_reciprocal() {
     every_significand(Bench::new);
-    // As the default AFU has them.
+    // The architecture that the default AFU uses.
     every_significand(Bench::by_table);
 }
 
@@ -332,13 +333,13 @@ fn every_significand(bench: impl Fn(Operator, Domain) -> Bench + Sync) {
     });
 }
 
-/// Cut for any clock an operator computes the same, new operands in every cycle.
+/// An operator cut for any clock gives the same results, with new operands in every cycle.
 #[test]
 fn pipelines_compute_the_same() {
     for format in ["e5f2", "half", "paper", "wide", "e11f52", "e10f23ztr"].map(format) {
         let convert = Operator::Convert { to: if format == Format::WIDE { Format::BINARY32 } else { Format::WIDE } };
         for (operator, clock_mhz) in ARITHMETIC.into_iter().chain([convert]).zip([100.0, 200.0, 300.0].iter().cycle()) {
-            // With multiplier blocks of both kinds.
+            // Includes both kinds of multiplier blocks.
             let model = match format.fraction_bits() {
                 23 => DelayModel::default(),
                 _ => DelayModel::ecp5(),
@@ -366,7 +367,7 @@ fn pipelines_compute_the_same() {
     }
 }
 
-/// The module with one gate in place of another.
+/// The module with one gate replaced by another; `None` if the node is not a suitable gate.
 fn with_fault(module: &Module, node: usize) -> Option<Module> {
     let mut faulty = module.clone();
     faulty.nodes[node].op = match faulty.nodes[node].op {
@@ -384,8 +385,8 @@ fn with_fault(module: &Module, node: usize) -> Option<Module> {
     Some(faulty)
 }
 
-/// The comparison is able to fail: nearly every wrong gate in an operator is found by the words of the 8-bit format.
-/// The few that are not make no difference there, such as a sum with a zero that became a difference.
+/// The comparison can fail: the words of the 8-bit format detect nearly every wrong gate in an operator. The few others
+/// make no difference in this format, such as a sum with zero that became a difference.
 #[test]
 fn planted_faults_are_found() {
     let format = format("e5f2");

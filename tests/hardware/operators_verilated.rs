@@ -1,8 +1,8 @@
-//! Every operator's Verilog, cut for 200 MHz and compiled by Verilator, against its exact twin: streams of words, one
-//! a cycle, so that the pipeline is full all the time.
+//! Every operator's Verilog, cut for 200 MHz and compiled by Verilator, against its exact twin: a stream of one word
+//! per cycle, so that the pipeline is always full.
 //!
-//! The share in the usual run is ten million words an operator of two operands, and every significand of square root
-//! and reciprocal; `cargo test --test hardware operators_verilated -- --ignored` runs a hundred million each.
+//! The usual run tests ten million words per operator of two operands, and every significand of square root and
+//! reciprocal. `cargo test --test hardware operators_verilated -- --ignored` runs a hundred million each.
 
 use std::collections::VecDeque;
 
@@ -61,7 +61,7 @@ fn build(operator: Operator, domain: Domain) -> (Model, u32) {
     build_for(&DelayModel::default(), operator, domain, vec![])
 }
 
-/// With `first` before the operator's own files.
+/// Builds a model from the operator's files, with `first` before them.
 fn build_for(delays: &DelayModel, operator: Operator, domain: Domain, first: Vec<File>) -> (Model, u32) {
     let module = pipelined(operator, domain, delays, MHZ).unwrap();
     let own = module.hierarchy().into_iter();
@@ -115,8 +115,8 @@ fn a_million_of_wide_without_its_ends() {
     }
 }
 
-/// What synthesis reads: primitives in the place of products and of chains that add or subtract, for which models in
-/// `tb/` stand here.
+/// The Verilog that synthesis reads: primitives instead of products and of chains that add or subtract, simulated by
+/// the models in `tb/`.
 #[test]
 fn primitives_compute_as_their_twins_do() {
     let delays = Target::Ecp5.delays();
@@ -124,7 +124,7 @@ fn primitives_compute_as_their_twins_do() {
         let first = File { name: "primitives.v".to_owned(), text: crate::primitives::primitives() };
         let both = [Operator::Mul, Operator::Square, Operator::Add, Operator::Div, Operator::Sqrt, Operator::Recip];
         let paper = both.map(|operator| (operator, Domain::from(Format::BINARY32)));
-        // Roots by table.
+        // These roots use tables.
         let wide = [Operator::Sqrt, Operator::Recip].map(|operator| (operator, Domain::from(Format::WIDE)));
         for (operator, domain) in paper.into_iter().chain(wide) {
             let first = if synthesis { vec![first.clone()] } else { vec![] };
@@ -133,7 +133,7 @@ fn primitives_compute_as_their_twins_do() {
     }
 }
 
-/// In digits, as subnormals ask for, and by table.
+/// Roots by digit recurrence, as subnormals require, and by table.
 #[test]
 fn every_significand_of_root_and_reciprocal() {
     for (operator, exponents) in [(Operator::Sqrt, 2), (Operator::Recip, 1)] {

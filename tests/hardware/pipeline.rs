@@ -1,4 +1,4 @@
-//! Kernels read with wires: what is made, when it is there, and what is refused.
+//! Kernels traced with wires: the operators they produce, when results are ready, and which kernels are rejected.
 
 use contact_afu::hdl::{BuildErrors, DelayModel, Evaluator, Module, Op};
 use contact_afu::number::{Format, Number, Soft};
@@ -23,7 +23,7 @@ fn operators(module: &Module) -> Vec<(String, usize)> {
     KernelReport::of(module).operators.into_iter().map(|of| (of.module, of.instances)).collect()
 }
 
-/// Runs words through, one in every cycle.
+/// Runs words through the pipeline, one set per cycle.
 fn run(module: &Arc<Module>, words: &[[u32; 2]]) -> Vec<u32> {
     let mut evaluator = Evaluator::new(module, &[]).unwrap();
     let mut results = Vec::new();
@@ -80,7 +80,7 @@ fn what_no_output_needs_is_left_out_and_inputs_stay() {
     assert!(module.port("b").is_some_and(|(_, port)| !port.output && port.node.is_none()));
 }
 
-/// Levels of logic between registers, at their deepest.
+/// The maximum number of logic levels between registers.
 fn deepest_glue(module: &Module) -> u32 {
     let mut depth = vec![0_u32; module.nodes.len()];
     for (index, node) in module.nodes.iter().enumerate() {
@@ -140,7 +140,7 @@ fn every_bad_operation_is_recorded_and_none_panics() {
         let mixed = a + b;
         let tenth = a.constant(0.1);
         let foreign = a * stray;
-        // Poison is not an error again.
+        // Using poison is not another error.
         ports.output("y", mixed.sqrt() + tenth / foreign);
         ports.output("z", Wire::select(a.gt(a), a, b));
     });
@@ -178,7 +178,7 @@ fn kernels_nest_and_survive_a_panic() {
     assert_eq!(operators(&pipeline(&kernel.unwrap())), [("fp_add_e8f23".to_owned(), 1)]);
 }
 
-/// A sum of squares of what was promised to be finite, shown while `show` says so.
+/// A sum of squares of inputs that are promised to be finite while `valid`. It is output if `show(valid)`, else zero.
 fn squares(format: Format, show: impl Fn(Bit) -> Bit) -> Kernel {
     let body = |ports: &Ports| {
         let (a, b) = (ports.input("a", FORMAT), ports.input("b", FORMAT));
@@ -204,7 +204,7 @@ fn what_cannot_happen_costs_nothing() {
 fn a_range_too_narrow_is_found_and_named() {
     let narrow = squares("e9f23".parse().unwrap(), |valid| valid).not_normal().unwrap();
     assert!(narrow.contains("`square` in e9f23: results from 2^-298 to 2^256 leave the normal range"), "{narrow}");
-    // Shown when the promise does not hold, an input may be anything.
+    // The sum is output while the promise does not hold, so an input may be anything.
     let shown = squares(Format::WIDE, |valid| !valid).not_normal().unwrap();
     assert!(shown.contains("an operand may be infinite or NaN"), "{shown}");
 }

@@ -38,12 +38,12 @@ fn kernel_in(arithmetic: Arithmetic, fields: Fields, record: Format) -> Arc<Modu
     .unwrap()
 }
 
-/// What the pipeline gives for the pairs, one in every cycle.
+/// The pipeline's results for the pairs, one pair per cycle.
 fn run(module: &Arc<Module>, pairs: &[PairRecord]) -> Vec<ContactRecord> {
     run_in(module, pairs, Format::BINARY32)
 }
 
-/// The same of a pipeline whose words are in `record`, widened.
+/// The same for a pipeline whose words have the format `record`; the results are widened.
 fn run_in(module: &Arc<Module>, pairs: &[PairRecord], record: Format) -> Vec<ContactRecord> {
     let is_valid = |pair: &PairRecord| pair.rounded(record).is_valid(Query::SphereSphere);
     let mut evaluator = Evaluator::new(module, &[]).unwrap();
@@ -69,13 +69,13 @@ fn run_in(module: &Arc<Module>, pairs: &[PairRecord], record: Format) -> Vec<Con
             };
             words[7] = flow.flags();
             if unsettled.is_some_and(|pin| evaluator.read(pin) == 1) {
-                // A pair without a hit, which the flow must not say.
+                // The hardware must not report a hit for an unsettled pair.
                 assert_eq!(flow, Flow::Fake, "{pair:?}");
                 words[7] = ContactRecord::UNSETTLED.flags();
             }
             contacts.push(ContactRecord(words));
         }
-        // After the last pair nonsense follows, which must not reach back.
+        // After the last pair the inputs are NaNs, which must not affect earlier pairs.
         let pair = pairs.get(cycle).copied().unwrap_or(PairRecord([0x7FC0_0001; 8]));
         inputs.iter().zip(pair.0).for_each(|(pin, word)| evaluator.write(*pin, narrow(word, record).into()));
         evaluator.write(valid, is_valid(&pair).into());
@@ -84,13 +84,13 @@ fn run_in(module: &Arc<Module>, pairs: &[PairRecord], record: Format) -> Vec<Con
     contacts
 }
 
-/// Pairs of every flow: words at random, spheres near touching at every scale, coincident and nearly coincident
+/// Pairs of every flow: random words, spheres that nearly touch at every scale, coincident and nearly coincident
 /// centres, and neighbours in the paper's diamond, which touch exactly.
 fn pairs(count: usize, seed: u64) -> Vec<PairRecord> {
     pairs_of(count, seed, -140..120)
 }
 
-/// The same of sizes from 2 to the powers of `scales`.
+/// The same with sizes around 2^s for random s in `scales`.
 fn pairs_of(count: usize, seed: u64, scales: Range<i32>) -> Vec<PairRecord> {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
     let mut pairs = Vec::new();
@@ -133,7 +133,7 @@ fn check(arithmetic: Format, fields: Fields, count: usize) {
     let pairs = pairs(count, 1);
     let wanted = Reference::new(arithmetic, fields).run_all(&pairs);
     for flow in Flow::ALL {
-        // Without a distance the kernel tells no flow from another but by its flags, and those are all here.
+        // Without a distance the kernel distinguishes flows only by its flags, and all of those occur here.
         let seen = wanted.iter().filter(|contact| contact.flow() == Some(flow)).count();
         assert!(seen * 40 > count, "only {seen} pairs are {flow}");
     }
@@ -156,7 +156,7 @@ fn paper() {
     every_fields().for_each(|fields| check(Format::BINARY32, fields, 4_000));
 }
 
-/// Rounding toward zero, the other treatment of subnormals, faithful roots, and all of them together.
+/// Rounding toward zero, the opposite treatment of subnormals, faithful roots, and all of them together.
 #[test]
 fn other_arithmetic() {
     for text in ["e8f23t", "e8f23z", "e8f23r", "e10f23zr", "e10f23zt", "e10f23", "e10f23ztr", "e5f10tr"] {
@@ -172,7 +172,7 @@ fn other_formats() {
     }
 }
 
-/// The kernel of exact squares, on pairs of which it leaves some to the host.
+/// The kernel of exact squares, including pairs that it leaves to the host.
 #[test]
 fn exact() {
     let hard = Set::Hard(5_100).pairs(2);
@@ -228,8 +228,8 @@ fn what_is_not_asked_for_is_not_there() {
     }
 }
 
-/// Words of 16 bits at the kernel's edges: as narrow as its arithmetic, narrower, and with other exponents. A finite
-/// number of the pair may be infinite there.
+/// Records of 16-bit words: as narrow as the kernel's arithmetic, narrower, and with other exponents. Finite numbers of
+/// the pair may overflow in the record.
 #[test]
 fn records_of_16_bits() {
     for (record, scales) in [(Format::HALF, -24..15), (Format::BFLOAT, -140..120)] {
@@ -252,7 +252,7 @@ fn records_of_16_bits() {
             }
         }
     }
-    // Over records of few exponents a format is wide enough that over binary32 is not.
+    // A format that is too narrow for binary32 records is wide enough for records with fewer exponents.
     let ends = |record| {
         let report = KernelReport::of(&kernel_in(Arithmetic::Rounded("e8f15z".parse().unwrap()), Fields::ALL, record));
         let inner = report.operators.into_iter().filter(|of| !is_edge(&of.module));
@@ -262,13 +262,13 @@ fn records_of_16_bits() {
     assert!(ends(Format::BINARY32) > 3 && ends(Format::BFLOAT) > 3);
 }
 
-/// Whether it takes words of records, or gives them.
+/// True if the operator converts words from or to records.
 fn is_edge(module: &str) -> bool {
     ["fp_convert_", "fp_widening_"].iter().any(|begin| module.starts_with(begin))
 }
 
-/// The whole kernel of a wide format is free of logic for the ends of the range, converters at the edges apart; that of
-/// binary32 is not.
+/// The whole kernel of a wide format has no logic for the ends of the range, except in the converters at its edges. The
+/// kernel of binary32 has.
 #[test]
 fn a_wide_format_needs_no_ends() {
     for fields in every_fields() {
@@ -288,7 +288,7 @@ fn a_wide_format_needs_no_ends() {
     }
 }
 
-/// The comparison is able to fail: one operator in place of another is found, at every place in the kernel.
+/// The comparison can fail: replacing one operator by another is detected at every place in the kernel.
 #[test]
 fn planted_faults_are_found() {
     let module = kernel(Format::WIDE, Fields::ALL);

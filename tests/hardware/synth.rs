@@ -1,5 +1,5 @@
-//! Measuring hardware: the wrapper trims nothing, the netlist that is counted gives the twin's bits, and the command
-//! line does what it says. Needs Yosys and nextpnr-ecp5: `scripts/setup --test`.
+//! Measuring hardware: the wrapper trims nothing, the measured netlist gives the twin's bits, and the command line
+//! works as documented. Needs Yosys and nextpnr-ecp5: `scripts/setup --test`.
 
 use assert_cmd::Command;
 use contact_afu::config::Profile;
@@ -32,7 +32,7 @@ fn what_is_missing_is_exit_3_with_its_command_and_bad_words_are_exit_2() {
     }
 }
 
-/// A fault once: memories asked for look-up tables, which an iCE40 has none of for them, and Yosys refused.
+/// A former fault: memories requested look-up tables, which an iCE40 cannot use as memory, and Yosys failed.
 #[test]
 fn an_scpu_is_counted_for_a_family_without_memories_of_look_up_tables() {
     let arguments = ["--kernel", "--profile", "half", "--contact", "hit", "--target", "ice40", "--no-route"];
@@ -57,7 +57,7 @@ fn an_operator_is_placed_and_routed() {
     let cycles = figures.latency_cycles.expect("a pipeline");
     assert_eq!(figures.latency_ns, Some(1000.0 * f64::from(cycles) / clock));
     assert!((100..1000).contains(&figures.area.luts) && figures.area.ffs > 16, "{figures:?}");
-    // Two chains and two ranks: of the two operands' and of the result's bits.
+    // The wrapper's registers: two chains and two ranks, for the bits of both operands and of the result.
     assert_eq!((figures.wrapper.ffs, figures.trimmed), (2 * 32 + 2 * 16, Trimmed::default()));
     let path: f64 = figures.critical.iter().map(|hop| hop.logic_ns + hop.routing_ns).sum();
     assert!((path - 1000.0 / clock).abs() < 0.3, "the path of {path} ns is what limits {clock} MHz");
@@ -66,7 +66,7 @@ fn an_operator_is_placed_and_routed() {
     assert_eq!(run().0, figures, "kept and found again");
 }
 
-/// A root in both architectures, and once what has one alone.
+/// An operator with two architectures, and one with a single architecture, which is listed once.
 #[test]
 fn architectures_stand_side_by_side() {
     let cache = tempfile::tempdir().expect("a temporary folder");

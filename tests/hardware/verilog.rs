@@ -1,4 +1,4 @@
-//! The Verilog printer: a pipeline, a module with state, and an array of instances, held by golden files.
+//! The Verilog printer: a pipeline, a module with state, and an array of instances, compared with golden files.
 
 use std::sync::Arc;
 
@@ -6,7 +6,7 @@ use contact_afu::hdl::verilog::{Memories, Style, emit};
 use contact_afu::hdl::{Evaluator, Graph, Module, Reset};
 use expect_test::expect_file;
 
-/// One copy of an array: adds its number to a shared value where it is chosen.
+/// One copy of an array: adds its number to a shared value if it is selected.
 fn slot() -> Arc<Module> {
     let graph = Graph::new("slot");
     graph.about("adds its own number to the value where it is chosen");
@@ -50,7 +50,7 @@ fn golden_top() {
     expect_file!["../golden/top.v"].assert_eq(&emit(&top(), &style));
 }
 
-/// Copies beyond the rounded number answer nothing: they are not there.
+/// Copies beyond the rounded number do not exist, so they return zero.
 #[test]
 fn an_array_has_a_rounded_number_of_copies() {
     for (scpus, copies) in [(3, 3), (4, 4), (7, 4), (8, 8), (10, 8), (64, 64)] {
@@ -75,7 +75,7 @@ fn golden_top_asynchronous_reset() {
     assert!(!text.contains(" rst "), "{text}");
 }
 
-/// M20K is a block of some of Intel's families, and an iCE40 has no memories of look-up tables.
+/// M20K is a block of some Intel families. An iCE40 has no memories made of look-up tables.
 #[test]
 fn a_memory_asks_for_what_the_family_has() {
     let graph = Graph::new("memories");

@@ -1,7 +1,7 @@
-//! The same bits from a second simulator, with four states, and from the netlist after synthesis: operators and SCPUs
-//! as they are printed, as Yosys makes gates of them, and as cells of an ECP5, all in Icarus, against the twins and the
-//! reference kernel. An unknown bit in an output is a difference. SCPUs of full width after synthesis run in Verilator,
-//! since Icarus takes hours to compile them.
+//! Operators and SCPUs in a second, four-state simulator: the Verilog as it is printed, and the netlist after
+//! synthesis, as gates and as cells of an ECP5. All run in Icarus, against the twins and the reference kernel. An
+//! unknown output bit is a mismatch. SCPUs of full width after synthesis run in Verilator, because Icarus takes hours
+//! to compile them.
 
 #[path = "../support/primitives.rs"]
 mod primitives;
@@ -24,7 +24,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use simulate::{Vector, simulate};
 use synthesise::{As, verilog};
 
-/// Compares what a module gives with what it should, in each form.
+/// Compares a module's outputs in each form with the expected ones.
 fn check(what: &str, module: &Arc<Module>, forms: &[As], latency: u32, inputs: &[Vector], wanted: &[Vector]) {
     for &form in forms {
         let found = simulate(module, &verilog(module, form), latency, inputs);
@@ -35,7 +35,7 @@ fn check(what: &str, module: &Arc<Module>, forms: &[As], latency: u32, inputs: &
     }
 }
 
-/// Words at random, and zeros, ones and infinities.
+/// Tests an operator with random words and with corner cases.
 fn operator(operator: Operator, profile: &str, forms: &[As], count: usize) {
     let profile: Profile = profile.parse().expect("a profile");
     let format = profile.format();
@@ -56,12 +56,12 @@ fn operator(operator: Operator, profile: &str, forms: &[As], count: usize) {
     check(&unit.title(), &unit.module, forms, latency, &inputs, &wanted);
 }
 
-/// Words as a vector, the first one last: bit 0 is the first word's.
+/// Packs words into a vector, the first word in the lowest bits.
 fn words(words: [u32; 8]) -> Vector {
     words.into_iter().rev().map(|word| (word.into(), 32)).collect()
 }
 
-/// Pairs through an SCPU: a record, and whether it is a contact and whether the pair is invalid.
+/// Tests an SCPU: each pair's record, and the flags for a contact and for an invalid pair.
 fn scpu(profile: &str, contact: &str, forms: &[As], pairs: &[PairRecord]) {
     let profile: Profile = profile.parse().expect("a profile");
     let contact = contact.parse().expect("fields");
@@ -82,7 +82,6 @@ fn scpu(profile: &str, contact: &str, forms: &[As], pairs: &[PairRecord]) {
     check(&format!("{} {contact}", unit.title()), &unit.module, forms, latency, &inputs, &wanted);
 }
 
-/// Hard pairs, any pairs and invalid ones.
 fn mixed(count: u64) -> Vec<PairRecord> {
     Set::Hard(count / 2).pairs(5).into_iter().chain(Set::Random(count - count / 2).pairs(5)).collect()
 }
@@ -99,7 +98,7 @@ fn an_scpu_after_synthesis_gives_the_reference_s_bits() {
     scpu("e6f3z", "hit,depth", &[As::Gates, As::Ecp5], &mixed(300));
 }
 
-/// Nothing unreset reaches an output: the SCPU of each profile, as printed.
+/// No register without a reset affects an output: the SCPU of each profile, as printed.
 #[test]
 fn every_profile_in_four_states() {
     for profile in ["paper", "wide", "exact"] {
@@ -107,7 +106,7 @@ fn every_profile_in_four_states() {
     }
 }
 
-/// The comparison is able to fail: an inverted bit and one that nothing drives are found.
+/// The comparison can fail: an inverted bit and an undriven one are detected.
 #[test]
 fn a_spoilt_netlist_is_found_out() {
     let profile: Profile = "e5f6".parse().expect("a profile");
@@ -125,7 +124,7 @@ fn a_spoilt_netlist_is_found_out() {
     assert!(inputs.iter().zip(&good).all(|(two, found)| *found == twin(two[0].0, two[1].0).to_string()));
 }
 
-/// An SCPU of full width in Verilator, of whose bits every one is the reference's.
+/// Runs an SCPU of full width in Verilator and compares every bit with the reference.
 fn verilated_scpu(profile: &str, form: As, pairs: &[PairRecord]) {
     let profile: Profile = profile.parse().expect("a profile");
     let config = Config { scpus: 1, profile, shell: Shell::Line, ..Config::default() };
@@ -148,7 +147,7 @@ fn corpus_and_mixed(count: u64) -> Vec<PairRecord> {
     pairs
 }
 
-/// With multipliers, tables, long delays and carry chains in the blocks that `--target ecp5` names.
+/// With multipliers, look-up tables, long delays and carry chains in the blocks that `--target ecp5` instantiates.
 #[test]
 fn an_scpu_in_the_blocks_of_its_target() {
     verilated_scpu("wide", As::Blocks, &corpus_and_mixed(6000));

@@ -1,4 +1,4 @@
-//! A pipeline in Icarus: a vector in every cycle, what comes out as text, unknown bits included.
+//! Simulates a pipeline in Icarus: one vector per cycle. Outputs are text, including unknown bits.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -11,12 +11,12 @@ use crate::synthesise::Files;
 /// Numbers and their widths, the most significant first.
 pub type Vector = Vec<(u128, u32)>;
 
-/// A vector in binary.
+/// The vector in binary.
 pub fn bits(vector: &Vector) -> String {
     vector.iter().map(|&(value, width)| format!("{value:0width$b}", width = width as usize)).collect()
 }
 
-/// The outputs for `inputs`, each `latency` cycles after it went in; ports in their order.
+/// The outputs for `inputs`, each `latency` cycles after its input, with the ports in their order.
 pub fn simulate(module: &Module, verilog: &Files, latency: u32, inputs: &[Vector]) -> Vec<String> {
     assert!(latency > 0, "a pipeline");
     let folder = tempfile::tempdir().expect("a temporary folder");

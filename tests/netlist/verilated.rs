@@ -1,4 +1,4 @@
-//! An SCPU's netlist in Verilator.
+//! Simulates an SCPU's netlist in Verilator.
 
 use std::fs;
 
@@ -7,7 +7,7 @@ use contact_afu::query::PairRecord;
 
 use crate::synthesise::Files;
 
-/// What Verilator says of netlists and of Yosys's models of cells, none of which is a fault.
+/// Verilator's warnings about netlists and Yosys's cell models. None of them is a fault.
 const MEANT: [&str; 10] = [
     "WIDTH",
     "UNOPTFLAT",
@@ -21,10 +21,10 @@ const MEANT: [&str; 10] = [
     "SPECIFYIGN",
 ];
 
-/// A contact's words; whether it is one, and whether the pair is invalid.
+/// A contact's words, and the flags for a contact and for an invalid pair.
 pub type Outcome = ([u32; 8], (bool, bool));
 
-/// `text` with modules that Verilator compiles once each, instead of at every instance.
+/// `text` with directives that make Verilator compile each module once instead of inlining every instance.
 fn apart(text: &str) -> String {
     let mut header = false;
     let line = |line: &str| {
@@ -36,13 +36,13 @@ fn apart(text: &str) -> String {
     text.lines().map(line).collect()
 }
 
-/// What comes of a pair in every cycle, each `latency` cycles after it went in.
+/// The results of one pair per cycle, each `latency` cycles after its input.
 pub fn scpu(name: &str, verilog: &Files, latency: u32, pairs: &[PairRecord]) -> Vec<Outcome> {
     let meant: String = MEANT.iter().map(|warning| format!("// verilator lint_off {warning}\n")).collect();
     let file = |path: &std::path::PathBuf| {
         let name = path.file_name().expect("a file").to_string_lossy().into_owned();
         let text = fs::read_to_string(path).expect("written");
-        // Cells are small and many: those are best compiled at each instance.
+        // Cells are small and numerous, so inlining them is faster.
         let text = if name == "netlist.v" { apart(&text) } else { text };
         File { name, text: meant.clone() + &text }
     };
@@ -62,7 +62,7 @@ pub fn scpu(name: &str, verilog: &Files, latency: u32, pairs: &[PairRecord]) -> 
     let [contact, invalid] = ["contact", "invalid_pair"].map(|name| instance.output(name, 1).expect("a flag"));
     let mut found = Vec::with_capacity(pairs.len());
     for cycle in 1..pairs.len() + latency as usize {
-        // Behind the last pair comes what nobody looks at.
+        // After the last pair the input does not matter.
         pair.set_words(&pairs.get(cycle - 1).map_or([u32::MAX; 8], |pair| pair.0));
         clock.tick(1).expect("it runs");
         if cycle >= latency as usize {

@@ -1,4 +1,4 @@
-//! Errors as the studies of accuracy have them, against computations of their own.
+//! Errors as the accuracy studies compute them, against independent computations.
 
 use contact_afu::accuracy::{Answer, Contender, Contenders, Formula, Profiled, Row, assess, measure};
 use contact_afu::kernel::EngineError;
@@ -20,8 +20,8 @@ fn dense() -> Vec<PairRecord> {
     Set::Dense(10_000).pairs(3)
 }
 
-/// `paper` is binary32: the formula in the machine's own `f32`, and errors found with `f64` alone, which are right to
-/// 29 bits of what is compared.
+/// `paper` is binary32, so this evaluates the formula in the machine's own `f32`. Errors are computed in `f64` only,
+/// which is right to 29 bits of the compared numbers.
 #[test]
 fn errors_of_paper_are_those_of_f32() {
     let pairs = dense();
@@ -48,9 +48,10 @@ fn errors_of_paper_are_those_of_f32() {
     assert!(depth.mean < depth.p999 && depth.p999 <= depth.largest);
 }
 
-/// Up to the 23 bits of the record every bit makes errors smaller. With one more they grow, and then fall again: a
-/// number of 24 bits lies in the middle of two records every second time, and what is rounded there is rounded a second
-/// time. In the end they are those of rounding the true number to the record, which no arithmetic escapes.
+/// Up to the 23 fraction bits of the record, every bit makes errors smaller. With 24 bits they grow, and with more bits
+/// they fall again. Every second number of 24 bits lies in the middle between two numbers of the record, so a second
+/// rounding adds to the first. In the end the errors are those of rounding the true number to the record, which no
+/// arithmetic avoids.
 #[test]
 fn more_fraction_bits_are_no_more_error_on_average_but_from_23_to_24() {
     let bits: Vec<u32> = (5..=32).collect();
@@ -58,20 +59,21 @@ fn more_fraction_bits_are_no_more_error_on_average_but_from_23_to_24() {
     let of = |row: &Row| [row.errors.depth.mean, row.errors.normal.mean, row.errors.position.mean];
     for (pair, bits) in rows.windows(2).zip(&bits) {
         for (fewer, more) in of(&pair[0]).into_iter().zip(of(&pair[1])) {
-            // From 28 bits on a mean moves as chance moves.
+            // From 28 bits on, means vary at random.
             let limit = fewer * if *bits < 28 { 1.0 } else { 1.001 };
             assert!(*bits == 23 || more <= limit, "{bits} bits: {fewer:e}, one more: {more:e}");
         }
     }
-    // Of a position in units of what is rounded: a quarter on average, with a tie every second time 5/16.
+    // The mean error of a position, in units of its last place: 1/4 on average, and 5/16 if every second number is a
+    // tie.
     let [at_23, at_24, at_32] = [23, 24, 32].map(|bits| of(&rows[bits - 5])[2]);
     assert!((1.2..1.3).contains(&(at_24 / at_32)) && at_24 > 1.2 * at_23, "{at_23:e} {at_24:e} {at_32:e}");
-    // Between 5 and 20 bits each halves the error, nearly.
+    // From 5 to 20 bits, each bit nearly halves the error.
     let [first, last] = [0, 15].map(|i| rows[i].errors.contact.mean);
     assert!((0.4..0.6).contains(&(last / first).powf(1.0 / 15.0)), "{first:e} {last:e}");
 }
 
-/// A formula of which one sum is rounded the wrong way.
+/// A formula with one sum rounded in the wrong direction.
 struct Broken;
 
 impl Contender for Broken {
@@ -82,7 +84,7 @@ impl Contender for Broken {
     fn answers(&mut self, pairs: &[PairRecord]) -> Result<Vec<Answer>, EngineError> {
         let mut answers = Formula(SphereSphere).answers(pairs)?;
         for answer in &mut answers {
-            // Toward zero, where the nearest is further from it.
+            // Rounds toward zero.
             answer.depth = f64::from((answer.depth as f32).next_down());
         }
         Ok(answers)
@@ -99,7 +101,7 @@ fn a_broken_rounding_is_seen() {
     assert_eq!(bad.position, good.position);
 }
 
-/// A formula that can be asked once.
+/// A formula that may be evaluated only once.
 struct Once(bool);
 
 impl Contender for Once {

@@ -1,4 +1,4 @@
-//! The batch kernel gives the reference's bits on every instruction set this processor has.
+//! The batch kernel gives the reference's bits on every instruction set of this processor.
 
 use contact_afu::kernel::Reference;
 use contact_afu::kernel::batch::{Batch, Level};

@@ -1,4 +1,4 @@
-//! The profile `exact`: right for every pair of finite spheres, once the host has settled what the kernel leaves.
+//! The profile `exact`: right for every pair of finite spheres, with unsettled pairs resolved by the host.
 
 use contact_afu::kernel::{Filtered, Reference, Truth, exact, ulp};
 use contact_afu::number::{Format, Precise};
@@ -8,13 +8,13 @@ use std::path::Path;
 
 const EXACT: Reference = Reference::exact(Fields::ALL);
 
-/// What the kernel and the host make of a pair, and whether it took the host.
+/// The result of kernel and host for a pair, and whether the host was needed.
 fn settled(pair: &PairRecord) -> (ContactRecord, bool) {
     let (contacts, unsettled) = EXACT.settled(std::slice::from_ref(pair));
     (contacts[0], unsettled > 0)
 }
 
-/// Decision exact, every number within a unit in the last place.
+/// Checks that the decision is exact and every number is within one unit in the last place.
 fn check(what: &str, pair: &PairRecord) -> bool {
     let truth = Truth::of(pair);
     let (found, by_host) = settled(pair);
@@ -31,7 +31,7 @@ fn every_category_is_right() {
     for category in CATEGORIES {
         let count = 1_500;
         let by_host = category.pairs(count, 31).filter(|pair| check(category.name(), pair)).count() as u64;
-        // What the window cannot hold is what these two are made of.
+        // These two categories consist of pairs that exceed the kernel's window.
         let share = if ["cancel", "sideways"].contains(&category.name()) { count } else { count / 100 };
         assert!(by_host <= share, "{}: {by_host} of {count} unsettled", category.name());
     }
@@ -49,8 +49,8 @@ fn the_corpus_is_right() {
     assert!(by_host > 400, "the corpus has what the window cannot hold: {by_host}");
 }
 
-/// Fewer than one in ten thousand ordinary pairs go to the host, and none of the paper's diamond, all of whose contacts
-/// are exactly tangent.
+/// Fewer than one in ten thousand ordinary pairs go to the host, and none of the paper's diamond, whose contacts are
+/// all exactly tangent.
 #[test]
 fn the_host_is_seldom_needed() {
     let unsettled = |pairs: &[PairRecord]| EXACT.run_all(pairs).iter().filter(|c| c.is_unsettled()).count();
@@ -77,7 +77,7 @@ fn swapping_the_spheres_negates_the_normal() {
     }
 }
 
-/// A field asked for has the same bits whatever else is asked for; an invalid pair is that in every profile.
+/// A selected field has the same bits whichever others are selected. An invalid pair is invalid in every profile.
 #[test]
 fn fields_and_invalid_pairs() {
     for pair in Set::Random(20_000).pairs(4) {
@@ -89,7 +89,7 @@ fn fields_and_invalid_pairs() {
     }
 }
 
-/// The kernel's mathematics is the contact's: read with the truth's numbers it gives the truth's record.
+/// Evaluates the kernel's formula with exact numbers, which must give the true contact's record.
 #[test]
 fn the_kernel_is_the_same_contact() {
     for pair in Set::Hard(5_100).pairs(6) {
@@ -106,7 +106,7 @@ fn the_kernel_is_the_same_contact() {
     }
 }
 
-/// A million pairs: the share above, at length.
+/// The long version of the test above: a million pairs.
 #[test]
 #[ignore = "minutes: a million truths"]
 fn a_million_pairs_are_right() {

@@ -1,10 +1,10 @@
-//! Reciprocals and roots, faithful ones of every fraction length and correctly rounded ones of binary32's: every
-//! significand, against exact integers.
+//! Reciprocals and roots against exact integers, for every significand: faithful ones of every fraction length, and
+//! correctly rounded ones of binary32.
 
 use contact_afu::number::{FAITHFUL_FRACTION_BITS, Faithful, Format, Function, Number, Soft};
 
-/// Whether `value` is less than one unit from the exact result and equal to it where that is a whole number of units;
-/// and the sign of what is missing, for the middle.
+/// Checks that the faithful result is within one unit of the exact one, and equal to it if that is a whole number of
+/// units; and that the corrected result is the nearest.
 fn check(function: Function, fraction_bits: u32, odd: u32, fraction: u64) -> Result<(), String> {
     let value = Faithful::of(function, fraction_bits).value(odd, fraction);
     let m = u128::from(fraction | 1 << fraction_bits);
@@ -26,7 +26,7 @@ fn check(function: Function, fraction_bits: u32, odd: u32, fraction: u64) -> Res
         Function::Reciprocal => value > 1 << fraction_bits && (fraction == 0) == (value == 2 << fraction_bits),
         Function::Root => value >> fraction_bits == 1,
     };
-    // A reciprocal just above 1 may be 1 itself.
+    // A reciprocal just above 1 may be rounded to 1.
     let limits = limits || function == Function::Reciprocal && value == 1 << fraction_bits;
 
     let table = Faithful::of(function, fraction_bits);
@@ -45,7 +45,7 @@ fn check(function: Function, fraction_bits: u32, odd: u32, fraction: u64) -> Res
     ))
 }
 
-/// Faithful within a unit, and corrected the nearest there is.
+/// The faithful result is within one unit, and the corrected one is the nearest.
 #[test]
 fn every_significand_is_within_a_unit() {
     std::thread::scope(|scope| {
@@ -64,20 +64,20 @@ fn every_significand_is_within_a_unit() {
     });
 }
 
-/// The significand, with its leading bit, and the exponent of the unit in its last place.
+/// The significand with its leading bit, and the exponent of the unit in the last place.
 fn parts(number: Soft) -> (u128, i32) {
     let bits = number.bits();
     (bits & 0x7F_FFFF | 1 << 23, (bits >> 23) as i32 - 150)
 }
 
-/// That a root and a reciprocal of binary32 are at most half a unit off. Exactly half they never are: neither function
-/// has such a middle.
+/// Checks that a root and a reciprocal of binary32 are less than half a unit off. Exactly half is impossible: neither
+/// function has a result in the middle between two numbers.
 fn half_a_unit(fraction: u32) {
     let m = u128::from(fraction | 1 << 23);
     for odd in 0..2 {
         let number = Soft::from_bits(Format::BINARY32, (127 + odd) << 23 | u128::from(fraction));
         let (root, unit) = parts(number.sqrt());
-        // In units of 2^-23 the root's square is m · 2^(23 + odd); that of twice the root four times as much.
+        // In units of 2^-23 the root's square is m · 2^(23 + odd). The square of twice the root is four times as much.
         let (radicand, twice) = (m << (25 + odd), 2 * root);
         assert_eq!(unit, -23, "{fraction:#x}");
         let is_near = (twice - 1) * (twice - 1) < radicand && radicand < (twice + 1) * (twice + 1);
@@ -89,8 +89,8 @@ fn half_a_unit(fraction: u32) {
     assert!((2 * exact).abs_diff(2 * m * reciprocal) < m, "reciprocal of {fraction:#x}");
 }
 
-/// What `correct` promises, in the format that studies call `paper`: half a unit, for every significand of 23 fraction
-/// bits. The hardware is this twin bit for bit (`tests/hardware/operators.rs`).
+/// The promise of `correct` in the format that studies call `paper`: half a unit, for every significand of 23 fraction
+/// bits. The hardware equals this twin bit for bit (`tests/hardware/operators.rs`).
 #[test]
 fn every_correct_root_and_reciprocal_is_within_half_a_unit() {
     std::thread::scope(|scope| {

@@ -1,4 +1,4 @@
-//! The hard pairs: the truth about them, and what each profile promises on them.
+//! The hard pairs: their true contacts, and what each profile promises for them.
 
 use crate::support::swap;
 use crate::support::watched::raises;
@@ -29,13 +29,13 @@ fn judged(pair: &PairRecord, record: ContactRecord) -> Judgement {
     judge(&Standard::of(Query::SphereSphere, pair), &Answer::from(record))
 }
 
-/// The other sphere first.
+/// The pair with its spheres swapped.
 fn swapped(pair: &PairRecord) -> PairRecord {
     let [x1, y1, z1, r1, x2, y2, z2, r2] = pair.0;
     PairRecord([x2, y2, z2, r2, x1, y1, z1, r1])
 }
 
-/// What is known of the truth without it: integers decide tangents, names say what the cases are.
+/// Checks what can be said without the true contact: integers decide tangency, and the names describe the cases.
 #[test]
 fn the_truth_is_what_the_corpus_says() {
     let corpus = corpus();
@@ -51,7 +51,7 @@ fn the_truth_is_what_the_corpus_says() {
             assert_eq!(truth.flow(), Flow::Coincident, "{name}");
         } else if name.starts_with("cancel") && !name.ends_with("-touch") {
             let bits: i32 = name.split('-').nth(1).unwrap().parse().unwrap();
-            // The only number with a significand of ones.
+            // Exactly one number of the pair has a significand of ones.
             let ones = |v: &f32| v.to_bits() & 0x7F_FFFF == 0x7F_FFFF;
             let large = pair.values().into_iter().find(ones).expect("it is in every such pair");
             let unit = ulp(large) * 2.0_f64.powi(24 - bits);
@@ -67,8 +67,8 @@ fn the_truth_is_what_the_corpus_says() {
     assert!(count("cancel") >= 277 * 2 && count("tangent") > 50 && count("signed") > 4, "the corpus is whole");
 }
 
-/// The truth against the same kernel in 53 bits, which is right but for a few in a billion where it is not near a
-/// decision or a tie; and its rounding against itself.
+/// The true contact against the same kernel in 53 bits, which is wrong for only a few pairs in a billion that are not
+/// near a decision or a tie. Its rounding is checked against itself.
 #[test]
 fn the_truth_is_what_more_bits_tend_to() {
     let fine = Reference::new("e15f52z".parse().expect("a format"), Fields::ALL);
@@ -81,7 +81,7 @@ fn the_truth_is_what_more_bits_tend_to() {
         }
         let judgement = judge(&Standard::of(Query::SphereSphere, &pair), &Answer::from(record));
         assert!(!judgement.bad && judgement.ulps.iter().all(|&ulps| ulps <= 0.5000001), "{pair:?}");
-        // A zero of either sign is a zero.
+        // Zeros of either sign are equal.
         let differ = |(a, b): (u32, u32)| a != b && (a | b) & 0x7FFF_FFFF != 0;
         differing += u32::from(record.0.into_iter().zip(found.0).any(differ));
     }
@@ -89,7 +89,8 @@ fn the_truth_is_what_more_bits_tend_to() {
     assert!(differing < 8_500 / 8, "{differing} differ from 53 bits");
 }
 
-/// No gross failure on any finite input; and where binary32 neither overflows nor underflows, its very bits.
+/// No finite input gives a gross failure. Where binary32 neither overflows nor underflows, the bits are those of
+/// binary32.
 #[test]
 fn wide_never_fails_grossly() {
     let mut failures_of_paper = 0;
@@ -115,7 +116,7 @@ fn wide_never_fails_grossly() {
     assert!(failures_of_paper > 2_000, "the pairs are hard: paper fails {failures_of_paper}");
 }
 
-/// A million pairs of the hard set: the share above, at length.
+/// The long version of the test above: a million pairs of the hard set.
 #[test]
 #[ignore = "minutes: a million truths"]
 fn wide_never_fails_grossly_in_a_million_pairs() {
@@ -131,8 +132,8 @@ fn wide_never_fails_grossly_in_a_million_pairs() {
     });
 }
 
-/// Swapping the spheres negates the normal and changes nothing else but the position's last places. The positions'
-/// difference is compared with what rounding allows, where no operation over- or underflowed; it is told in units.
+/// Swapping the spheres negates the normal and changes only the last places of the position. Where no operation
+/// overflowed or underflowed, the positions' difference is compared with the rounding bound and reported in units.
 fn check_symmetry(reference: &Reference, pair: &PairRecord, most: &mut f64) {
     let (there, back) = (reference.run(pair), reference.run(&swapped(pair)));
     assert_eq!(there.flags(), back.flags(), "{pair:?}");
@@ -155,8 +156,8 @@ fn check_symmetry(reference: &Reference, pair: &PairRecord, most: &mut f64) {
     }
 }
 
-/// A position is what 24-bit significands make of it, from either side: not always within a unit of the other, as the
-/// profile `exact` has it (tests/numbers/exact.rs).
+/// Positions are as accurate as 24-bit significands allow, from either side. They are not always within one unit of
+/// each other; the profile `exact` guarantees that (tests/numbers/exact.rs).
 #[test]
 fn swapping_the_spheres_negates_the_normal() {
     for (name, reference) in [("paper", PAPER), ("wide", WIDE)] {

@@ -1,5 +1,5 @@
-//! What holds in each profile, shrunk to the smallest pair that breaks it: in `wide` and `exact` for every pair of
-//! finite spheres, in `paper` where binary32 neither overflows nor underflows.
+//! Properties of each profile, with counterexamples shrunk to the smallest pair. In `wide` and `exact` they hold for
+//! every pair of finite spheres, in `paper` where binary32 neither overflows nor underflows.
 
 use crate::support::watched::raises;
 use contact_afu::config::Profile;
@@ -10,16 +10,16 @@ use proptest::test_runner::{TestError, TestRunner};
 
 const PROFILES: [&str; 3] = ["paper", "wide", "exact"];
 
-/// Exponents of the last bit of a binary32 number: from the subnormals' to that of the largest number.
+/// Exponents of the last bit of a binary32 number: from that of the subnormals to that of the largest number.
 const LAST: std::ops::RangeInclusive<i32> = -149..=104;
 
-/// significand · 2^exponent, which binary32 holds.
+/// significand · 2^exponent, which must be representable in binary32.
 fn number(negative: bool, significand: u32, exponent: i32) -> f32 {
     let value = f64::from(significand) * 2.0_f64.powi(exponent);
     (if negative { -value } else { value }) as f32
 }
 
-/// Numbers whose last bit has an exponent near `scale`; they shrink to few bits, and to `scale`.
+/// Numbers whose last bit has an exponent near `scale`. They shrink to few bits and to `scale`.
 fn near(scale: i32, spread: i32) -> impl Strategy<Value = f32> {
     (any::<bool>(), prop_oneof![0_u32..64, 0_u32..1 << 24], 0..=spread).prop_map(
         move |(negative, significand, more)| {
@@ -28,9 +28,9 @@ fn near(scale: i32, spread: i32) -> impl Strategy<Value = f32> {
     )
 }
 
-/// Pairs at one scale, from the smallest to the largest; two in three are centred near each other.
+/// Pairs at one scale, from the smallest to the largest. In two of three pairs the centres are near each other.
 fn pairs(scales: std::ops::RangeInclusive<i32>, spread: i32) -> impl Strategy<Value = PairRecord> {
-    // A scale of 2^-23 first: numbers around 1 are the simplest.
+    // A scale of 2^-23 comes first, because numbers around 1 are the simplest.
     let scale = prop_oneof![Just(-23), scales];
     scale.prop_flat_map(move |scale| {
         (prop::array::uniform8(near(scale, spread)), 0_u32..3).prop_map(|(mut v, kind)| {
@@ -43,22 +43,22 @@ fn pairs(scales: std::ops::RangeInclusive<i32>, spread: i32) -> impl Strategy<Va
     })
 }
 
-/// A kernel, and what it can be given.
+/// A kernel and its range of inputs.
 #[derive(Clone, Debug)]
 struct Kernel {
     name: &'static str,
     profile: Profile,
-    /// Whether decision and last places are right.
+    /// True if decision and last places are right.
     is_exact: bool,
 }
 
 impl Kernel {
-    /// What the user reads: the host has settled what the kernel leaves.
+    /// The contact that the user reads, with unsettled pairs resolved by the host.
     fn run(&self, pair: &PairRecord) -> ContactRecord {
         self.profile.reference(Fields::ALL).settled(std::slice::from_ref(pair)).0[0]
     }
 
-    /// Scales as wide as the profile bears.
+    /// Pairs at scales that the profile supports.
     fn pairs(&self, scales: std::ops::RangeInclusive<i32>, spread: i32) -> BoxedStrategy<PairRecord> {
         match self.name {
             "paper" => pairs(*scales.start().max(&-45)..=*scales.end().min(&10), spread.min(12)).boxed(),
@@ -67,7 +67,7 @@ impl Kernel {
     }
 }
 
-/// Checks a property of so many pairs (and what else `cases` gives) in each profile.
+/// Checks a property in each profile, for the pairs and any other inputs that `cases` generates.
 fn in_each_profile<T: std::fmt::Debug>(
     cases: impl Fn(&Kernel) -> BoxedStrategy<(PairRecord, T)>,
     check: impl Fn(&Kernel, PairRecord, &T) -> Result<bool, TestCaseError>,
@@ -96,7 +96,7 @@ fn in_each_profile<T: std::fmt::Debug>(
             Err(TestError::Fail(why, smallest)) => panic!("{name}: {why}\nsmallest: {smallest:?}"),
             Err(other) => panic!("{name}: {other}"),
         }
-        // Not vacuous: there are contacts and others, and most cases reach the property.
+        // The test is not vacuous: there are contacts and other pairs, and most cases reach the property.
         assert!(
             (200..1400).contains(&contacts) && told > 300,
             "{name}: {contacts} contacts, {told} of 1500 cases tell"
@@ -104,7 +104,7 @@ fn in_each_profile<T: std::fmt::Debug>(
     }
 }
 
-/// Pairs with coordinates below 8 in steps of 2^-17, so that 64 more or less is exact; radii are any.
+/// Pairs with coordinates below 8 in steps of 2^-17, so that adding or subtracting 64 is exact. Radii are arbitrary.
 fn on_a_grid() -> impl Strategy<Value = PairRecord> {
     let steps = |most: i32| prop::array::uniform3(prop_oneof![-64..64, -most..most]);
     let radii = prop::array::uniform2(near(-24, 2).prop_map(f32::abs));
@@ -125,7 +125,7 @@ fn scaled(numbers: &[f32], power: i32) -> Option<Vec<u32>> {
     let factor = 2.0_f64.powi(power);
     let exact = |v: f32| {
         let wide = f64::from(v) * factor;
-        // Zero, or a normal number with room on both sides.
+        // Zero, or a normal number with a margin on both sides.
         (v == 0.0 || (1e-37..1e37).contains(&wide.abs())).then_some((wide as f32).to_bits())
     };
     numbers.iter().map(|&v| exact(v)).collect()
@@ -168,7 +168,7 @@ fn a_normal_is_a_unit_vector_and_a_depth_within_the_radii() {
             let [x, y, z] = found.normal().map(f64::from);
             prop_assert!(((x * x + y * y + z * z).sqrt() - 1.0).abs() < 1e-6);
             let sum = (f64::from(pair.values()[3]) + f64::from(pair.values()[7])) as f32;
-            // `exact` may round a depth that is nearly the sum to the number above it.
+            // `exact` may round a depth close to the sum up to the next number.
             let most = if kernel.is_exact { sum.next_up() } else { sum };
             prop_assert!(found.depth() >= 0.0 && found.depth() <= most, "depth {}", found.depth());
             Ok(true)
@@ -176,7 +176,7 @@ fn a_normal_is_a_unit_vector_and_a_depth_within_the_radii() {
     );
 }
 
-/// What a position's components may differ by if the spheres are swapped: tests/numbers/hard.rs derives it.
+/// Positions may differ by the bound that tests/support/swap.rs derives.
 #[test]
 fn swapping_negates_the_normal() {
     in_each_profile(
@@ -265,7 +265,8 @@ fn the_nearer_the_deeper() {
                 return Ok(false);
             }
             prop_assert!(here.is_contact());
-            // Of the depth itself where that is right to its last place, else of what it is a difference of.
+            // Relative to the depth itself if that is right to its last place, else to the sum that it is a difference
+            // of.
             let sum = (f64::from(nearer[3]) + f64::from(nearer[7])) as f32;
             let unit = ulp(if kernel.is_exact { there.depth() } else { sum });
             let limit = f64::from(there.depth()) - unit;

@@ -1,4 +1,4 @@
-//! The reference kernel: against Algorithm 1 written out plainly, and its readings against each other.
+//! The reference kernel, against Algorithm 1 written out plainly, and in different arithmetics against itself.
 
 use crate::support::watched::raises;
 use crate::support::{Words, halves};
@@ -7,7 +7,7 @@ use contact_afu::number::Format;
 use contact_afu::pairs::Set;
 use contact_afu::query::{ContactRecord, Fields, Flow, PairRecord, Query};
 
-/// Algorithm 1 as the Open Dynamics Engine has it, branches and all.
+/// Algorithm 1 as the Open Dynamics Engine implements it, with all its branches.
 fn algorithm_1(pair: &PairRecord) -> ContactRecord {
     let [x1, y1, z1, r1, x2, y2, z2, r2] = pair.values();
     let finite = pair.values().iter().all(|v| v.is_finite());
@@ -34,14 +34,14 @@ fn algorithm_1(pair: &PairRecord) -> ContactRecord {
     ContactRecord(record)
 }
 
-/// Random pairs, at the corners more often than not.
+/// Random pairs, most of them at corner cases.
 fn for_random_pairs(count: u64, check: impl Fn(PairRecord) + Sync) {
     halves(count, |part| {
         let mut words = Words::new(8, 23, part.start + 7);
         for i in part {
             let mut pair = [0; 4].map(|_| words.two());
             if i % 4 != 0 {
-                // Finite coordinates, radii that are not negative.
+                // Finite coordinates and non-negative radii.
                 for (first, second) in &mut pair {
                     *first &= !(1 << 30);
                     *second &= !(1 << 30);
@@ -50,7 +50,7 @@ fn for_random_pairs(count: u64, check: impl Fn(PairRecord) + Sync) {
                 pair[3].1 &= 0x7FFF_FFFF;
             }
             if i % 5 == 0 {
-                // One scale for everything: contacts that are neither certain nor far.
+                // All numbers have the same scale, so pairs are neither certain to touch nor far apart.
                 let scale = words.one() as u32 & 0x3F80_0000;
                 for (first, second) in &mut pair {
                     *first = *first & 0x80FF_FFFF | u128::from(scale);
@@ -65,7 +65,7 @@ fn for_random_pairs(count: u64, check: impl Fn(PairRecord) + Sync) {
 
 #[test]
 fn a_real_contact() {
-    // Touching exactly, along x.
+    // These spheres touch exactly, along x.
     let pair = PairRecord::from_spheres([0.0, 0.0, 0.0, 0.5], [1.0, 0.0, 0.0, 0.5]);
     let contact = Reference::new(Format::BINARY32, Fields::ALL).run(&pair);
     assert_eq!(contact.flow(), Some(Flow::Real));
@@ -90,7 +90,7 @@ fn the_reference_is_algorithm_1() {
     });
 }
 
-/// `paper` is the machine's `f32`, failures included, on the pairs where that fails.
+/// `paper` equals the machine's `f32`, including failures, on the pairs where that fails.
 fn are_binary32_s_own(pairs: u64) {
     let reference = Reference::new(Format::BINARY32, Fields::ALL);
     let mut failures = 0;
@@ -124,7 +124,7 @@ fn soft_binary32_is_f32() {
     }
 }
 
-/// A field asked for has the same bits whatever else is asked for, and so has the decision.
+/// A selected field has the same bits whichever others are selected, and so has the decision.
 #[test]
 fn fields_do_not_change_each_other() {
     for format in ["paper", "wide", "half", "e6f9z"].map(|name| name.parse::<Format>().unwrap()) {

@@ -1,4 +1,4 @@
-//! Faults of the controller, each a small change of generated Verilog, and the property that it breaks.
+//! Mutants of the controller: each is a small change of the generated Verilog and names the property that it breaks.
 
 mod others;
 mod parts;
@@ -6,32 +6,30 @@ mod whole;
 
 use crate::proofs::{Method, Proof, proof};
 
-/// A change of one file.
 #[derive(Clone, Copy, Debug)]
 pub struct Mutant {
-    /// The fault.
+    /// A description of the fault.
     pub what: &'static str,
     pub file: &'static str,
-    /// This text, of which there is one, becomes the other.
+    /// The original text, which occurs exactly once and is replaced by `new`.
     pub old: &'static str,
     pub new: &'static str,
-    /// The setting it is tried in.
+    /// The name of the proof that is run on it.
     pub tried_in: &'static str,
-    /// The first cycle after power-up in which it shows.
+    /// The first cycle after power-up in which the property fails.
     pub cycle: u32,
-    /// The property that fails.
     pub breaks: &'static str,
-    /// Whether the test command has it.
+    /// True if the test command runs it.
     pub is_short: bool,
 }
 
 impl Mutant {
-    /// The proof that it breaks, in the cycle in which it does.
+    /// The proof that it breaks, at the cycle in which the property fails.
     pub fn proof(&self) -> Proof {
         Proof { method: Method::At(self.cycle), ..proof(self.tried_in) }
     }
 
-    /// The accelerator with the change in it.
+    /// The accelerator with this change.
     pub fn files(&self) -> Vec<(String, String)> {
         let mut files = proof(self.tried_in).files();
         let (_, text) = files.iter_mut().find(|(name, _)| name == self.file).expect("a file of the accelerator");
@@ -42,10 +40,10 @@ impl Mutant {
     }
 }
 
-/// Mutants of a file that are tried in one setting: fault, old text, new text, cycle, property.
+/// Mutants of one file that share a proof: fault, old text, new text, cycle, property.
 type Rows = &'static [(&'static str, &'static str, &'static str, u32, &'static str)];
 
-/// One of the kind in the test command.
+/// One mutant of each kind, for the test command.
 const SHORT: [&str; 6] = [
     "lines go out before they came",
     "responses to earlier jobs count",
@@ -55,7 +53,6 @@ const SHORT: [&str; 6] = [
     "done at once",
 ];
 
-/// All of them.
 pub fn all() -> Vec<Mutant> {
     let tables = parts::TABLES.iter().chain(whole::TABLES).chain(others::TABLES);
     let mutants = tables.flat_map(|(tried_in, file, rows)| {

@@ -1,5 +1,5 @@
-//! Faults of what only other accelerators have: turns at an interval of 2; sieve, backlog and overflow where only hits
-//! come back.
+//! Faults of parts that only some accelerators have: turns at an interval of 2; sieve, backlog and overflow if only
+//! hits come back.
 
 use super::Rows;
 

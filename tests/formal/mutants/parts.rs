@@ -1,4 +1,4 @@
-//! Faults that the parts alone show.
+//! Faults that show in a single part.
 
 use super::Rows;
 

@@ -1,4 +1,4 @@
-//! Faults that the whole accelerator shows.
+//! Faults that show only in the whole accelerator.
 
 use super::Rows;
 
