@@ -1,10 +1,10 @@
-//! The Verilated AFU in the place of ODE's collider: the same contacts in a step of the diamond, and where 300 steps
-//! with it in the loop lead.
+//! The Verilated AFU instead of ODE's collider: the same contacts in one step of the diamond, and the paths of spheres
+//! over 300 steps with the AFU in the loop.
 //!
-//! "The same contacts" means: the same pairs of spheres, in the same order. Where a step's numbers are binary32
-//! already, their positions, normals and depths are equal bit for bit; else the AFU sees every number rounded to
-//! binary32 once, its contact is, bit for bit, the one that binary32 arithmetic makes of them, and it differs from
-//! ODE's by no more than rounding allows.
+//! "The same contacts" means the same pairs of spheres in the same order. If a step's numbers are binary32 already,
+//! positions, normals and depths are equal bit for bit. Otherwise the AFU's inputs are rounded to binary32 once. Its
+//! contacts then equal those of binary32 arithmetic on these numbers bit for bit, and differ from ODE's by no more than
+//! rounding allows.
 
 use contact_afu::config::Config;
 use contact_afu::kernel::batch::Level;
@@ -16,7 +16,7 @@ use contact_afu::query::Fields;
 use contact_afu::verify::{Bench, BenchEngine};
 
 type Point = [f64; 3];
-/// Where every sphere is after each step.
+/// The position of every sphere after each step.
 type Paths = Vec<Vec<Point>>;
 
 const STEPS: usize = 300;
@@ -56,8 +56,9 @@ fn in_the_first_step_the_afu_gives_the_contacts_of_ode() {
     }
 }
 
-/// With u = 2^-24, M the largest coordinate, d the distance and s the sum of radii: e = 4u(M + d + s) bounds what
-/// rounding does to d − s and to a depth, 2e/d a normal, 4e a position (tests/ode/engine.rs has it in full).
+/// With u = 2^-24, M the largest coordinate, d the distance and s the sum of radii, e = 4u(M + d + s) bounds the effect
+/// of rounding on d − s and on a depth. The bounds are 2e/d for a normal and 4e for a position (tests/ode/engine.rs
+/// derives them).
 #[test]
 fn in_a_later_step_the_afu_gives_the_contacts_of_ode_as_rounding_allows() {
     let bench = Bench::new(&Config::shipped()).unwrap();
@@ -96,19 +97,19 @@ fn in_a_later_step_the_afu_gives_the_contacts_of_ode_as_rounding_allows() {
             assert!(distance(&found.normal, &expected.normal) <= 2.0 * e / d, "{found:?} {expected:?}");
             assert!(distance(&found.position, &expected.position) <= 4.0 * e, "{found:?} {expected:?}");
         }
-        // The rule is put to the test: most pairs are decided by it, and there are contacts.
+        // The rule is exercised: most pairs are decided by it, and there are contacts.
         assert!(decided > pairs.len() / 2 && both >= 12, "hMax {layers}, dSph {gap}: {decided}, {both}");
     }
 }
 
-/// What ODE sees of the spheres before each collision, with its own collider.
+/// The spheres that ODE's own collider receives in each step.
 #[derive(Clone, Copy, PartialEq)]
 enum Seen {
-    /// Them, as `f64`.
+    /// Their exact `f64` values.
     Exactly,
     /// Positions and radii rounded to binary32.
     Rounded,
-    /// That, and the contact rounded to binary32 too: another perturbation of the same size, for comparison.
+    /// Like `Rounded`, with the contact rounded to binary32 too: another perturbation of the same size, for comparison.
     RoundedTwice,
 }
 
@@ -151,7 +152,7 @@ fn by_engine(diamond: &Diamond, engine: &mut dyn Engine) -> Paths {
     paths
 }
 
-/// For each sphere how far it ever was, after the same step, from where it is in `exact`.
+/// The maximum distance of each sphere from its position in `exact` after the same step.
 fn deviations(paths: &Paths, exact: &Paths) -> Vec<f64> {
     let farthest = |i: usize| paths.iter().zip(exact).map(|(a, b)| distance(&a[i], &b[i])).fold(0.0, f64::max);
     (0..exact[0].len()).map(farthest).collect()
@@ -161,7 +162,7 @@ fn largest(values: &[f64]) -> f64 {
     values.iter().copied().fold(0.0, f64::max)
 }
 
-/// Spheres whose deviation is more than 4 times that of another simulation.
+/// The number of spheres that deviate more than 4 times as far as in the other simulation.
 fn beyond(deviations: &[f64], reference: &[f64]) -> usize {
     deviations.iter().zip(reference).filter(|(found, allowed)| **found > 4.0 * **allowed).count()
 }
@@ -170,8 +171,8 @@ fn is_finite(paths: &Paths) -> bool {
     paths.iter().flatten().flatten().all(|v| v.is_finite())
 }
 
-/// Every sphere's path deviates from that of ODE by at most 4 times what rounding its positions and radii to binary32
-/// makes of it. In the diamond of the paper spheres touch exactly and hardly move; with a gap they fall and collide.
+/// Every sphere's path deviates from ODE's by at most 4 times the deviation caused by rounding its positions and radii
+/// to binary32. In the paper's diamond spheres touch exactly and hardly move; with a gap they fall and collide.
 #[test]
 fn three_hundred_steps_with_the_afu_in_the_loop_stay_within_four_times_rounding() {
     let bench = Bench::new(&Config::shipped()).unwrap();
@@ -186,19 +187,19 @@ fn three_hundred_steps_with_the_afu_in_the_loop_stay_within_four_times_rounding(
         println!("dSph {gap}: AFU up to {:.2e}, rounded ODE up to {:.2e}", largest(&found), largest(&allowed));
         assert!(is_finite(&paths));
         assert_eq!(beyond(&found, &allowed), 0, "dSph {gap}: {found:?} {allowed:?}");
-        // Not by standing still, nor by being the same simulation.
+        // The spheres do move, and the simulations do differ.
         assert!(largest(&found) > 0.0 && allowed.iter().all(|&deviation| deviation > 0.0));
     }
 }
 
-/// A larger diamond is chaotic: after some 150 steps the deviation grows tenfold every 50, whatever began it, and then
-/// the ratio for one sphere is that of two independent draws. So a few spheres exceed 4 times, and they do so too where
-/// no AFU is: ODE itself with another rounding of the same size. What holds is the bound for the diamond as a whole.
+/// A larger diamond is chaotic: after some 150 steps any deviation grows tenfold every 50 steps. The ratio for one
+/// sphere is then that of two independent random values, so a few spheres exceed a factor of 4. That also happens
+/// without an AFU: in ODE itself with another rounding of the same size. The bound holds for the diamond as a whole.
 #[test]
 #[ignore = "half a minute; tests/ode/afu.rs has the diamond of hMax 3 with the Verilated AFU"]
 fn in_a_chaotic_diamond_the_bound_holds_for_the_whole_and_not_for_each_sphere() {
     let diamond = Diamond::new(10, 0.0);
-    // The bits of the AFU, as the other tests show, at the speed that 300 steps of 12 354 pairs need.
+    // A software engine with the AFU's bits, as the other tests show, because 300 steps of 12 354 pairs need its speed.
     let paths = by_engine(&diamond, &mut Level::best());
     let exact = by_ode(&diamond, Seen::Exactly);
     let found = deviations(&paths, &exact);

@@ -1,11 +1,11 @@
-//! The paper's benchmark: what is recorded, what counts, and what it takes.
+//! The paper's benchmark: the recording, the counted pairs, and the measured times.
 
 use contact_afu::kernel::Reference;
 use contact_afu::number::Format;
 use contact_afu::ode::{Benchmark, Collider, Diamond, Error, Ode};
 use contact_afu::query::{Fields, Flow};
 
-/// 36 pairs touch in the diamond of hMax 3, and 96 more are near.
+/// In the diamond of hMax 3, 36 pairs touch and 96 more are near.
 #[test]
 fn collisions_are_those_of_the_steps_in_order_and_of_runs_begun_anew() {
     let ode = Ode::start(Collider::Own).unwrap();
@@ -34,7 +34,7 @@ fn only_the_kind_that_is_asked_for_counts() {
     assert!(matches!(Benchmark { flow: Flow::Invalid, ..Benchmark::paper(1) }.run(&ode), Err(Error::Flow(_))));
 }
 
-/// Times of more collisions are longer, and those of a part are a part.
+/// More collisions take longer, and parts of the work take less than the whole.
 #[test]
 fn figures_grow_with_the_collisions() {
     let ode = Ode::start(Collider::Own).unwrap();

@@ -1,4 +1,4 @@
-//! An engine in the place of ODE's collider: the same contacts, as far as binary32 can hold them.
+//! An engine instead of ODE's collider: the same contacts, as far as binary32 can represent them.
 
 use contact_afu::kernel::batch::Level;
 use contact_afu::kernel::{Engine, EngineError, Reference};
@@ -16,7 +16,7 @@ fn engines() -> Vec<(&'static str, Box<dyn Engine>)> {
     ]
 }
 
-/// At the start every number is exact in binary32, and so is every contact: the same bits, in the same order.
+/// At the start every number is exact in binary32, and so is every contact: equal bits, in the same order.
 #[test]
 fn in_the_first_step_every_engine_gives_the_contacts_of_ode() {
     for (layers, pairs, real) in [(3, 132, 36), (10, 12_354, 2_934)] {
@@ -38,7 +38,7 @@ fn in_the_first_step_every_engine_gives_the_contacts_of_ode() {
     }
 }
 
-/// Bits, so that a zero's sign counts.
+/// Compares bits, so the sign of a zero counts.
 fn bits(touches: &[Touch]) -> Vec<(usize, usize, [u64; 7])> {
     touches.iter().map(|t| (t.first.index(), t.second.index(), words(&t.contact))).collect()
 }
@@ -67,9 +67,9 @@ fn the_candidates_are_those_of_the_named_set() {
     }
 }
 
-/// Later the engine sees every sphere rounded. With u = 2^-24, half an ulp of 1, coordinates up to M are rounded by at
-/// most uM and radii by half an ulp; a distance d moves by at most 2√3·uM and its own four roundings, the sum of radii
-/// s by two. So with e = 4u(M + d + s):
+/// In later steps the engine's inputs are rounded. With u = 2^-24, half an ulp of 1, coordinates up to M are rounded by
+/// at most uM, and radii by half an ulp. A distance d changes by at most 2√3·uM and its own four roundings, the sum of
+/// radii s by two. So with e = 4u(M + d + s):
 ///
 /// - the decision is ODE's wherever |d − s| > e;
 /// - a depth differs by at most e, a normal by 2e/d, and a position, p1 + n·k with |k| ≤ d here, by 4e.
@@ -77,7 +77,7 @@ fn the_candidates_are_those_of_the_named_set() {
 fn later_contacts_differ_by_no_more_than_rounding_allows() {
     type Sphere = [f64; 4];
     for (name, mut engine) in engines() {
-        // The states, and what the engine said of them.
+        // The pairs of spheres, and the engine's answer for each.
         let mut seen: Vec<(Sphere, Sphere, Option<Contact>)> = Vec::new();
         {
             let ode = Ode::start(Collider::Engine).unwrap();
@@ -122,7 +122,7 @@ fn later_contacts_differ_by_no_more_than_rounding_allows() {
             assert!(distance(&found.normal, &expected.normal) <= 2.0 * e / d, "{name}: {found:?} {expected:?}");
             assert!(distance(&found.position, &expected.position) <= 4.0 * e, "{name}: {found:?} {expected:?}");
         }
-        // The bounds are put to the test: most decisions fall under them, and contacts do differ.
+        // The bounds are exercised: most decisions are covered by them, and contacts do differ.
         assert!(decided > seen.len() * 3 / 4 && real > 500 && inexact > real / 2, "{decided} {real} {inexact}");
     }
 }
@@ -131,7 +131,7 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
 }
 
-/// An engine that says what it is told.
+/// An engine that returns preset contacts.
 struct Parrot(Vec<ContactRecord>);
 
 impl Engine for Parrot {
@@ -140,8 +140,8 @@ impl Engine for Parrot {
     }
 }
 
-/// ODE swaps and negates what an override gives it. What comes out must be what went in, to the sign of a zero; the
-/// normal of coincident centres, (1, 0, 0), shows it.
+/// ODE swaps and negates the contact of an override. The result must equal the override's contact, including the sign
+/// of zeros. The normal of coincident centres, (1, 0, 0), tests that.
 #[test]
 fn a_contact_passes_through_ode_unchanged() {
     let ode = Ode::start(Collider::Engine).unwrap();
@@ -164,7 +164,7 @@ fn a_contact_passes_through_ode_unchanged() {
                 contacts += usize::from(expected.is_some());
             }
             (Err(Error::Flags { flags, .. }), None) => assert_eq!(flags, 8),
-            // Beyond any sphere of a world.
+            // The contact is NaN or farther away than any sphere of a world.
             (Err(Error::Contact { .. }), Some(contact)) => {
                 assert!([contact.depth].iter().chain(&contact.position).any(|v| v.is_nan() || v.abs() > 1e8));
             }
@@ -208,7 +208,7 @@ fn a_wrong_engine_is_an_error_and_never_a_contact() {
             ));
         }
     }
-    // Nor is one taken by hand.
+    // An invalid contact passed directly is rejected, too.
     let contact = Contact { position: [f64::NAN; 3], normal: [1.0, 0.0, 0.0], depth: 0.0 };
     let touch = Touch { first, second, contact };
     assert!(matches!(world.join(&touch, &Surface::SMOOTH), Err(Error::Contact { first: 0, second: 1 })));

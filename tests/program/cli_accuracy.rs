@@ -1,4 +1,4 @@
-//! `afu accuracy` as a user meets it.
+//! `afu accuracy` from the user's side.
 
 use assert_cmd::Command;
 
@@ -42,7 +42,7 @@ fn a_row_a_profile_with_errors_and_times() {
     assert!(mean(&points[0], 1) < mean(&points[1], 1), "twelve bits less are less accurate");
 }
 
-/// The quick study has its page and pictures without areas, and says so; a second run measures nothing again.
+/// The quick study has a page and pictures without areas, and says so. A second run reuses all measurements.
 #[test]
 fn a_quick_study_needs_no_synthesis() {
     let room = tempfile::tempdir().expect("a temporary folder");
@@ -62,7 +62,7 @@ fn a_quick_study_needs_no_synthesis() {
     assert_eq!(page.matches("<svg class=\"plot\"").count(), 4);
     assert!(page.contains("Left out: areas") && !page.contains("LUTs"), "no empty columns");
 
-    // What another run left does not stay as if it were of this one.
+    // Files left by another run are not presented as this run's.
     std::fs::write(folder.join("throughput.svg"), "of before").expect("written");
     let store = std::fs::read(folder.join("manifest.json")).expect("the store");
     assert_eq!(run(), text);

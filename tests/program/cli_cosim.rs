@@ -1,4 +1,4 @@
-//! `afu cosim`: bad files, reports, exit codes, and a planted fault that it finds.
+//! `afu cosim`: bad files, reports, exit codes, and the detection of a planted fault.
 
 use std::fs;
 use std::path::Path;
@@ -96,7 +96,7 @@ fn wrong_options_are_exit_2_before_anything_is_built() {
     }
 }
 
-/// Rows and bytes of contacts alone.
+/// Counts rows and bytes of a job that returns only contacts.
 #[test]
 fn hits_come_back_with_their_numbers() {
     let room = room();
@@ -107,7 +107,7 @@ fn hits_come_back_with_their_numbers() {
     let report = json(room.path(), "out.json");
     assert_eq!(report["flows"], serde_json::json!({"fake": 1, "grazing": 1, "real": 1, "invalid": 1}));
     assert_eq!((&report["pairs"], &report["contacts"], &report["mismatches"]), (&4.into(), &2.into(), &0.into()));
-    // Two lines of contacts, and the shell's own three: latency, performance, status.
+    // Two lines of contacts, and three lines that the shell writes: latency, performance, status.
     assert_eq!((&report["config"]["results"], &report["link"]["bytes_written"]), (&"hits".into(), &(64 * 5).into()));
     let contacts = fs::read_to_string(room.path().join("out.csv")).expect("written");
     let rows: Vec<&str> = contacts.lines().skip(1).collect();
@@ -140,8 +140,8 @@ fn pairs_come_back_as_contacts_and_figures() {
     assert_eq!(report["flows"], serde_json::json!({"fake": 1, "grazing": 1, "real": 1, "invalid": 1}));
     assert_eq!((&report["pairs"], &report["contacts"], &report["mismatches"]), (&4.into(), &2.into(), &0.into()));
     assert_eq!(report["config"]["scpus"], 2);
-    // Two lines of pairs and two of contacts; and the shell's own: control memory, found twice; latency, performance,
-    // status.
+    // Two lines of pairs and two of contacts, plus the shell's own lines: it reads the control memory twice, and writes
+    // latency, performance and status.
     let link = (&report["link"]["bytes_read"], &report["link"]["bytes_written"]);
     assert_eq!(link, (&(64 * 4).into(), &(64 * 5).into()));
 
@@ -206,7 +206,7 @@ fn a_planted_fault_is_found_told_and_kept() {
     afu(room.path(), &["rtl", "--scpus", "2", "--out", "rtl"]).success();
     let file = room.path().join("rtl/scpu.v");
     let text = fs::read_to_string(&file).expect("written");
-    // The lowest bit of every depth the other way.
+    // Inverts the lowest bit of every depth.
     let faulty = text.replacen("assign record = {", "assign record = 256'd1 << 192 ^ {", 1);
     assert_ne!(text, faulty, "the place to break is there:\n{text}");
     fs::write(&file, faulty).expect("written");
@@ -248,7 +248,7 @@ fn a_job_that_does_not_finish_is_exit_1_and_says_what_it_waits_for() {
     afu(room.path(), &["rtl", "--scpus", "2", "--reset", "async-low", "--out", "rtl"]).success();
     let file = room.path().join("rtl/contact_afu_dispatcher.v");
     let text = fs::read_to_string(&file).expect("written");
-    // Lines pile up and none is ever offered.
+    // Lines pile up, because no write is ever requested.
     let faulty = text.replacen("wr_req_valid <= goes |", "wr_req_valid <= 1'b0 & goes |", 1);
     assert_ne!(text, faulty, "the place to break is there:\n{text}");
     fs::write(&file, faulty).expect("written");
@@ -269,7 +269,8 @@ fn a_job_that_does_not_finish_is_exit_1_and_says_what_it_waits_for() {
     assert!(junit.contains("did not finish"), "{junit}");
 }
 
-/// On a terminal, a pseudo one here: how long a model takes, and that the host works when the bar is full.
+/// On a pseudo-terminal: shows the expected time for building a model, and that the host is working when the bar is
+/// full.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_terminal_sees_what_is_going_on() {
@@ -297,7 +298,8 @@ fn without_verilator_it_is_exit_3_and_says_the_command() {
     assert!(said(&assert).contains("Verilator is missing") && said(&assert).contains("install"), "{}", said(&assert));
 }
 
-/// Faults once: a VCD's destructor threw (status 134), one writer of FST files called `abort`, the other kept silent.
+/// Former faults: a VCD's destructor threw (status 134), one writer of FST files called `abort`, the other ignored
+/// errors.
 #[cfg(unix)]
 #[test]
 fn a_waveform_that_cannot_be_written_is_exit_4_and_leaves_no_file() {
@@ -305,15 +307,15 @@ fn a_waveform_that_cannot_be_written_is_exit_4_and_leaves_no_file() {
         let room = room();
         let arguments = ["cosim", "--scpus", "1", "--profile", "e8f3z", "--contact", "hit", "--pairs", "diamond:3"];
         let arguments = [&arguments[..], &["--trace", name]].concat();
-        // Without a limit first, which makes the model.
+        // The first run has no limit and builds the model.
         let whole = afu(room.path(), &arguments);
         if whole.get_output().status.code() != Some(0) {
             assert!(name == "wave.fst", "{}", said(&whole));
-            continue; // without the libraries of FST
+            continue; // the libraries of FST are missing
         }
         let bytes = fs::metadata(room.path().join(name)).expect("written").len();
         fs::remove_file(room.path().join(name)).expect("removed");
-        // KiB that a file may have: less than the header needs, half, all but the end.
+        // Limits of the file size in KiB: less than the header needs, half, and all but the end.
         for limit in [4, bytes / 2048, bytes / 1024] {
             let program = assert_cmd::cargo::cargo_bin("afu");
             let limited = format!("ulimit -f {limit}; exec \"$0\" \"$@\"");

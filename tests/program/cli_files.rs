@@ -1,4 +1,4 @@
-//! Files of pairs on the command line: made, read, and refused with one line that says where.
+//! Files of pairs on the command line: written, read, and rejected with one line that names the place.
 
 use std::fs;
 use std::path::Path;
@@ -43,7 +43,7 @@ fn pairs_go_to_standard_output() {
     assert!(!room.path().join("-").exists());
 }
 
-/// Every error has the program's name before it, tells its cause once, and no temporary file.
+/// Every error starts with the program's name, gives its cause once, and does not name a temporary file.
 #[test]
 fn an_error_is_told_once_and_with_one_prefix() {
     let room = tempfile::tempdir().expect("a temporary folder");
@@ -61,7 +61,7 @@ fn an_error_is_told_once_and_with_one_prefix() {
     let assert = afu(room.path(), &["pairs", "random:3", "--out", "no/such/x.csv"]).code(4);
     let said = String::from_utf8(assert.get_output().stderr.clone()).expect("UTF-8");
     assert_eq!(said.matches(cause).count(), 1, "{said}");
-    // The system's processes take no files: a temporary one is what could not be made.
+    // No file can be created in /proc, so creating a temporary file there fails.
     if Path::new("/proc/self").exists() {
         let assert = afu(room.path(), &["rtl", "--out", "/proc/build"]).code(4);
         let said = String::from_utf8(assert.get_output().stderr.clone()).expect("UTF-8");
@@ -103,7 +103,7 @@ fn a_wrong_set_or_file_name_is_exit_2_and_writes_nothing() {
     }
 }
 
-/// A fault once: results for a device became a file in its place.
+/// A former fault: results for a device replaced it by a file.
 #[cfg(unix)]
 #[test]
 fn a_pipe_is_written_and_stays_one() {

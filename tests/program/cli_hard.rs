@@ -1,4 +1,4 @@
-//! `afu hard`: the table, its files, and what it says of the profiles and of other engines.
+//! `afu hard`: the table, its files, and its results for the profiles and for other engines.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -16,7 +16,7 @@ fn hard(room: &Path, arguments: &[&str]) -> assert_cmd::assert::Assert {
     command.current_dir(room).args(["hard", "--seed", "3", "--out", "out"]).args(arguments).assert()
 }
 
-/// By category and contender.
+/// The tallies by category and contender.
 type Rows = BTreeMap<(String, String), Value>;
 
 fn rows(record: &Value) -> Rows {
@@ -29,7 +29,7 @@ fn rows(record: &Value) -> Rows {
     rows.map(|row| ((name(row, "category"), name(row, "contender")), row["tally"].clone())).collect()
 }
 
-/// A count of a contender in a category, or in all of them.
+/// A contender's count in a category; in all categories if it is `None`.
 fn count(rows: &Rows, contender: &str, category: Option<&str>, what: &str) -> u64 {
     let of = rows.iter().filter(|((c, who), _)| who == contender && category.is_none_or(|name| name == c));
     of.map(|(_, tally)| tally[what].as_u64().unwrap_or_else(|| panic!("{what} is no count"))).sum()
@@ -44,7 +44,7 @@ fn the_table_says_what_each_engine_is_worth() {
     let record: Value = serde_json::from_str(&read("record.json")).expect("JSON");
     assert_eq!(record, serde_json::from_str::<Value>(&read("out/manifest.json")).expect("JSON"));
 
-    // Every column on the terminal and in both files.
+    // Every column is on the terminal and in both files.
     let shown = String::from_utf8(first.get_output().stdout.clone()).expect("UTF-8");
     let columns = ["missed", "false", "non-finite", "normal", "direction", "depth", "position", "BAD", "unsettled"];
     assert_eq!(columns, Tally::HEADING);
@@ -64,7 +64,7 @@ fn the_table_says_what_each_engine_is_worth() {
         assert_eq!(count(&rows, "wide", Some(category.name()), "pairs"), PAIRS / CATEGORIES.len() as u64);
     }
 
-    // The same figures in the CSV as in the JSON.
+    // The CSV has the same figures as the JSON.
     for line in csv.lines().skip(1) {
         let cells: Vec<&str> = line.split(',').collect();
         let tally = &rows[&(cells[0].to_owned(), cells[1].to_owned())];
@@ -85,7 +85,7 @@ fn the_table_says_what_each_engine_is_worth() {
         }
     }
 
-    // What they are worth.
+    // The figures show what the contenders are worth.
     let all = |contender: &str, what: &str| count(&rows, contender, None, what);
     for what in ["missed", "false", "non_finite", "normal", "direction", "depth", "position", "BAD"] {
         assert_eq!(all("exact", what), 0, "exact: {what}");
@@ -113,12 +113,12 @@ fn the_table_says_what_each_engine_is_worth() {
         assert!(shown.contains("--features parry"), "{shown}");
     }
 
-    // The same command again resumes all, and gives the same files.
+    // A second run of the same command reuses all results and gives the same files.
     let again = hard(room.path(), &["--pairs", &pairs]).success();
     let said = String::from_utf8(again.get_output().stderr.clone()).expect("UTF-8");
     assert!(said.contains(&format!("{0} of {0} rows come from an earlier run", rows.len())), "{said}");
     assert_eq!(read("out/hard.csv"), csv);
-    // Another profile keeps the rows that are known.
+    // Another profile is added to the existing rows.
     let other = hard(room.path(), &["--pairs", &pairs, "--profile", "exact,half"]).success();
     let said = String::from_utf8(other.get_output().stderr.clone()).expect("UTF-8");
     assert!(said.contains(&format!("{} of ", rows.len() - 2 * CATEGORIES.len())), "{said}");
@@ -137,7 +137,7 @@ fn wrong_words_are_exit_2_and_a_foreign_folder_is_left_alone() {
     hard(room.path(), &["--pairs", "17", "--force"]).success();
     assert!(room.path().join("out/theirs").exists() && room.path().join("out/hard.csv").exists());
 
-    // Ours, but of something else.
+    // A manifest of this program, but of a different command.
     let manifest = room.path().join("out/manifest.json");
     fs::write(&manifest, r#"{"schema": "contact-afu/sweep/1"}"#).expect("written");
     let before = fs::read(&manifest).expect("there");
@@ -179,7 +179,7 @@ fn planes_are_judged_too_and_exact_is_for_spheres_alone() {
         "afu: query sphere-plane with profile exact: profile exact is for sphere-sphere only; leave it out\n"
     );
 
-    // Another query in the same folder is another study's table; what was measured is kept.
+    // Another query in the same folder replaces the table. The measurements are kept.
     let csv = read("hard.csv");
     hard(room.path(), &["--pairs", "17", "--profile", "wide"]).success();
     let again = hard(room.path(), &planes).success();

@@ -1,4 +1,4 @@
-//! `afu paper` as a user meets it: what it writes, what it refuses, and its page in a browser.
+//! `afu paper` from the user's side: its outputs, its errors, and its page in a browser.
 
 use assert_cmd::Command;
 use std::fs;
@@ -34,7 +34,7 @@ fn without_ode_the_command_says_what_to_do() {
     assert!(!out.exists());
 }
 
-/// A small run: its files, its figures, its page in Chromium; then the same again, which simulates nothing anew.
+/// Checks the files and figures of a small run and its page in Chromium. A second run reuses all simulations.
 #[cfg(feature = "ode")]
 #[test]
 fn a_run_is_written_whole_shown_in_a_browser_and_resumed() {
@@ -57,7 +57,7 @@ fn a_run_is_written_whole_shown_in_a_browser_and_resumed() {
         let number = |key: &str| point[key].as_f64().expect("a number");
         let n = number("collisions");
         assert_eq!(number("afu_contacts"), n, "the AFU finds every collision that ODE found");
-        // The AFU takes time for each pair and before the first; ODE takes time at all.
+        // The AFU has a cost per pair and before the first pair, and ODE's time is positive.
         assert!(number("afu_cycles") > n && number("afu_cycles") >= number("link_limit_ns") / 5.0, "{point}");
         assert!(number("afu_least_cycles") <= number("afu_most_cycles") && point["afu_transactions"] == 2);
         assert!(number("afu_total_ns") > number("afu_ns") && number("ode_loop_ns") > n && number("batch_ns") > 0.0);
@@ -84,7 +84,7 @@ fn a_run_is_written_whole_shown_in_a_browser_and_resumed() {
     afu(&run).success();
     assert_eq!(kept(), before, "nothing is simulated again");
 
-    // What was simulated is of these collisions: others are another task.
+    // The stored results are for these collisions. Other collisions are a different task.
     let other = ["paper", "--quick", "--n-col-max", "100", "--t-col", "fake", "--transactions", "1", "--out", run[7]];
     afu(&other).success();
     let results = json("results.json");

@@ -1,4 +1,4 @@
-//! `afu rtl`: what it writes, where it refuses to, and which options it does not have yet.
+//! `afu rtl`: the files it writes, the folders it refuses, and unsupported options.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -82,7 +82,7 @@ fn records_of_16_bits_are_told_of_everywhere() {
     );
 }
 
-/// Roots and reciprocals are made by table, or digit by digit where multiplier blocks are to be spared.
+/// Roots and reciprocals use tables, or digit recurrence to save multiplier blocks.
 #[test]
 fn multiplier_blocks_can_be_spared() {
     let room = tempfile::tempdir().expect("a temporary folder");
@@ -128,7 +128,7 @@ fn what_is_not_built_yet_or_out_of_range_is_one_line_and_exit_2() {
         (["--interval", "fast"], "--interval fast"),
         (["--shell", "axi"], "shell axi"),
         (["--target", "tin"], "tin"),
-        // There is no Verilog for these alone, and no other is written in its place.
+        // There is no Verilog for these targets, and the program does not write any other in its place.
         (["--target", "cyclonev"], "`afu synth --target cyclonev` estimates the area"),
         (["--target", "xilinx"], "`afu synth --target xilinx` estimates the area"),
         (["--scpus", "0"], "0 SCPUs"),
@@ -165,7 +165,8 @@ fn what_is_not_built_yet_or_out_of_range_is_one_line_and_exit_2() {
     assert_eq!(fs::read_dir(room.path()).expect("there").count(), 0, "nothing is written");
 }
 
-/// Ten SCPUs take a line a cycle at 5, which is what an ideal link brings; over a slower one they may be slower.
+/// At an interval of 5 ten SCPUs take one line per cycle, which is the limit of an ideal link. On a slower link the
+/// interval may be longer.
 #[test]
 fn interval_auto_is_what_the_link_needs() {
     let room = tempfile::tempdir().expect("a temporary folder");
@@ -193,7 +194,7 @@ fn interval_auto_is_what_the_link_needs() {
     assert!(said(&refused).contains("none"), "{}", said(&refused));
 }
 
-/// Every module and file begins with it, and so does the folder's own idea of its top: cosim simulates it.
+/// Every module and file name starts with the prefix. `afu cosim --rtl` finds the top module of such a folder.
 #[test]
 fn a_prefix_is_before_every_name() {
     let room = tempfile::tempdir().expect("a temporary folder");
@@ -234,7 +235,8 @@ fn scpus_that_are_not_built_are_warned_of() {
     }
 }
 
-/// With a target its blocks stand in the Verilog by name, and the manifest says so; a simulator reads the same AFU.
+/// With a target, the Verilog instantiates its blocks by name, and the manifest says so. A simulator reads the same
+/// AFU.
 #[test]
 fn a_target_s_blocks_are_named() {
     let room = tempfile::tempdir().expect("a temporary folder");
@@ -263,7 +265,8 @@ fn a_target_s_blocks_are_named() {
         assert_eq!(manifest["target"].as_str(), target);
         assert_eq!(top(files).contains("--target"), target.is_some(), "the command in the header is whole");
     }
-    // Memories ask for what the family has: a block of Intel's by name for none, MLAB where Quartus may read it.
+    // Memories request what the family has: no named Intel block for these targets, and MLAB only where Quartus may
+    // read the Verilog.
     let asks = |files: &BTreeMap<String, Vec<u8>>, word: &str| {
         files.iter().any(|(name, bytes)| name.ends_with(".v") && String::from_utf8_lossy(bytes).contains(word))
     };

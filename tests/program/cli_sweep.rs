@@ -1,4 +1,4 @@
-//! `afu sweep`: a table for each number of SCPUs, written as it grows and resumed.
+//! `afu sweep`: a table with one row per number of SCPUs, written row by row and resumed.
 
 use std::fs;
 use std::path::Path;
@@ -33,7 +33,7 @@ fn a_sweep_has_a_row_for_each_size_and_is_resumed() {
     let said = String::from_utf8(second.get_output().stderr.clone()).expect("UTF-8");
     assert!(said.contains("1 of 2 rows come from an earlier run"), "{said}");
     let cycles = second_rows[1]["cycles_per_pair"].as_f64().expect("a number");
-    // Half a cycle, and for a job this small a tenth more for its handshake through memory.
+    // Half a cycle, and in a job this small a tenth more for its handshake through memory.
     assert!((0.5..0.65).contains(&cycles), "two take two: {cycles}");
 
     let csv = fs::read_to_string(room.path().join("out/sweep.csv")).expect("written");

@@ -1,11 +1,14 @@
-//! What README and docs show of the program's output, compared with what the program prints today.
-//! `UPDATE_EXPECT=1 cargo test --test program documented` rewrites it.
+//! Compares the program's output as shown in README and docs with what the program prints now.
+//! `UPDATE_EXPECT=1 cargo test --test program documented` rewrites the pages.
 //!
-//! Not compared, since each takes a router, a clock of its own or many minutes: the study of accuracy (README,
-//! docs/accuracy.md), areas and clocks (docs/operators.md, docs/interval.md, LUTs in docs/scene.md), rates over links
-//! (docs/link.md) and the cycles of two SCPUs (docs/spl2.md), which need models of their own, speeds of models
-//! (docs/cosim.md), ODE's times (docs/paper.md), long runs (docs/stability.md), a million pairs (docs/exact.md), and
-//! parry3d (docs/hard.md). Registers and links' figures are compared where they are made: tests/spl2, src/link.
+//! Some figures are not compared, because they need a router, a measured time, their own models or many minutes:
+//! - the study of accuracy (README, docs/accuracy.md);
+//! - areas and clocks (docs/operators.md, docs/interval.md, LUTs in docs/scene.md);
+//! - rates over links (docs/link.md) and the cycles of two SCPUs (docs/spl2.md);
+//! - speeds of models (docs/cosim.md) and ODE's times (docs/paper.md);
+//! - long runs (docs/stability.md), a million pairs (docs/exact.md), and parry3d (docs/hard.md).
+//!
+//! Figures of registers and links are compared elsewhere: tests/spl2, src/link.
 
 use std::collections::HashMap;
 use std::fs;
@@ -19,7 +22,7 @@ use contact_afu::report::table::grouped;
 use contact_afu::verify::Bench;
 use serde_json::Value;
 
-/// A page, and what it should be.
+/// A page as it is and as it should be.
 struct Page {
     path: PathBuf,
     was: String,
@@ -33,7 +36,7 @@ impl Page {
         Self { path, was: text.clone(), text }
     }
 
-    /// Where the one place after `before` begins and, up to `after`, ends.
+    /// The range from the only occurrence of `before` to the next `after`.
     fn find(&self, before: &str, after: &str) -> (usize, usize) {
         let found: Vec<usize> = self.text.match_indices(before).map(|(at, _)| at + before.len()).collect();
         let [begin] = found[..] else { panic!("{}: {} of `{before}`", self.path.display(), found.len()) };
@@ -41,13 +44,14 @@ impl Page {
         (begin, begin + end)
     }
 
-    /// What stands between two texts, of which the first is there once.
+    /// Replaces the text between `before`, which occurs once, and `after`.
     fn between(&mut self, before: &str, after: &str, value: &str) {
         let (begin, end) = self.find(before, after);
         self.text.replace_range(begin..end, value);
     }
 
-    /// A block of text that begins with a line; lines with what is of one run alone stay as they are.
+    /// Replaces a block of text that starts with the line `first`. Lines that start with a word of `of_one_run` are
+    /// kept.
     fn block(&mut self, first: &str, text: &str, of_one_run: &[&str]) {
         let (begin, end) = self.find(&format!("```text\n{first}\n"), "```");
         let stays = |line: &str| of_one_run.iter().any(|word| line.trim_start().starts_with(word));
@@ -59,7 +63,7 @@ impl Page {
         self.text.replace_range(begin..end, &format!("{}\n", lines.join("\n")));
     }
 
-    /// Cells of the one row below a heading that begins with a name: by column, from 0, that of the name.
+    /// Replaces cells of the row called `name` below a heading. Columns are counted from 0, the name's column.
     fn row(&mut self, heading: &str, name: &str, cells: &[(usize, String)]) {
         let below = self.find(heading, "\n").0;
         let start = format!("\n| {name} |");
@@ -112,7 +116,7 @@ fn the_cycles_of_a_small_job_are_as_printed() {
     page.check();
 }
 
-/// An AFU's manifest, and the latency of its kernel.
+/// The manifest of an AFU, and the latency of its kernel.
 fn generated(arguments: &[&str]) -> (Value, u64) {
     let room = tempfile::tempdir().unwrap();
     let out = room.path().join("out");
@@ -162,7 +166,7 @@ fn the_figures_of_scenes_are_their_plans() {
     page.between("7 DSP blocks 8, ", ", and a contact's record", &cycles);
     page.between("and a contact's record ", " (Yosys", &format!("{} bytes instead of {}", bytes[1], bytes[0]));
 
-    // The query of a million candidates, as the page makes it.
+    // The query of a million candidates from the page.
     let room = tempfile::tempdir().unwrap();
     let scene = room.path().join("million.toml");
     let text = fs::read_to_string(root.join("touching.toml")).unwrap();
@@ -183,8 +187,8 @@ fn the_figures_of_scenes_are_their_plans() {
     page.check();
 }
 
-/// The table of gross failures in a page is what `afu hard` finds with these arguments. Its columns are `contenders`
-/// and ODE, which is compared if it is built in. Returns the picture beside it.
+/// Checks that a page's table of gross failures matches `afu hard` with these arguments. The table's columns are
+/// `contenders`, and ODE, which is compared only if it is built in. Returns the picture that `afu hard` made.
 fn compare_gross_failures(page: &str, arguments: &[&str], contenders: &[&str], sums: &[(&str, &str)]) -> String {
     let room = tempfile::tempdir().unwrap();
     let out = room.path().join("hard");

@@ -1,4 +1,4 @@
-//! The program `afu`: what it prints, writes and refuses, its pages in a browser, and what the documents say of it.
+//! The program `afu`: its outputs, files and errors, its pages in a browser, and the documents that quote it.
 
 #[cfg(feature = "cosim")]
 mod accuracy_page;

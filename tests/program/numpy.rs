@@ -1,4 +1,4 @@
-//! docs/numpy.md is a program: its Python blocks, one after the other, run as they stand.
+//! docs/numpy.md is a program: its Python blocks run one after the other, unchanged.
 
 use std::env;
 use std::fs;
@@ -39,7 +39,7 @@ fn the_page_runs_as_it_stands() {
     run(&program()).expect("docs/numpy.md runs");
 }
 
-/// The check can fail: the same page with another word for the depth does not pass.
+/// The check can fail: the page with a wrong index of the depth does not pass.
 #[test]
 fn a_wrong_word_is_noticed() {
     let wrong = program().replacen("numbers[:, 6]", "numbers[:, 5]", 1);

@@ -1,4 +1,4 @@
-//! Every kind of file that is read: right ones, and what reads them.
+//! Every kind of file that is read: valid files, and the functions that read them.
 
 use contact_afu::query::Query;
 use std::fs;
@@ -18,7 +18,8 @@ use serde_json::{Value, json};
 
 use crate::mutate::Form;
 
-/// A kind of file: its name (in a folder of its own), something right in it, and what reads it; true if it is accepted.
+/// A kind of file: its name (in a separate folder), valid contents, and a reader that returns true if a file is
+/// accepted.
 pub struct Kind {
     pub name: &'static str,
     pub form: Form,
@@ -41,7 +42,7 @@ fn file(name: &str) -> Vec<u8> {
     fs::read(root().join(name)).unwrap()
 }
 
-/// The pairs as other arrays that are read: of binary16 and binary64, big-endian, in Fortran order, n × 2 × 4.
+/// The pairs as other supported arrays: binary16 and binary64, big-endian, Fortran order, n × 2 × 4.
 fn arrays(pairs: &[contact_afu::query::PairRecord]) -> Vec<Vec<u8>> {
     let array = |descr: &str, order: &str, shape: &str, data: Vec<u8>| {
         let header =
@@ -56,7 +57,6 @@ fn arrays(pairs: &[contact_afu::query::PairRecord]) -> Vec<Vec<u8>> {
     ]
 }
 
-/// Pairs and contacts.
 fn of_pairs(room: &Path) -> Vec<Kind> {
     let some = pairs::load(Query::SphereSphere, "random:6", 3).unwrap();
     let contacts: Vec<_> = some.iter().map(|pair| ContactRecord(pair.0)).collect();
@@ -107,10 +107,10 @@ fn of_pairs(room: &Path) -> Vec<Kind> {
     ]
 }
 
-/// What a user writes: scenes with the files that they name, link models, lists of Verilog.
+/// Files that users write: scenes with the files that they name, link models, lists of Verilog files.
 fn of_users(room: &Path) -> Vec<Kind> {
     let models = [LinkModel::hostile(), LinkModel::late()].iter().map(|m| serde_json::to_vec(m).unwrap()).collect();
-    // Scenes whose spheres are in the file that is read, and what a list of Verilog names.
+    // Scenes with spheres in the file under test, and the Verilog files that a list names.
     for name in ["spheres.csv", "spheres.ply"] {
         let scene = format!(
             "scene = 1\nwant = [\"touching\"]\n[[bodies]]\nshape = \"stack\"\ncount = 2\nradius = 1.0\n[[queries]]\n\
@@ -160,7 +160,6 @@ fn of_users(room: &Path) -> Vec<Kind> {
     ]
 }
 
-/// A sweep without rows.
 fn swept() -> SweepResults {
     let task = sweep::Task { pairs: &[], link: &LinkModel::ideal(), seed: 1, counts: false };
     let swept = sweep::Swept { scpus: vec![1], interval: vec![1] };
@@ -171,7 +170,7 @@ fn measured() -> Key {
     Key::new("area/1", &("wide", 7, 1.5)).unwrap()
 }
 
-/// What the program wrote and reads again: manifests, chosen configurations, studies to be resumed, figures.
+/// Files that the program writes and reads again: manifests, chosen configurations, studies to be resumed, figures.
 fn of_the_program() -> Vec<Kind> {
     let profile = |name: &str| name.parse::<Profile>().unwrap();
     let chosen = [
@@ -233,7 +232,7 @@ fn of_the_program() -> Vec<Kind> {
             form: Form::Json,
             seeds: vec![text(&json!({ "key": measured(), "value": area }))],
             read: |path| {
-                // A store looks for it under the hash of its key.
+                // A store looks for a file under the hash of its key.
                 let store = Store::open(path.parent().unwrap());
                 fs::rename(path, store.file(&measured(), "json")).unwrap();
                 store.get::<Area>(&measured()).unwrap().is_some() && store.list().unwrap() == [measured()]
@@ -251,7 +250,7 @@ fn of_the_program() -> Vec<Kind> {
     ]
 }
 
-/// All kinds. `room` has a folder for each that has one in its name.
+/// All kinds. Creates in `room` the folders that kinds name.
 pub fn kinds(room: &Path) -> Vec<Kind> {
     for folder in ["hard", "store", "sweep"] {
         fs::create_dir(room.join(folder)).unwrap();

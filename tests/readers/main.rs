@@ -1,6 +1,6 @@
-//! Everything that reads a file, given files that are nearly right: an error or a value, never a panic, a hang or
-//! memory beyond what the file bears out. The mutations are seeded; `READERS_SEED` and `READERS_COUNT` (of each kind)
-//! give other and more.
+//! Runs every reader on files that are nearly right. It must return an error or a value, and never panic, hang or use
+//! more memory than the file justifies. The mutations are seeded; `READERS_SEED` and `READERS_COUNT` (per kind) change
+//! their seed and number.
 #![cfg(feature = "cosim")]
 
 mod kinds;
@@ -19,23 +19,23 @@ use mutate::mutated;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-/// Bytes in use, and the most since it was last set to them.
+/// An allocator that counts the bytes in use and their peak.
 struct Counted;
 static USED: AtomicUsize = AtomicUsize::new(0);
 static MOST: AtomicUsize = AtomicUsize::new(0);
 
-// SAFETY: passes everything on to the system's allocator.
+// SAFETY: passes all calls on to the system's allocator.
 unsafe impl GlobalAlloc for Counted {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         let used = USED.fetch_add(layout.size(), Relaxed) + layout.size();
         MOST.fetch_max(used, Relaxed);
-        // SAFETY: as the caller says.
+        // SAFETY: guaranteed by the caller.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, place: *mut u8, layout: Layout) {
         USED.fetch_sub(layout.size(), Relaxed);
-        // SAFETY: as the caller says.
+        // SAFETY: guaranteed by the caller.
         unsafe { System.dealloc(place, layout) }
     }
 }
@@ -84,7 +84,7 @@ fn no_file_makes_a_reader_panic_hang_or_take_memory() {
     println!("{files} files");
 }
 
-/// A file that declares more than it holds: an error, and no memory for what is not there.
+/// A file that declares more than it contains gives an error, without memory being allocated for the missing data.
 #[test]
 fn declared_sizes_are_not_believed() {
     let room = tempfile::tempdir().unwrap();
@@ -113,7 +113,7 @@ fn declared_sizes_are_not_believed() {
         }
     }
     assert_eq!(tried, 7 * 3 * 2 * 2);
-    // The same header with what it declares is right.
+    // The same header with the actual shape is accepted.
     let header = "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 8), }\n";
     let length = (header.len() as u16).to_le_bytes();
     fs::write(&path, [&b"\x93NUMPY\x01\x00"[..], &length[..], header.as_bytes(), &[0; 64][..]].concat()).unwrap();

@@ -1,20 +1,20 @@
-//! Files that are nearly right: changes of bytes, of rows and cells, and of values in a tree.
+//! Makes files nearly right: changes bytes, rows and cells, and values in a tree.
 
 use rand::RngExt;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use serde_json::{Map, Value, json};
 
-/// How a file is built, and so how it can be changed without being nonsense at once.
+/// A file's structure, which decides on mutations that stay close to valid files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
     Bytes,
-    /// Rows of cells with commas between them.
+    /// Rows of cells separated by commas.
     Csv,
     Json,
     Toml,
 }
 
-/// What breaks readers: the ends of ranges, nesting, other types, what is no text.
+/// Values that break readers: ends of ranges, nesting, wrong types, invalid text.
 const WORDS: [&[u8]; 24] = [
     b"-1",
     b"0",
@@ -42,7 +42,7 @@ const WORDS: [&[u8]; 24] = [
     b"[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[",
 ];
 
-/// One to four changes: half of the files by their bytes, the others by their form as well.
+/// Makes one to four changes: in half of the files only to bytes, in the others also to the structure.
 pub fn mutated(form: Form, seed: &[u8], random: &mut Xoshiro256PlusPlus) -> Vec<u8> {
     let changes = random.random_range(1..5);
     let by_form = random.random::<bool>();
@@ -63,7 +63,7 @@ fn word(random: &mut Xoshiro256PlusPlus) -> &'static [u8] {
     WORDS[random.random_range(0..WORDS.len())]
 }
 
-/// A byte, a word, a number replaced, a piece cut, doubled or moved.
+/// Replaces a byte, a word or a number; or cuts, duplicates or moves a piece.
 fn bytes(mut text: Vec<u8>, random: &mut Xoshiro256PlusPlus) -> Vec<u8> {
     let at = random.random_range(0..=text.len());
     let end = (at + random.random_range(0..40)).min(text.len());
@@ -79,7 +79,7 @@ fn bytes(mut text: Vec<u8>, random: &mut Xoshiro256PlusPlus) -> Vec<u8> {
             text.splice(at..at, piece);
         }
         _ => {
-            // The next number, whatever it is, becomes another word.
+            // The next number, whatever its value, is replaced by another word.
             let is_digit = |byte: &u8| byte.is_ascii_digit() || matches!(byte, b'.' | b'-');
             if let Some(begin) = text[at..].iter().position(is_digit).map(|begin| at + begin) {
                 let end = begin + text[begin..].iter().take_while(|byte| is_digit(byte)).count();
@@ -90,7 +90,7 @@ fn bytes(mut text: Vec<u8>, random: &mut Xoshiro256PlusPlus) -> Vec<u8> {
     text
 }
 
-/// A cell replaced, doubled or taken away; a row doubled, moved or taken away; a column taken away.
+/// Replaces, duplicates or removes a cell; duplicates, moves or removes a row; or removes a column.
 fn cells(text: &[u8], random: &mut Xoshiro256PlusPlus) -> Vec<u8> {
     let mut rows: Vec<Vec<Vec<u8>>> = text
         .split(|&byte| byte == b'\n')
@@ -127,12 +127,12 @@ fn json_tree(text: &[u8], random: &mut Xoshiro256PlusPlus) -> Option<Vec<u8>> {
 fn toml_tree(text: &[u8], random: &mut Xoshiro256PlusPlus) -> Option<Vec<u8>> {
     let mut tree: Value = toml::from_str(std::str::from_utf8(text).ok()?).ok()?;
     change(&mut tree, random);
-    // Every key of the top on a line of its own, all that is below in line.
+    // One top-level key per line, with everything below it inline.
     let lines = tree.as_object()?.iter().map(|(key, value)| format!("{} = {}", json!(key), in_line(value)));
     Some(lines.collect::<Vec<_>>().join("\n").into_bytes())
 }
 
-/// A value as TOML has it in one line; `null` stands for itself, which no reader knows.
+/// Formats a value as inline TOML. `null` is written as `null`, which every reader must reject.
 fn in_line(value: &Value) -> String {
     match value {
         Value::Array(all) => format!("[{}]", all.iter().map(in_line).collect::<Vec<_>>().join(", ")),
@@ -152,7 +152,7 @@ fn size(tree: &Value) -> usize {
     }
 }
 
-/// The value of that number, counted depth first.
+/// The value with this index in depth-first order.
 fn place(tree: &mut Value, number: usize) -> Option<&mut Value> {
     if number == 0 {
         return Some(tree);
@@ -173,7 +173,7 @@ fn place(tree: &mut Value, number: usize) -> Option<&mut Value> {
     None
 }
 
-/// A value becomes another, of its own type or of any; an entry is doubled, renamed or taken away.
+/// Replaces a value by another of the same or any type; or duplicates, renames or removes an entry.
 fn change(tree: &mut Value, random: &mut Xoshiro256PlusPlus) {
     let number = random.random_range(0..size(tree));
     let Some(value) = place(tree, number) else { return };
@@ -224,7 +224,7 @@ fn change(tree: &mut Value, random: &mut Xoshiro256PlusPlus) {
             *value = numbers[random.random_range(0..numbers.len())].clone();
         }
         _ if random.random_range(0..4) == 0 => {
-            // Far inside.
+            // Deeply nested.
             let mut deep = value.take();
             for _ in 0..random.random_range(1..300) {
                 deep = if random.random::<bool>() {

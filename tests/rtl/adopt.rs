@@ -1,5 +1,5 @@
-//! The package in the tools that people use it with: its file list from another folder, two AFUs in one design, its own
-//! test bench, FuseSoC.
+//! The package in its users' tools: its file list from another folder, two AFUs in one design, its own test bench,
+//! FuseSoC.
 
 use std::fs;
 use std::path::Path;
@@ -14,7 +14,7 @@ fn text(output: &Output) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
 }
 
-/// What an AFU's own test bench says, found by the name of each module, and whether it ended well.
+/// The output of an AFU's own test bench, with modules found by name, and whether it succeeded.
 fn own_bench(package: &Path, afu: &Afu, elsewhere: &Path) -> (bool, String) {
     let bench = afu.bench_name();
     let compiled = Command::new("iverilog")
@@ -75,7 +75,7 @@ fn the_package_s_own_bench_fails() {
     }
 }
 
-/// As its header says for each tool.
+/// Uses the file list as its header describes for each tool.
 #[test]
 fn the_file_list_works_from_any_folder() {
     let room = tempfile::tempdir().unwrap();
@@ -102,7 +102,7 @@ fn the_file_list_works_from_any_folder() {
     icarus(&package, &["-f", "contact_afu.f"]);
 }
 
-/// Both in one module, port by port.
+/// A module with both AFUs and all their ports.
 fn both(afus: &[Afu]) -> String {
     let (mut ports, mut instances) = (Vec::new(), String::new());
     for afu in afus {
@@ -155,18 +155,18 @@ fn two_afus_with_prefixes_are_one_design() {
         .output()
         .unwrap();
     succeeded("Icarus", &icarus);
-    // All of both is there in each run, too.
+    // Each run also contains every module of both AFUs.
     for afu in &afus {
         let (good, said) = own_bench(room.path(), afu, room.path());
         assert!(good, "{said}");
     }
-    // Without prefixes they clash.
+    // Without prefixes their modules conflict.
     let plain = ["paper", "half"].map(|profile| generate(Config { profile: profile.parse().unwrap(), ..line() }));
     let [first, second] = plain.map(|afu| afu.verilog().into_iter().map(|(name, _)| name).collect::<Vec<_>>());
     assert!(first.iter().filter(|name| second.contains(name)).count() > 8);
 }
 
-/// FuseSoC's own command, with nothing of this machine's settings.
+/// Runs FuseSoC's own command without this machine's settings.
 fn fusesoc(room: &Path, package: &Path, arguments: &[&str]) -> Output {
     let mut command = Command::new(root().join(".venv/bin/fusesoc"));
     for home in ["HOME", "XDG_CONFIG_HOME", "XDG_CACHE_HOME", "XDG_DATA_HOME"] {
@@ -187,7 +187,7 @@ fn fusesoc_runs_the_sim_target() {
         spoil(package.path(), PACKER[0], PACKER[1], PACKER[2]);
         let failed = run(&["run", "--target=sim", "--clean", &afu.vlnv()]);
         assert!(!failed.status.success() && text(&failed).contains("FAIL: "), "{}", text(&failed));
-        // The constraints go to the tool that reads them.
+        // The constraints are passed to the tool that reads them.
         let set_up = run(&["run", "--setup", "--target=default", "--tool=vivado", &afu.vlnv()]);
         assert!(set_up.status.success(), "{}", text(&set_up));
         let mut script = Command::new("grep");
@@ -196,7 +196,7 @@ fn fusesoc_runs_the_sim_target() {
     }
 }
 
-/// A core's name says which AFU it is: no two have the same.
+/// A core's name identifies its AFU: no two AFUs share a name.
 #[test]
 fn a_core_is_named_after_its_configuration() {
     let name = |config: &Config| generate(config.clone()).vlnv();

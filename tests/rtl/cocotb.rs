@@ -1,4 +1,4 @@
-//! The line port, driven by a cocotb bench that knows what PORTS.md says and nothing else of this crate.
+//! The line port, driven by a cocotb bench that is based only on PORTS.md.
 
 use std::fs;
 use std::path::Path;
@@ -12,7 +12,7 @@ fn bench(package: &Path) -> Output {
     let python = root().join(".venv/bin/python");
     let mut command = Command::new(python);
     command.arg(root().join("tb/cocotb/run.py")).arg(package);
-    // It leaves nothing in the source folder.
+    // Python must not write bytecode into the source folder.
     command.env("PYTHONDONTWRITEBYTECODE", "1").env("COCOTB_ANSI_OUTPUT", "0");
     command.output().expect("needs cocotb: run scripts/setup --test")
 }
@@ -25,7 +25,7 @@ fn line() -> Config {
     Config { scpus: 2, shell: Shell::Line, ..Config::default() }
 }
 
-/// Records of every kind, and the timing diagram to the cycle.
+/// Records of every kind, and the exact cycles of the timing diagram.
 #[test]
 fn ports_md_says_all_that_a_stranger_needs() {
     let depth = "depth".parse().unwrap();
@@ -41,7 +41,7 @@ fn ports_md_says_all_that_a_stranger_needs() {
     }
 }
 
-/// The bench fails where the hardware is wrong, or where PORTS.md is.
+/// The bench fails if the hardware is wrong or PORTS.md is.
 #[test]
 fn the_cocotb_bench_can_fail() {
     for (file, old, new, fault) in [

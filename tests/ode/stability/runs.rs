@@ -1,24 +1,24 @@
-//! Simulations with contacts from here and there, and how far they go apart.
+//! Simulations with contacts from different sources, and the deviations between them.
 
 use contact_afu::kernel::Engine;
 use contact_afu::ode::{Collider, Ode, SpherePair, Touch, World};
 
 use super::scenes::{Build, Point, Scene, dot};
 
-/// Where contacts come from.
+/// The source of contacts.
 pub enum Contacts<'a> {
     /// ODE's own collider in `f64`.
     Ode,
-    /// The same, after the positions and radii were rounded to binary32.
+    /// ODE's own collider, with positions and radii rounded to binary32.
     Rounded,
-    /// An engine in its place, which is given the same rounded numbers.
+    /// An engine instead of the collider, with the same rounded inputs.
     By(&'a mut dyn Engine),
 }
 
 /// A world after a step.
 #[derive(PartialEq)]
 pub struct State {
-    /// Kinetic energy, and the work that the forces have still to do.
+    /// Kinetic energy plus the potential energy of the forces.
     pub energy: f64,
     momentum: Point,
     angular: Point,
@@ -48,7 +48,7 @@ fn rounded(world: &World, pair: &mut SpherePair) -> Vec<Touch> {
     touches
 }
 
-/// The states after each of so many steps.
+/// The states after each of `steps` steps.
 pub fn run(build: Build, steps: usize, mut contacts: Contacts<'_>) -> Vec<State> {
     let own = !matches!(contacts, Contacts::By(_));
     let ode = Ode::start(if own { Collider::Own } else { Collider::Engine }).unwrap();
@@ -86,13 +86,13 @@ impl State {
     }
 }
 
-/// The largest differences between two simulations, each over all their steps.
+/// The maximum differences between two simulations over all their steps.
 #[derive(Clone, Copy, Debug)]
 pub struct Deviation {
     pub energy: f64,
     pub momentum: f64,
     pub angular: f64,
-    /// Of a sphere's place.
+    /// Of the position of a sphere.
     pub place: f64,
 }
 

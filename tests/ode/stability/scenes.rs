@@ -1,4 +1,4 @@
-//! What moves: the paper's diamond, spheres resting on each other in pairs, and a stack.
+//! The scenes: the paper's diamond, spheres resting on each other in pairs, and a stack.
 
 use contact_afu::ode::{Diamond, Error, Ode, Sphere, Surface, Touch, World};
 
@@ -7,13 +7,13 @@ pub type Point = [f64; 3];
 /// A world and its forces.
 pub struct Scene {
     pub world: World,
-    /// On each sphere, the same in every step.
+    /// The constant force on each sphere.
     forces: Vec<Point>,
-    /// With which spheres 2i and 2i + 1 draw each other.
+    /// The force with which spheres 2i and 2i + 1 attract each other.
     attraction: f64,
 }
 
-/// How to build one, whichever collider ODE has.
+/// Builds a scene, whichever collider ODE uses.
 pub type Build = fn(&Ode) -> Result<Scene, Error>;
 
 const TIME_STEP: f64 = 0.01;
@@ -44,14 +44,14 @@ impl Scene {
         self.world.step(TIME_STEP)
     }
 
-    /// What the forces have still to do: energy that is not yet motion.
+    /// The potential energy of the forces.
     pub fn potential(&self) -> f64 {
         let places = self.world.spheres().map(|sphere| self.world.position(sphere));
         let done: f64 = places.zip(&self.forces).map(|(place, &force)| dot(place, force)).sum();
         self.drawn().iter().map(|(.., distance)| self.attraction * distance).sum::<f64>() - done
     }
 
-    /// Spheres that draw each other, from the second to the first, and how far that is.
+    /// Pairs of spheres that attract each other, with the vector from the second to the first and its length.
     fn drawn(&self) -> Vec<([Sphere; 2], Point, f64)> {
         let spheres: Vec<Sphere> = self.world.spheres().filter(|_| self.attraction > 0.0).collect();
         let pairs = spheres.chunks_exact(2).map(|pair| [pair[0], pair[1]]);
@@ -68,7 +68,7 @@ pub fn dot(a: Point, b: Point) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// The paper's diamond, as [`Diamond`] moves it: each sphere is drawn towards where the centre lay at first.
+/// The paper's diamond, as [`Diamond`] moves it: each sphere is pulled towards the initial centre.
 fn diamond(ode: &Ode, layers: u32, gap: f64) -> Result<Scene, Error> {
     let paper = Diamond::new(layers, gap);
     assert_eq!((paper.force, paper.time_step, paper.iterations), (1.0, TIME_STEP, 20));
@@ -93,12 +93,12 @@ pub fn paper_s_diamond(ode: &Ode) -> Result<Scene, Error> {
     diamond(ode, 10, 0.0)
 }
 
-/// Numbers from 0 to 1 that no binary fraction is: the golden ratio's multiples.
+/// Multiples of the golden ratio modulo 1, which no short binary fraction represents.
 fn spread(i: usize) -> f64 {
     (i as f64 * 0.618_033_988_749_894_9).fract()
 }
 
-/// Twenty-seven pairs of spheres that touch as exactly as `f64` has it, in as many directions, sizes and places.
+/// Twenty-seven pairs of spheres that touch as exactly as `f64` allows, in as many directions, sizes and places.
 fn pairs(ode: &Ode, attraction: f64) -> Result<Scene, Error> {
     let mut scene = Scene::new(ode)?;
     for i in 0..27 {
@@ -115,18 +115,18 @@ fn pairs(ode: &Ode, attraction: f64) -> Result<Scene, Error> {
     Ok(Scene { attraction, ..scene })
 }
 
-/// Tangent, and nothing pushes them.
+/// Tangent spheres without forces.
 pub fn resting(ode: &Ode) -> Result<Scene, Error> {
     pairs(ode, 0.0)
 }
 
-/// Tangent, and drawn to each other.
+/// Tangent spheres that attract each other.
 pub fn pressed(ode: &Ode) -> Result<Scene, Error> {
     pairs(ode, 0.1)
 }
 
-/// Four spheres in the hollows of nine, and one on top, each with its weight. The nine are so heavy that they lie
-/// still.
+/// Four spheres in the hollows of nine, and one on top, each with its weight. The nine are so heavy that they do not
+/// move.
 pub fn stack(ode: &Ode) -> Result<Scene, Error> {
     const RADIUS: f64 = 0.5;
     let mut scene = Scene::new(ode)?;

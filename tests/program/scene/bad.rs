@@ -1,4 +1,4 @@
-//! Bad scenes end in one clear error that names file, line and key.
+//! Invalid scenes give one clear error that names file, line and key.
 
 use contact_afu::scene::{Plan, Scene, check_start};
 
@@ -86,7 +86,8 @@ fn moving_bodies_are_fewer_and_files_say_what_is_wrong_in_them() {
     assert_eq!(query.balls.iter().map(|ball| ball.centre[2]).collect::<Vec<_>>(), [1.0, 2.5]);
 }
 
-/// A lattice whose `at` was taken for its corner lies half below the floor: refused unless the file allows it.
+/// If `at` is mistaken for a lattice's corner, the lattice lies half below the floor. That is rejected unless the file
+/// allows it.
 #[test]
 fn bodies_that_begin_inside_something_are_counted_and_refused() {
     let lattice = "scene = 1\nwant = [\"energy\"]\n[effects]\ngravity = [0.0, 0.0, -9.81]\nfloor = 0.0\nbounce = 0.5\n\
@@ -104,14 +105,14 @@ fn bodies_that_begin_inside_something_are_counted_and_refused() {
     let walls = lattice.replace("floor = 0.0", "walls = [[-0.5, -0.5, -2.0], [1.5, 1.5, 2.0]]");
     let outside = "4 bodies begin outside the walls, the first body 3 (line 7) by 0.500";
     assert_eq!(check(&walls), Err(format!("s.toml:7: bodies: {outside}; {cure}")));
-    // Two groups of which one reaches into the other, and a body that is in neither.
+    // Two groups, one of which overlaps the other, and a body inside both.
     let second = "[[bodies]]\nshape = \"stack\"\ncount = 2\nradius = 0.25\nat = [0.1, 0.0, 2.3]\n";
     let two = format!("{}{second}", lattice.replace("0.5, 0.5, 0.5]", "0.5, 0.5, 2.0]"));
     let inside =
         "3 pairs of bodies begin inside one another, the first body 2 (line 7) and body 16 (line 12) by 0.526; ";
     let error = check(&two).unwrap_err();
     assert!(error.starts_with(&format!("s.toml:7: bodies: {inside}")), "{error}");
-    // Bodies that nothing parts may overlap, and a query asks for just that.
+    // If no effect separates bodies, they may overlap. A query looks for overlaps.
     assert_eq!(check(&two.replace("bounce = 0.5\n", "")), Ok(()));
     let query = "scene = 1\nwant = [\"touching\"]\n[[bodies]]\nshape = \"stack\"\ncount = 9\ngap = -0.5\n";
     assert_eq!(check(query), Ok(()));

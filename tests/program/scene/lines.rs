@@ -1,15 +1,15 @@
-//! Deleting one line of an example changes exactly the rows of its plan that name that line.
+//! Deleting a line of an example changes exactly the rows of its plan that name this line.
 
 use contact_afu::scene::{Plan, Row, Scene};
 
 use super::{EXAMPLES, path};
 
-/// A row by what does not depend on line numbers.
+/// The contents of a row that do not depend on line numbers.
 fn content(row: &Row) -> (bool, String, Vec<String>) {
     (row.on, row.value.clone(), row.calls.iter().map(|call| call.text.clone()).collect())
 }
 
-/// Groups of bodies are named by their line, so they are compared by their place among groups.
+/// Groups of bodies are named by their line, so they are compared by their order.
 fn rows(plan: &Plan) -> Vec<(String, Row)> {
     let mut groups = 0;
     let name = |row: &Row| match row.name.split_once(" of line ") {
@@ -23,7 +23,7 @@ fn rows(plan: &Plan) -> Vec<(String, Row)> {
     names.into_iter().zip(plan.rows.iter().cloned()).collect()
 }
 
-/// What a scene cannot do without: its version, the headings of its tables, what a shape is and needs.
+/// Lines that a scene requires: its version, the headings of its tables, a shape and its parameters.
 fn is_structure(line: &str) -> bool {
     let keys = ["scene", "shape", "layers", "count", "corners", "centres", "want"];
     line.starts_with('[') || line == "]" || keys.iter().any(|key| line.starts_with(&format!("{key} = ")))
@@ -67,7 +67,8 @@ fn a_line_less_changes_the_rows_that_name_it_and_no_other() {
     assert!(changed_rows > 60 && refused > 20, "{changed_rows} rows changed, {refused} lines were needed");
 }
 
-/// Trajectories are wanted, and this line alone moves bodies; or another line contradicts its absence.
+/// Lines that cannot be deleted: trajectories are wanted and only this line moves bodies, or another line depends on
+/// it.
 fn is_only_motion(example: &str, line: &str) -> bool {
     matches!(
         (example, line.split(' ').next()),

@@ -1,4 +1,4 @@
-//! Scenes: what their text calls for, and that nothing else is built or run.
+//! Scenes: the parts that their text requires, and that no other part is built or run.
 
 mod bad;
 mod lines;

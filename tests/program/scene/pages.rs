@@ -1,4 +1,4 @@
-//! The page of a scene: its data are those of the run, and what a reader does changes what is drawn.
+//! The page of a scene: its data are those of the run, and the reader's actions change the drawing.
 
 use std::fs;
 use std::path::Path;
@@ -18,14 +18,14 @@ fn results(scene: &Scene) -> SceneRun {
     }
 }
 
-/// The data in a page.
+/// The data embedded in a page.
 fn data(page: &str) -> Value {
     let begin = "<script id=\"picture\" type=\"application/json\">";
     let (_, rest) = page.split_once(begin).expect("the page has its data");
     serde_json::from_str(rest.split_once("</script>").expect("an end").0).expect("JSON")
 }
 
-/// Bytes of base 64.
+/// Decodes base 64.
 fn bytes(value: &Value) -> Vec<u8> {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let digits: Vec<u32> = value
@@ -81,7 +81,7 @@ fn places_orientations_and_meetings_in_a_page_are_those_of_the_run() {
     assert!(!words.is_empty());
     for (three, meeting) in words.chunks_exact(3).zip(&results.meetings) {
         assert_eq!(three, [meeting.step as u32 + 1, meeting.bodies[0] as u32, meeting.bodies[1] as u32]);
-        // Half a step before they were near each other.
+        // In the frame before the meeting the bodies were near each other.
         let place = |body: usize| results.places[meeting.step as usize][body];
         let [a, b] = meeting.bodies.map(place);
         let apart = (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>().sqrt();
@@ -98,7 +98,7 @@ fn orientations_are_kept_only_where_bodies_turn() {
     assert!(data(&page(&results, &[]))["turns"].is_null());
 }
 
-/// Of many bodies a page draws those that touch and some of the others, and it stays small.
+/// If there are many bodies, a page draws those that touch and some of the others, so that it stays small.
 #[test]
 fn a_large_query_makes_a_page_that_is_not() {
     let text = "scene = 1\nname = \"</script><b>\"\nwant = [\"touching\", \"depth\"]\n[[bodies]]\nshape = \"random\"\ncount = 60_000\nseed = 5\n\
@@ -119,11 +119,12 @@ fn a_large_query_makes_a_page_that_is_not() {
     }
 }
 
-/// A page without its policy, so that a script of the test can act as its reader.
+/// Writes a page without its policy, so that a script of the test can act as its reader.
 fn handled(page: &str, hand: &str, to: &Path) {
     let (before, rest) = page.split_once("<meta http-equiv=\"Content-Security-Policy\"").expect("a policy");
     let (_, after) = rest.split_once('>').expect("its end");
-    // What the canvas shows: how many pixels have a bright colour, as bodies do and the room does not; a sum of all.
+    // `look` summarises the canvas: the number of pixels with a bright colour (bodies, not the room), and a sum of all
+    // pixels.
     let look = "function look() { const c = document.getElementById('scene'), d = document.createElement('canvas');\
         d.width = 200; d.height = 150; const p = d.getContext('2d'); p.drawImage(c, 0, 0, 200, 150);\
         const v = new Uint32Array(p.getImageData(0, 0, 200, 150).data.buffer);\
@@ -135,7 +136,7 @@ fn handled(page: &str, hand: &str, to: &Path) {
 
 fn title(file: &Path) -> Vec<String> {
     let opened = crate::browser::open(file);
-    // Chromium warns that pixels are read back, which only this test does.
+    // Chromium warns about reading pixels back, which only this test does.
     let errors: Vec<&String> = opened.console.iter().filter(|line| !line.contains("GPU stall")).collect();
     assert!(errors.is_empty(), "{errors:?}");
     let title = opened.dom.split_once("<title>").and_then(|(_, rest)| rest.split_once("</title>")).expect("a title").0;
@@ -151,7 +152,7 @@ fn stepping_through_contacts_changes_what_is_shown() {
     let opened = crate::browser::open(&file);
     assert!(opened.console.is_empty() && opened.fetched.is_empty(), "{opened:?}");
 
-    // Every click draws before it returns. The first restores what is there at first.
+    // Every click draws before it returns. The first restores the initial view.
     let hand = "const shown = [], press = (id) => document.getElementById(id).click();\
         const see = () => shown.push(...look(), document.getElementById('which').value);\
         press('reset'); see(); press('next'); see();\
@@ -190,7 +191,7 @@ fn a_moving_scene_moves_and_its_energy_s_curve_leads_to_a_time() {
     let seen = title(&file);
     let views: Vec<&[String]> = seen.chunks(4).collect();
     assert!(views.iter().all(|view| view[0].parse::<usize>().unwrap() > 500), "no body is seen: {seen:?}");
-    // The axis reaches from 0 to 0.3: a third of it is a time of 0.1, 20 steps of 0.005.
+    // The axis ranges from 0 to 0.3. A third of it is a time of 0.1, which is 20 steps of 0.005.
     assert_eq!(
         views.iter().map(|view| view[2].as_str()).collect::<Vec<_>>(),
         ["step 0", "step 40", "step 41", "step 20"]

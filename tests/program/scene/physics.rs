@@ -1,4 +1,4 @@
-//! Energy and momentum behave as the named effects say.
+//! Energy and momentum behave as the scene's effects require.
 
 use contact_afu::scene::{Energy, Plan, Scene, SceneRun, run};
 
@@ -18,7 +18,7 @@ fn total(energy: &Energy) -> f64 {
     energy.kinetic + energy.potential
 }
 
-/// A frictionless gas that springs back keeps its energy: within one part in a thousand over 10 000 steps.
+/// A frictionless gas with elastic collisions keeps its energy within one part in a thousand over 10 000 steps.
 #[test]
 fn an_elastic_gas_keeps_its_energy_through_ten_thousand_steps() {
     let mut gas = scene("gas");
@@ -32,7 +32,7 @@ fn an_elastic_gas_keeps_its_energy_through_ten_thousand_steps() {
     assert!(worst < 1e-3, "{worst}");
 }
 
-/// Without walls nothing from outside acts: momentum stays, to what f32 normals leave of it.
+/// Without walls there is no external force: momentum is constant, except for the error of f32 normals.
 #[test]
 fn bodies_among_themselves_keep_their_momentum() {
     let text = "scene = 1\nsteps = 3000\nwant = [\"energy\"]\n[effects]\nbounce = 1.0\n\
@@ -60,7 +60,7 @@ fn damping_lets_energy_fall_in_every_step() {
     assert!(total(&energies[400]) < 1e-3 * total(&energies[0]));
 }
 
-/// The column falls and comes to rest, asleep: nothing is sent any more.
+/// The column falls, comes to rest and sleeps, so that no more pairs are sent.
 #[test]
 fn a_granular_column_comes_to_rest() {
     let column = scene("column");
@@ -71,7 +71,7 @@ fn a_granular_column_comes_to_rest() {
     assert!(results.summary.asleep > 0 && results.summary.contacts > 1000);
 }
 
-/// An effect that a scene does not name is not there: without gravity, pull or contacts, bodies go straight on.
+/// An effect that the scene does not name is absent: without gravity, pull or contacts, bodies go straight on.
 #[test]
 fn nothing_happens_that_is_not_named() {
     let text = "scene = 1\nsteps = 50\nwant = [\"trajectories\"]\n\
@@ -97,7 +97,7 @@ fn nothing_happens_that_is_not_named() {
     );
 }
 
-/// A fault once: a lattice whose `at` was taken for its corner gained energy without a word.
+/// A former fault: a lattice whose `at` was mistaken for its corner gained energy without a warning.
 #[test]
 fn energy_from_nowhere_is_told_and_that_of_a_pull_is_not() {
     let lattice = "scene = 1\nstart = \"as given\"\nsteps = 300\nwant = [\"trajectories\"]\n[effects]\n\
@@ -114,7 +114,7 @@ fn energy_from_nowhere_is_told_and_that_of_a_pull_is_not() {
         text.contains("Warning: energy rose from ") && text.contains("of which pulls account for 0.0000"),
         "{text}"
     );
-    // The same from its middle, and every example, and a gas in a field whose bodies spring back with all they have.
+    // No other scene gains energy: the lattice placed by its middle, every example, and an elastic gas in a field.
     let well = lattice.replace("0.5, 0.5, 0.5]", "0.5, 0.5, 2.0]").replace("start = \"as given\"\n", "");
     let gas = "scene = 1\nsteps = 3000\nwant = [\"trajectories\"]\n[effects]\nbounce = 1.0\ngravity = [0.0, 0.0, -9.81]\n\
                walls = [[-2.0, -2.0, -2.0], [2.0, 2.0, 2.0]]\ntime_step\n\
@@ -127,7 +127,7 @@ fn energy_from_nowhere_is_told_and_that_of_a_pull_is_not() {
         println!("{}: {balance:?}", scene.name.value);
         assert!(balance.excess().is_none() && !text.contains("Warning"), "{}: {balance:?}", scene.name.value);
     }
-    // The pull's work is energy that a scene has called for: all of it, where nothing takes any.
+    // The pull's work is energy that the scene asks for. All of it stays if nothing dissipates energy.
     let pull = "scene = 1\nsteps = 100\nwant = [\"trajectories\"]\n[effects]\npull = { strength = 3.0 }\n\
                 [[bodies]]\nshape = \"stack\"\ncount = 1\nat = [9.0, 2.0, 0.0]\nvelocity = [0.3, 0.1, 0.2]\n";
     let (balance, _) = of(&Scene::parse("test", pull).unwrap());

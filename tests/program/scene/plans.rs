@@ -1,4 +1,4 @@
-//! The RTL contains the operators that a plan calls for and no other; records carry what it calls for and nothing else.
+//! The RTL contains exactly the operators that a plan requires, and records contain exactly the required fields.
 
 use contact_afu::afu::{Afu, Spec};
 use contact_afu::config::Config;
@@ -18,14 +18,14 @@ use contact_afu::verify::Bench;
 
 use super::scene;
 
-/// A module's name without its formats: up to `_e` and a digit.
+/// A module's name without its formats: everything before `_e` and a digit.
 fn operator(name: &str) -> &str {
     let format = name.match_indices("_e").find(|(at, _)| name[at + 2..].starts_with(|c: char| c.is_ascii_digit()));
     format.map_or(name, |(at, _)| &name[..at])
 }
 
-/// The operators that the kernel's Verilog instantiates, as `name × count`, without their formats; each operation has
-/// its own.
+/// The operators in the kernel's Verilog as `name × count`, without formats. At an interval of 1 each operation has its
+/// own operator.
 fn instances(example: &str) -> Vec<String> {
     instances_of(Config { interval: 1, ..Plan::of(&scene(example)).unwrap().config })
 }
@@ -48,7 +48,8 @@ fn instances_of(config: Config) -> Vec<String> {
 
 #[test]
 fn each_example_s_hardware_is_what_its_plan_calls_for() {
-    // No position: three products and sums, the offset and its halving are not there. One radius: nor is r1 + r2.
+    // Without a position, three products and sums, the offset and its halving are absent. With one radius, so is r1 +
+    // r2.
     let no_position = [
         "add_magnitudes × 2",
         "at_most × 1",
@@ -62,7 +63,7 @@ fn each_example_s_hardware_is_what_its_plan_calls_for() {
         "widening_sub × 3",
     ];
     assert_eq!(instances("diamond"), no_position);
-    // Arithmetic shorter than the records' words rounds them first, so differences are of converted words.
+    // Arithmetic with fewer bits than the records rounds their words first, so differences are of converted words.
     let shorter = no_position.map(|line| match line {
         "convert × 4" => "convert × 10",
         "sub × 1" => "sub × 4",
@@ -88,16 +89,16 @@ fn each_example_s_hardware_is_what_its_plan_calls_for() {
         instances(example).iter().map(|line| line.split(" ×").next().unwrap_or_default().to_owned()).collect()
     };
     assert_eq!(names("billiards"), with_position);
-    // Radii that differ come in records.
+    // Different radii are part of the records.
     let with_radii: Vec<&str> = with_position[..11].iter().copied().chain(["widening_add", "widening_sub"]).collect();
     assert_eq!(names("column"), with_radii);
-    // Touching alone: neither root nor division, and words go straight into sums.
+    // A test for touching has neither root nor division, and words are added directly.
     let touching = ["add_magnitudes", "at_most", "root_exceeds", "square", "widening_add", "widening_sub"];
     assert_eq!(names("touching"), touching);
 }
 
-/// As planned, operations take turns in operators while a full line of pairs a cycle still goes through: fewer of them,
-/// and none that is not called for.
+/// As planned, operations share operators while the AFU still takes one full line of pairs per cycle. So there are
+/// fewer operators, and none that is not required.
 #[test]
 fn operators_are_shared_as_far_as_the_link_lets_them() {
     for (example, absent) in
@@ -143,7 +144,7 @@ fn each_example_s_fields_and_records_are_what_it_calls_for() {
         assert_eq!(plan.config.profile.to_string(), profile, "{example}");
         assert!(parts.iter().all(|part| plan.has(*part)), "{example}");
         assert_eq!(plan.has(Part::Motion), example != "touching");
-        // Every row that is on says why, or is what it is for want of a line.
+        // Every active row names its reason, or is one of those that are active by default.
         for row in plan.rows.iter().filter(|row| row.on && row.calls.is_empty()) {
             assert!(
                 ["arithmetic", "SCPUs", "radii in records", "run"].contains(&row.name.as_str()),
@@ -153,7 +154,7 @@ fn each_example_s_fields_and_records_are_what_it_calls_for() {
     }
 }
 
-/// What both compute is the same, bit for bit, with everything on and with what is called for alone.
+/// Fields computed by both are equal bit for bit, with every field selected and with only the required fields.
 #[test]
 fn what_both_compute_is_the_same_bits() {
     let mut pairs = Set::Random(3_000).pairs(5);
@@ -179,9 +180,8 @@ fn what_both_compute_is_the_same_bits() {
     }
 }
 
-/// Each example's AFU, simulated: it finds what the reference with everything finds, and the bytes over the link are
-/// those of the plan. Bytes do not depend on the arithmetic, so it is a small one where the scene is not of touching
-/// alone.
+/// Simulates each example's AFU: it finds the same as the reference with every field, and the bytes over the link are
+/// those of the plan. Bytes do not depend on the arithmetic, so scenes that need more than touching use a small one.
 #[cfg(feature = "cosim")]
 #[test]
 fn the_bytes_over_the_link_are_the_plan_s() {
@@ -194,7 +194,7 @@ fn the_bytes_over_the_link_are_the_plan_s() {
             pairs.iter_mut().for_each(|pair| (pair.0[3], pair.0[7]) = (radius.to_bits(), radius.to_bits()));
         }
         let small = if example == "touching" { plan.config.profile.clone() } else { "e8f3z".parse().unwrap() };
-        // The line port itself: a shell reads and writes lines of its own too.
+        // Uses the line port directly, because a shell reads and writes additional lines.
         let config = Config { shell: Shell::Line, profile: small, ..plan.config.clone() };
         let verdict = Bench::new(&config).unwrap().run(&pairs, &LinkModel::ideal(), 1).unwrap();
         assert!(verdict.is_good(), "{example}: {:?}", verdict.failed_checks);
@@ -204,7 +204,7 @@ fn the_bytes_over_the_link_are_the_plan_s() {
         assert_eq!(found, hits, "{example}");
         let contacts = hits.iter().filter(|hit| **hit).count() as u64;
         let cost = plan.cost().unwrap();
-        // Whole lines go over the link.
+        // The link transfers whole lines.
         let lines = |bytes: f64| (bytes / 64.0).ceil() as u64 * 64;
         assert_eq!(verdict.outcome.bytes_read, lines(cost.bytes_sent * pairs.len() as f64), "{example}");
         assert_eq!(verdict.outcome.bytes_written, lines(cost.bytes_returned * contacts as f64), "{example}");

@@ -1,4 +1,4 @@
-//! `afu scene` as a user meets it.
+//! `afu scene` from the user's side.
 
 use std::fs;
 use std::path::Path;
@@ -63,7 +63,7 @@ fn a_bad_scene_ends_in_one_line_and_writes_nothing() {
     assert!(!out.exists());
 }
 
-/// Refused before a model is built or a folder made.
+/// Rejected before a model is built or a folder created.
 #[cfg(feature = "ode")]
 #[test]
 fn a_scene_that_begins_below_its_floor_is_exit_2() {
@@ -84,7 +84,7 @@ fn a_scene_that_begins_below_its_floor_is_exit_2() {
     assert!(balance["end"].as_f64() > balance["start"].as_f64(), "{balance}");
 }
 
-/// A scene at rest needs no ODE: a query, its contacts, its page.
+/// A static scene does not need ODE: a query, its contacts, its page.
 #[test]
 fn a_query_says_who_touches_whom() {
     let room = tempfile::tempdir().expect("a temporary folder");
@@ -99,7 +99,8 @@ fn a_query_says_who_touches_whom() {
     assert!(!out.join("trajectories.csv").exists() && !out.join("energy.csv").exists());
 }
 
-/// The simulated AFU in ODE's loop gives the same bytes as the same arithmetic in software; the page moves in Chromium.
+/// The simulated AFU in ODE's loop gives the same bytes as the same arithmetic in software. The page is animated in
+/// Chromium.
 #[cfg(all(feature = "ode", feature = "cosim"))]
 #[test]
 fn the_simulated_afu_moves_bodies_as_software_does() {
@@ -133,12 +134,12 @@ fn the_simulated_afu_moves_bodies_as_software_does() {
 
     let opened = crate::browser::open(&simulated.join("report.html"));
     assert!(opened.console.is_empty() && opened.fetched.is_empty(), "{opened:?}");
-    // The script drew: it says which frame the canvas shows.
+    // The script did draw: it reports which frame the canvas shows.
     assert!(opened.dom.contains("data-frame=\""), "the canvas was never drawn");
     assert!(opened.dom.contains("id=\"play\"") && opened.dom.contains("figure class=\"energy\""));
 
-    // A reader's hand: it scrubs to step 17, which stops the play, and plays again. Its script needs a policy without
-    // hash.
+    // Acts as a reader: scrubs to step 17, which stops playback, and then resumes it. The test's script needs a policy
+    // without a hash.
     let made = fs::read_to_string(simulated.join("report.html")).unwrap();
     let (before, rest) = made.split_once("script-src 'sha256-").expect("a policy");
     let (_, after) = rest.split_once('\'').expect("the hash's end");
