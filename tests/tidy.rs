@@ -1,11 +1,12 @@
-//! The house rules that a compiler does not hold: who imports whom, how long a file may be, what no file may name.
+//! Project rules that a compiler does not check: which module may import which, the length of files, and forbidden
+//! names.
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Who may import whom: `ARCHITECTURE.md` draws it. A module may always import itself.
+/// The modules that each module may import; `ARCHITECTURE.md` draws them. A module may always import itself.
 const HOUSE: &[(&str, &[&str])] = &[
     ("number", &[]),
     ("files", &[]),
@@ -72,7 +73,7 @@ const HOUSE: &[(&str, &[&str])] = &[
     ),
 ];
 
-/// Longer than this, a file is two things.
+/// A longer file should be split.
 const LINES: usize = 420;
 
 fn files(folder: &str, extensions: &[&str]) -> Vec<PathBuf> {
@@ -101,7 +102,7 @@ fn short(path: &Path) -> String {
     path.strip_prefix(env!("CARGO_MANIFEST_DIR")).unwrap_or(path).display().to_string()
 }
 
-/// The modules that a line of code names through `crate::`, in a `use` (braces included) or in a path.
+/// The modules that a line of code names through `crate::`, in a `use` (including braces) or in a path.
 fn imported(line: &str) -> Vec<String> {
     let code = line.split("//").next().unwrap_or_default();
     let mut names = Vec::new();
@@ -121,7 +122,7 @@ fn imported(line: &str) -> Vec<String> {
             if !word.is_empty() {
                 names.push(std::mem::take(&mut word));
             }
-            // A path names one module; a list in braces names one behind each comma.
+            // A path names one module. A list in braces names one after each comma.
             if depth == 0 {
                 break;
             }
@@ -130,7 +131,7 @@ fn imported(line: &str) -> Vec<String> {
     names
 }
 
-/// Import lines that go up or sideways.
+/// Imports of modules above or beside this one.
 fn strays(module: &str, source: &str) -> Vec<String> {
     let allowed: BTreeMap<_, _> = HOUSE.iter().copied().collect();
     let Some(allowed) = allowed.get(module) else { return vec![format!("`{module}` is not in the house")] };
@@ -146,7 +147,7 @@ fn strays(module: &str, source: &str) -> Vec<String> {
     wrong
 }
 
-/// What a new query takes is what the last one took.
+/// The documented steps for a new query match the files of the last one.
 #[test]
 fn the_way_of_a_new_query_is_written_down() {
     let page = text(&Path::new(env!("CARGO_MANIFEST_DIR")).join("ARCHITECTURE.md"));
@@ -196,7 +197,7 @@ fn a_file_is_one_thing() {
     assert!(long.is_empty(), "more than {LINES} lines: {long:?}");
 }
 
-/// What the formatter leaves alone.
+/// The formatter does not wrap comments.
 #[test]
 fn comments_keep_to_the_width_of_code() {
     let is_wide = |line: &&str| line.trim_start().starts_with("//") && line.chars().count() > 120;
@@ -212,7 +213,7 @@ fn comments_keep_to_the_width_of_code() {
 
 #[test]
 fn no_file_names_a_registry_host_or_a_path_of_one_machine() {
-    // In pieces, so that this file does not name them.
+    // Written in pieces, so that this file does not contain these names.
     let hosts = ["deb.deb~ian.org", "pypi~.org", "pythonhosted~.org", "crates~.io", "npmjs~.org"];
     let paths = ["/wo~rk/", "/fa~rm/", "/ho~me/", "/Us~ers/"];
     let words: Vec<String> = hosts.iter().chain(&paths).map(|word| word.replace('~', "")).collect();
@@ -254,7 +255,7 @@ fn the_readme_shows_the_example_as_it_is() {
     assert!(example.lines().count() < 30, "an example of a test is short");
 }
 
-/// What the program alone needs, no other crate compiles.
+/// Dependencies that only the program needs are not compiled for other crates.
 #[test]
 fn the_library_compiles_nothing_of_the_program_s() {
     let program = ["anyhow", "clap", "clap_complete", "indicatif"];

@@ -1,4 +1,4 @@
-"""Fails if a page of a built site links to a file, or to a place in a page, that is not there."""
+"""Fails if a page of a built site links to a file, or to a place in a page, that does not exist."""
 
 import html.parser
 import pathlib

@@ -1,4 +1,4 @@
-"""Fails if a file of a folder, or a file in an archive there, holds one of the given paths of this machine."""
+"""Fails if a file in a folder, or in an archive there, contains one of the given paths of this machine."""
 
 import pathlib
 import sys
@@ -7,7 +7,7 @@ import zipfile
 
 
 def contents(path):
-    """Names and bytes: of the file itself, or of what it holds if it is an archive."""
+    """Names and bytes of the file itself, or of its members if it is an archive."""
     if path.suffix == ".whl":
         with zipfile.ZipFile(path) as archive:
             for name in archive.namelist():

@@ -1,7 +1,7 @@
-"""Collects what the documentation site is made of: pages, pictures, and every file of the repository that a page links to.
+"""Collects the files of the documentation site: pages, pictures, and every file of the repository that a page links to.
 
-The order of the pages is written once, in docs/README.md: its headings and its list of links become SUMMARY.md. Fails if
-a page of docs is missing from that list, or if a link names no file.
+The order of the pages is defined in docs/README.md: its headings and its list of links become SUMMARY.md. Fails if a
+page of docs is missing from that list, or if a link names no file.
 """
 
 import pathlib
@@ -20,7 +20,7 @@ def fail(text):
 
 
 def text_of(page):
-    """The page without its blocks of code, in which brackets are no links."""
+    """The page without its blocks of code, where brackets are not links."""
     return re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.DOTALL | re.MULTILINE)
 
 

@@ -1,4 +1,4 @@
-"""A job on the line port, driven and checked by what PORTS.md says."""
+"""Drives a job on the line port and checks it against PORTS.md."""
 
 import math
 import os
@@ -15,7 +15,7 @@ PORTS = Ports(Path(os.environ["AFU_PORTS"]).read_text(encoding="utf-8"))
 SOURCE, DESTINATION, ROOM = 0x123456789AB, 0x3FF00000000, 1000
 NAN = float("nan")
 
-# x1 y1 z1 r1 x2 y2 z2 r2; distances are powers of two, so that every number that comes of them is exact.
+# x1 y1 z1 r1 x2 y2 z2 r2; distances are powers of two, so that every result is exact.
 PAIRS = [
     (0, 0, 0, 1, 1, 0, 0, 1),
     (0, 0, 0, 1, 4, 0, 0, 1),
@@ -30,7 +30,7 @@ PAIRS = [
 
 
 def answer(pair):
-    """What is computed, by the words' names; the way it went, by the meaning of its flags."""
+    """The expected results by the words' names, and the flow by the meaning of its flags."""
     p1, r1, p2, r2 = pair[0:3], pair[3], pair[4:7], pair[7]
     none = dict.fromkeys(["pos_x", "pos_y", "pos_z", "normal_x", "normal_y", "normal_z", "depth"], 0)
     if not all(map(math.isfinite, pair)) or r1 < 0 or r2 < 0:
@@ -48,7 +48,7 @@ def answer(pair):
 
 
 def pack(pairs, junk):
-    """Source lines; what is left of them is junk."""
+    """Source lines, with random bits in their unused parts."""
     lines = []
     for first in range(0, len(pairs), PORTS.pairs_per_line):
         line = junk.getrandbits(PORTS.line_bits)
@@ -63,7 +63,7 @@ def pack(pairs, junk):
 
 
 def expected(pairs):
-    """Destination lines."""
+    """The expected destination lines."""
     records = []
     for number, pair in enumerate(pairs):
         words, way = answer(pair)
@@ -81,7 +81,7 @@ def expected(pairs):
 
 
 class Memory:
-    """Answers requests; `stalls` refuses some and answers late and in any order."""
+    """Answers requests. If `stalls` is set, it refuses some and answers late and in any order."""
 
     def __init__(self, dut, lines, epoch, seed, stalls):
         self.dut, self.lines, self.epoch, self.stalls = dut, lines, epoch, stalls
@@ -99,7 +99,7 @@ class Memory:
         getattr(self.dut, port).value = self.random.getrandbits(PORTS.widths[port])
 
     def drive(self):
-        """Inputs of the next cycle."""
+        """Sets the inputs of the next cycle."""
         dut = self.dut
         for side, waiting in (("rd", self.reads), ("wr", self.writes)):
             self.ready[side] = not self.refuses()
@@ -120,7 +120,7 @@ class Memory:
         self.cycles.setdefault(what, self.cycle)
 
     def sample(self):
-        """Requests of this cycle, seen before its end."""
+        """Samples the requests of this cycle before its end."""
         for side, waiting, most in (("rd", self.reads, PORTS.reads), ("wr", self.writes, PORTS.writes)):
             get = lambda name: getattr(self.dut, f"{side}_req_{name}").value
             if self.pending[side] is not None:
@@ -169,7 +169,7 @@ async def reset(dut):
 
 
 async def job(dut, pairs, epoch, seed, stalls):
-    """Runs a job and checks it; the cycles of its events, counted from the start."""
+    """Runs a job and checks it. Returns the cycles of its events, counted from the start."""
     if PORTS.radius is not None:
         pairs = [(*pair[0:3], PORTS.radius, *pair[4:7], PORTS.radius) for pair in pairs]
     memory = Memory(dut, pack(pairs, random.Random(seed)), epoch, seed, stalls)
@@ -177,7 +177,7 @@ async def job(dut, pairs, epoch, seed, stalls):
     if PORTS.only_hits:
         inputs["destination_lines"] = ROOM
     for _ in range(20000):
-        # Halfway through a cycle: its inputs are set, its outputs follow, and are sampled before its end.
+        # Halfway through a cycle its inputs are set. Its outputs follow and are sampled before its end.
         await FallingEdge(dut.clk)
         dut.start.value = int(memory.cycle == 0)
         for name, value in inputs.items():
@@ -215,7 +215,7 @@ async def job(dut, pairs, epoch, seed, stalls):
 async def jobs(dut):
     cocotb.start_soon(Clock(dut.clk, 10, "ns").start())
     await reset(dut)
-    # One pair over a memory that answers at once: the timing diagram, cycle by cycle.
+    # A single pair with a memory that answers at once gives the timing diagram, cycle by cycle.
     cycles = await job(dut, PAIRS[:1], 1, 1, False)
     assert cycles["rd_req"] == PORTS.first_read, f"R is not {PORTS.first_read}: {cycles}"
     if PORTS.through:

@@ -52,7 +52,7 @@ class Ports:
         return words
 
     def encode(self, value):
-        """A number as a word."""
+        """Encodes a number as a word."""
         if "binary16" in self.number:
             return int.from_bytes(struct.pack("<e", value), "little")
         word = int.from_bytes(struct.pack("<f", value), "little")

@@ -1,6 +1,6 @@
 """Runs the cocotb bench of the line port in Icarus: run.py FOLDER, which `afu rtl --shell line` wrote.
 
-The bench knows what FOLDER/PORTS.md says, and nothing else of this project. Exit status 1 if it fails.
+The bench depends only on FOLDER/PORTS.md, and on nothing else of this project. Exit status 1 if it fails.
 """
 
 import os

@@ -1,4 +1,4 @@
-//! Times of `afu accuracy` are of the Verilog: a stage put into it by hand is seen.
+//! The times of `afu accuracy` come from the Verilog: an additional stage in it changes them.
 
 use contact_afu::accuracy::trade::{Cycles, cycles};
 use contact_afu::afu::{Afu, Spec};
@@ -9,7 +9,7 @@ use contact_afu::pairs::Set;
 use contact_afu::verify::Bench;
 use std::fs;
 
-/// A stage behind the responses of the line port.
+/// Adds a pipeline stage behind the responses of the line port.
 fn with_a_stage(verilog: &str) -> String {
     let ports = [("valid", 1), ("tag", 10), ("data", 512), ("error", 1)];
     let mut text = verilog.to_owned();

@@ -1,4 +1,4 @@
-//! A study of `afu accuracy` that is interrupted goes on where it was, and comes to what it would have come to.
+//! An interrupted study of `afu accuracy` resumes, and its results equal those of an uninterrupted one.
 
 use contact_afu::accuracy::trade::{Named, Plan, Size, Study, Work, run};
 use contact_afu::accuracy::{Contenders, Profiled, measure};
@@ -9,7 +9,7 @@ use contact_afu::store::Store;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
-/// An arithmetic over both kinds of records, nothing synthesised.
+/// One arithmetic with both kinds of records, without synthesis.
 fn plan() -> Plan {
     let link = "harp1".parse().expect("a link");
     let mut plan = Size::Quick.plan(link, "harp1", 1, 1);
@@ -23,7 +23,7 @@ fn plan() -> Plan {
     plan
 }
 
-/// The study in a folder, stopped by force after so many pieces of work; and how many cosims it began.
+/// Runs the study in a folder and stops it after `stop_after` pieces of work. Returns also how many cosims it started.
 fn study(folder: &Path, stop_after: usize) -> (Option<Study>, usize) {
     let (mut done, mut begun, mut configurations) = (0, 0, 0);
     let (mut planned, mut worked) = (0.0, 0.0);
@@ -50,7 +50,7 @@ fn study(folder: &Path, stop_after: usize) -> (Option<Study>, usize) {
     (ran.ok(), begun)
 }
 
-/// Without what is timed on this machine.
+/// The results without times measured on this machine.
 fn figures(mut results: Study) -> Study {
     results.kernels.clear();
     results.points.iter_mut().for_each(|point| point.software_ns = None);
@@ -65,7 +65,8 @@ fn an_interrupted_study_goes_on_and_comes_to_the_same() {
     let undisturbed = figures(undisturbed.expect("nothing stopped it"));
     assert_eq!(begun, 2);
 
-    // After both sets and the first configuration: its cycles are kept. A worker may have gone on to the second.
+    // The study stops after both sets and the first configuration, whose cycles are stored. A worker may have started
+    // the second one.
     let (stopped, _) = study(&parts, 2);
     assert!(stopped.is_none(), "it was stopped");
     let store = Store::open(&parts.join("measurements"));
@@ -77,7 +78,7 @@ fn an_interrupted_study_goes_on_and_comes_to_the_same() {
     assert_eq!(begun, 2 - kept, "what is kept is not simulated again");
     assert_eq!(figures(resumed.expect("nothing stopped it")), undisturbed);
 
-    // What is kept is believed: no row is measured again either.
+    // Stored results are used as they are: no row is measured again either.
     for key in of("errors/1") {
         let mut judged: serde_json::Value = store.get(&key).expect("read").expect("there");
         judged["tally"]["missed"] = 4711.into();
@@ -92,7 +93,7 @@ fn an_interrupted_study_goes_on_and_comes_to_the_same() {
     assert!(f16.cycles.link_limit < 0.55 * f32.cycles.link_limit);
 }
 
-/// Errors over f16 are of the pair that was given: its rounding is part of them.
+/// Errors over f16 records are relative to the original pair, so they include the rounding of its words.
 #[test]
 fn a_record_s_rounding_is_part_of_the_error() {
     let configs = [("wide", RecordFormat::F32), ("wide", RecordFormat::F16), ("half", RecordFormat::F16)];

@@ -16,7 +16,7 @@ fn echo(seed: u64) -> Instance {
     Model::build(&echo_source(), Trace::Off).unwrap().instance(seed).unwrap()
 }
 
-/// The echo AFU with one of its lines of Verilog changed.
+/// The echo AFU with one change in its Verilog.
 fn broken(from: &str, to: &str) -> Instance {
     let mut files = echo_source().files().to_vec();
     let file = files.iter_mut().find(|file| file.name == "contact_afu.v").unwrap();
@@ -184,7 +184,7 @@ fn a_wrong_mode_is_the_afus_error_and_a_wrong_afu_ours() {
     assert_eq!(driver.run(&Job { scpus: Some(10), ..job }).unwrap().job_error(), None);
 }
 
-/// Each way to break the protocol is found, and called by its name.
+/// Each violation of the protocol is detected and reported as what it is.
 #[test]
 fn the_monitor_finds_what_a_broken_afu_does() {
     let found = |from: &str, to: &str, name: &str| match run_on(&broken(from, to), link(name, 1), 300) {
@@ -212,13 +212,13 @@ fn the_monitor_finds_what_a_broken_afu_does() {
     assert!(matches!(unwritten, ProtocolError::Unwritten(_)), "{unwritten}");
 }
 
-/// Without the faults of a link, an AFU that hangs by itself is told from a link that does.
+/// If the link has no faults, the error says that the AFU hangs, not the link.
 #[test]
 fn an_afu_that_hangs_is_named() {
     let hung = broken("!outstanding && (stopping || sent == lines)", "1'b0");
     let error = run_on(&hung, link("ideal", 0), 10).unwrap_err();
     assert!(matches!(error, DriveError::TimedOut { waiting: Waiting::Afu, cycles: ..1_000, .. }), "{error}");
-    // One that hangs at the beginning of a long job is not waited for as long as the job would take.
+    // If it hangs at the beginning of a long job, the driver does not wait as long as the job would take.
     let hung = broken("(!wr_req_valid || wr_req_ready)", "1'b0");
     let error = run_on(&hung, link("late", 0), 50_000).unwrap_err();
     assert!(matches!(error, DriveError::TimedOut { waiting: Waiting::Afu, cycles: ..5_000, .. }), "{error}");

@@ -1,5 +1,5 @@
-//! A generated AFU in the crate's own evaluator, at the end of an ideal link; and lines laid out by the words of the
-//! design, not by the crate's layout.
+//! A generated AFU in the crate's own evaluator, with an ideal link; and lines laid out independently of the crate's
+//! layout.
 
 use contact_afu::afu::{Afu, Spec};
 use contact_afu::config::{Config, Results};
@@ -8,7 +8,7 @@ use contact_afu::kernel::narrow;
 use contact_afu::link::Line;
 use contact_afu::query::{ContactRecord, Fields};
 
-/// Words of so many bits each, records padded to a power of two, in lines.
+/// Packs records into lines. Each record is padded to a power of two.
 fn lines(records: impl IntoIterator<Item = Vec<u8>>) -> Vec<Line> {
     let mut bytes = Vec::new();
     for mut record in records {
@@ -20,14 +20,14 @@ fn lines(records: impl IntoIterator<Item = Vec<u8>>) -> Vec<Line> {
     bytes.chunks(64).map(|line| std::array::from_fn(|i| word(&line[4 * i..4 * i + 4]))).collect()
 }
 
-/// A word as memory has it.
+/// A word as it is stored in memory.
 fn bytes(config: &Config, word: u32, is_number: bool) -> Vec<u8> {
     let format = config.record.format();
     let short = if is_number { narrow(word, format) } else { word };
     short.to_le_bytes()[..format.width() as usize / 8].to_vec()
 }
 
-/// The source: the fourth and the eighth word of a pair are missing where all radii are one.
+/// The source lines. If all spheres have the same radius, the fourth and the eighth word of a pair are missing.
 fn source(config: &Config, pairs: &[[u32; 8]]) -> Vec<Line> {
     let words = |pair: &[u32; 8]| {
         let there = (0..8).filter(|word| config.radius.is_none() || word % 4 != 3);
@@ -36,7 +36,7 @@ fn source(config: &Config, pairs: &[[u32; 8]]) -> Vec<Line> {
     lines(pairs.iter().map(words))
 }
 
-/// The destination for contacts of all pairs.
+/// The destination lines if every pair has a record.
 pub fn destination(config: &Config, contacts: &[ContactRecord]) -> Vec<Line> {
     let fields = config.contact;
     if fields == Fields::HIT && config.results == Results::All {
@@ -57,7 +57,7 @@ pub fn destination(config: &Config, contacts: &[ContactRecord]) -> Vec<Line> {
     lines((0..).zip(contacts).filter(is_there).map(record))
 }
 
-/// The destination of a job at the line port: each request is answered in the next cycle.
+/// The destination lines of a job at the line port, where each request is answered in the next cycle.
 pub fn at_the_line_port(config: &Config, pairs: &[[u32; 8]]) -> Vec<Line> {
     let source = source(config, pairs);
     let afu = Afu::generate(Spec::from(config.clone())).unwrap();

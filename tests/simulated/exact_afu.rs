@@ -1,4 +1,4 @@
-//! The profile `exact` as hardware: the Verilated AFU leaves to the host what it cannot tell, and nothing else.
+//! The profile `exact` as hardware: the Verilated AFU leaves exactly those pairs to the host that it cannot decide.
 
 use contact_afu::config::{Config, Profile};
 use contact_afu::kernel::Truth;
@@ -12,7 +12,7 @@ fn the_afu_is_the_reference_and_the_host_settles_the_rest() {
     let config = Config { scpus: 1, profile: Profile::EXACT, ..Config::default() };
     let bench = Bench::new(&config).expect("a model");
 
-    // Hard pairs, and invalid ones in between, which must not touch their neighbours.
+    // Hard pairs with invalid ones between them, which must not affect their neighbours.
     let hard = Set::Hard(3_400).pairs(8);
     let invalid = PairRecord([0x7F80_0000, 0, 0x7FC0_0001, 0x8000_0001, 0xFF80_0000, 0, 0, 0x3F80_0000]);
     let mixed: Vec<_> = hard.chunks(3).flat_map(|some| some.iter().copied().chain([invalid])).collect();

@@ -1,7 +1,8 @@
-//! What destination memory holds after a job, by its hash, for forty AFUs: every part of a record's layout. Hardware
-//! and host read one layout and could be wrong together; these hashes were taken before they did.
+//! Hashes of the destination memory after a job, for forty AFUs that cover every part of a record's layout. Hardware
+//! and host share one layout, so both could be wrong in the same way. These hashes were taken before they shared it.
 //!
-//! Below no shell the hardware is run by the crate's own evaluator, which needs no model; below SPL2 it is Verilated.
+//! Without a shell the crate's own evaluator runs the hardware, which needs no model. With SPL2 the hardware is
+//! Verilated.
 
 use crate::evaluated::at_the_line_port;
 use contact_afu::config::{Config, Shell};
@@ -12,7 +13,7 @@ use sha2::{Digest, Sha256};
 
 const PAIRS: u64 = 67;
 
-/// Profile, fields, record, results, SCPUs, interval, radius; the hash of the image.
+/// Profile, fields, record, results, SCPUs, interval, radius, and the hash of the destination memory.
 type Image = (&'static str, &'static str, &'static str, &'static str, u32, u32, Option<f32>, &'static str);
 
 const ALL: &str = "depth,normal,position";
@@ -77,7 +78,7 @@ fn config(&(profile, contact, record, results, scpus, interval, radius, _): &Ima
     }
 }
 
-/// Pairs of every flow, of the radius that all have if they have one.
+/// Pairs of every flow, with the common radius if there is one.
 fn pairs(config: &Config) -> Vec<[u32; 8]> {
     let mut pairs: Vec<_> = Set::Random(PAIRS).pairs(7).into_iter().map(|pair| pair.0).collect();
     for pair in &mut pairs {
@@ -94,7 +95,7 @@ fn hash(lines: &[Line]) -> String {
     hash.finalize().iter().take(8).map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// The destination of a job below SPL2.
+/// The destination lines of a job with the shell `spl2`.
 fn below_spl2(config: &Config) -> Vec<Line> {
     let pairs: Vec<_> = pairs(config).into_iter().map(contact_afu::PairRecord).collect();
     let verdict = Bench::new(config).unwrap().run(&pairs, &LinkModel::ideal(), 1).unwrap();

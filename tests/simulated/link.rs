@@ -1,4 +1,4 @@
-//! Link models driven by hand: order, latency, bandwidth, stalls, faults, and the same again for the same seed.
+//! Link models driven directly: order, latency, bandwidth, stalls, faults, and reproducibility from the seed.
 
 use contact_afu::link::{
     Direction, Fault, Line, Link, LinkModel, Order, ReadRequest, Replies, Requests, Shape, Stalls, WriteRequest,
@@ -6,7 +6,7 @@ use contact_afu::link::{
 
 const CYCLES: u64 = 20_000;
 
-/// Reads and writes as fast as the link lets it, never more than 64 outstanding; returns every reply.
+/// Reads and writes as fast as the link allows, with at most 64 requests outstanding; returns every reply.
 fn saturate(model: LinkModel, seed: u64, reading: bool, writing: bool) -> (Link, Vec<Replies>) {
     let mut link = Link::new(model, seed).unwrap();
     let mut replies = Vec::new();
@@ -34,7 +34,7 @@ fn every_preset_stays_within_its_limit_and_comes_near() {
             let traffic = link.traffic();
             let limit = link.model().limit_cycles(traffic.read_responses, traffic.write_responses);
             let share = limit / CYCLES as f64;
-            // In order, a late response holds up those behind it: the bound, which looks at each alone, is not reached.
+            // In-order links delay responses behind a late one. The bound ignores that, so it is not reached.
             let least = if name == "late" { 0.75 } else { 0.93 };
             assert!((least..=1.02).contains(&share), "{name} {reading} {writing}: {share} of the limit, {traffic:?}");
         }
@@ -99,7 +99,8 @@ fn stalls_close_the_share_they_should() {
     assert!(replies.iter().all(|reply| reply.read_ready), "the other direction is left alone");
 }
 
-/// Reads lines 0 to 3, which hold their number, with tags 10 to 13; returns (tag, first word, error) as they come.
+/// Reads lines 0 to 3, which contain their numbers, with tags 10 to 13. Returns (tag, first word, error) in order of
+/// arrival.
 fn four_reads(faults: &[Fault]) -> Vec<(u16, u32, bool)> {
     let mut link = Link::new(LinkModel::ideal(), 0).unwrap();
     (0..4u32).for_each(|i| link.memory.set(i.into(), &[i; 16]));

@@ -1,4 +1,4 @@
-//! Real links: what the AFU makes of what they allow, and where a small job's cycles go.
+//! Models of real links: the AFU's throughput as a share of the link limit, and the cycles of a small job.
 
 use contact_afu::afu::{Afu, Spec};
 use contact_afu::config::{Config, Shell};
@@ -22,10 +22,10 @@ fn ninety_thousand_pairs_take_what_harp1_allows() {
     let verdict = bench.run(&Set::Random(90_000).pairs(1), &link("harp1"), 1).unwrap();
     assert!(verdict.is_good());
     let outcome = &verdict.outcome;
-    // 32 bytes in and 32 out for each pair, at 6.5 GB/s: 9.85 ns.
+    // 32 bytes in and 32 out per pair, at 6.5 GB/s: 9.85 ns per pair.
     let allowed = 64.0 * 90_000.0 / 6.5;
-    // The shell's own lines (polls, counters, status) are less than half a percent; what is reached is told of the
-    // pairs.
+    // The shell's own lines (polls, counters, status) add less than half a percent to the link limit. The share of the
+    // link limit counts only pairs.
     let own = 5.0 * outcome.limit_cycles / allowed;
     assert!((1.0..1.005).contains(&own), "{own}");
     let reached = allowed / (5.0 * outcome.cycles as f64);
@@ -59,7 +59,7 @@ fn what_is_no_sum_of_parts_is_not_told_as_one() {
     assert_eq!(account(&afu, &without_tail("harp1"), 1000), None, "writes meet reads");
 }
 
-/// A link's file by its path: a lost read is a job that does not finish, and says so.
+/// The link model comes from a file: a lost read leads to a job that does not finish, and the error says so.
 #[test]
 fn a_file_of_a_link_is_taken() {
     let run = |link: &str, code: i32| {

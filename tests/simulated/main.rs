@@ -1,4 +1,4 @@
-//! Links, models of them, and Verilated AFUs of the library: built, driven, checked and measured.
+//! Links, link models, and Verilated AFUs of the library: built, driven, checked and measured.
 
 #[cfg(feature = "cosim")]
 mod accuracy_stage;

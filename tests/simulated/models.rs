@@ -11,12 +11,11 @@ fn echo() -> Source {
     Source::from_folder(&folder, "contact_afu").unwrap()
 }
 
-/// A module of one file.
 fn module(text: &str) -> Source {
     Source::new("top", vec![File { name: "top.v".into(), text: text.into() }])
 }
 
-/// Eight bits that count, and what a test adds.
+/// An eight-bit counter, with additional text from a test.
 fn counter(more: &str) -> Source {
     module(&format!(
         "module top (input wire clk, input wire rst, output reg [7:0] count);\n\
@@ -24,7 +23,7 @@ fn counter(more: &str) -> Source {
     ))
 }
 
-/// Resets the counter and lets it run; what it shows then.
+/// Resets the counter, lets it run, and returns its value.
 fn count_to(instance: &Instance, cycles: u64) -> u64 {
     let (clk, rst) = (instance.clock("clk").unwrap(), instance.input("rst", 1).unwrap());
     rst.set(1);
@@ -108,7 +107,8 @@ fn a_generated_afu_and_its_source_have_one_hash() {
     }
 }
 
-/// Models of different flags hold different code of Verilator's runtime under the same names: none may see another's.
+/// Models with different flags contain different versions of Verilator's runtime under the same names. Each must use
+/// its own.
 #[test]
 fn models_live_side_by_side() {
     let folder = tempfile::tempdir().unwrap();
@@ -156,7 +156,7 @@ fn a_waveform_can_follow_another_and_without_tracing_says_so() {
     assert!(error.contains("built without waveforms"), "{error}");
 }
 
-/// What cannot be written is an error with its file's name, leaves nothing, and ends no process.
+/// If a waveform cannot be written, the error names the file. No file is left, and the process does not end.
 #[test]
 fn a_waveform_on_a_full_disk_is_an_error_and_no_file() {
     use std::os::unix::fs::{FileTypeExt, symlink};
@@ -164,7 +164,7 @@ fn a_waveform_on_a_full_disk_is_an_error_and_no_file() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join(name);
         symlink("/dev/full", &path).unwrap();
-        let Ok(model) = Model::build(&counter(""), trace) else { continue }; // without the libraries of FST
+        let Ok(model) = Model::build(&counter(""), trace) else { continue }; // the libraries of FST are missing
         let instance = model.instance(0).unwrap();
         instance.trace_open(&path, 500).unwrap();
         count_to(&instance, 100);
@@ -172,7 +172,7 @@ fn a_waveform_on_a_full_disk_is_an_error_and_no_file() {
         assert!(error.contains(name) && error.contains("No space left on device"), "{error}");
         assert!(fs::metadata(&path).unwrap().file_type().is_char_device(), "{name} is what it was");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "{name}");
-        // The model goes on, and a waveform that fits can follow.
+        // The model continues, and a second, small enough waveform can follow.
         fs::remove_file(&path).unwrap();
         instance.trace_open(&path, 500).unwrap();
         instance.clock("clk").unwrap().tick(100).unwrap();
@@ -252,7 +252,7 @@ fn bad_verilog_is_refused_with_file_and_line() {
     assert!(Source::from_folder(Path::new("/nowhere"), "top").unwrap_err().to_string().contains("/nowhere/top.f"));
 }
 
-/// The test below runs in other processes too, told by the environment what to do there.
+/// The test below runs in other processes too. The environment tells them their role.
 const ROLE: &str = "AFU_TEST_ROLE";
 
 fn in_another_process(test: &str, cache: &Path, variables: &[(&str, &str)]) -> Child {
@@ -277,7 +277,7 @@ fn processes_and_threads_may_build_the_same_at_once() {
     }
     let cache = tempfile::tempdir().unwrap();
     let name = "processes_and_threads_may_build_the_same_at_once";
-    // What no compiler reads makes no other model.
+    // A variable that no compiler reads does not lead to another model.
     let mut others = ["one", "other"].map(|value| in_another_process(name, cache.path(), &[("AFU_TEST_OF", value)]));
     assert!(others.iter_mut().all(|other| other.wait().unwrap().success()));
     let left = || {
@@ -318,7 +318,7 @@ fn a_missing_tool_is_named_with_what_installs_it() {
     );
 }
 
-/// What is not a finished model is not in the cache, and a failure leaves nothing behind.
+/// An incomplete model is not accepted from the cache, and a failure leaves no files.
 #[test]
 fn a_refused_build_leaves_nothing_in_the_cache() {
     let cache = tempfile::tempdir().unwrap();

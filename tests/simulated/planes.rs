@@ -1,4 +1,4 @@
-//! Spheres and planes through hardware: every bit of memory for every kind of record, below both shells.
+//! Spheres and planes in hardware: every bit of memory for every kind of record, with both shells.
 
 use contact_afu::config::{Config, Shell};
 use contact_afu::link::LinkModel;
@@ -27,7 +27,7 @@ fn config(profile: &str, contact: &str, record: &str, results: &str, scpus: u32,
     }
 }
 
-/// What a job leaves at the destination, against the reference's records laid out by the words of the design.
+/// Compares the destination lines of a job with the reference's records, laid out independently.
 #[track_caller]
 fn check(config: &Config, seed: u64) {
     let pairs = pairs(seed);
@@ -58,7 +58,7 @@ fn every_profile_at_several_intervals() {
     }
 }
 
-/// The simulated AFU and the host over a link that reorders and stalls.
+/// The simulated AFU and the host, over a link that reorders and stalls.
 #[test]
 fn jobs_over_a_hostile_link_below_both_shells() {
     for (shell, profile, record, results, interval) in [
@@ -74,7 +74,7 @@ fn jobs_over_a_hostile_link_below_both_shells() {
     }
 }
 
-/// The comparison is able to fail: one bit of one word of the kernel's input.
+/// The comparison can fail: it detects one flipped bit in a word of the kernel's input.
 #[test]
 #[should_panic(expected = "not [[")]
 fn another_pair_is_another_image() {

@@ -1,4 +1,4 @@
-//! The AFU as generated today against the reference kernel, over every preset link.
+//! The AFU as generated now against the reference kernel, over every preset link.
 
 use contact_afu::afu::{Afu, Spec};
 use contact_afu::config::{Config, Multipliers, RecordFormat, Results, Shell};
@@ -32,7 +32,7 @@ fn the_diamond_comes_back_right_and_at_the_link_s_speed() {
     good(&verdict, "random");
 }
 
-/// Spheres of one radius: it is in no record, and not in the hardware's ports; the bits are the same.
+/// Spheres with a common radius: records and the hardware's ports do not contain it, and the bits are the same.
 #[test]
 fn one_radius_is_in_no_record_and_changes_no_bit() {
     let sphere = |i: u32, f: f32| [(i % 5) as f32 * f, (i % 3) as f32, (i % 2) as f32, 0.375];
@@ -63,8 +63,8 @@ fn one_radius_is_in_no_record_and_changes_no_bit() {
     }
 }
 
-/// Records of 16 bits, four pairs a line: all of them and contacts alone, a radius of the hardware's, contacts of one
-/// bit, operators shared; bit for bit the reference that reads the same words.
+/// Records of 16 bits, four pairs per line: records for all pairs or only for contacts, a common radius, contacts of
+/// one bit, shared operators. Results equal those of the reference for the same words bit for bit.
 #[test]
 fn records_of_16_bits_come_back_as_the_reference_has_them() {
     let random = Set::Random(701).pairs(9);
@@ -82,7 +82,7 @@ fn records_of_16_bits_come_back_as_the_reference_has_them() {
         let what = format!("{scpus} SCPUs at interval {interval}, {record}");
         let verdict = bench.run(&diamond, &LinkModel::shuffled(), 1).expect("it finishes");
         good(&verdict, &format!("{what}, the diamond"));
-        // Below SPL2 the shell reads lines of its own.
+        // With SPL2 the shell reads additional lines.
         let lines = verdict.outcome.bytes_read / 64;
         let pairs = diamond.len().div_ceil(4) as u64;
         assert!(shell == Shell::Spl2 || lines == pairs, "four pairs a line: {lines} lines");
@@ -94,7 +94,7 @@ fn records_of_16_bits_come_back_as_the_reference_has_them() {
     }
 }
 
-/// Roots and reciprocals digit by digit in the place of tables: more cycles, and the same bits.
+/// Roots and reciprocals by digit recurrence instead of tables: more cycles, and the same bits.
 #[test]
 fn spared_multiplier_blocks_change_no_bit() {
     let pairs = Set::Random(3_001).pairs(5);
@@ -110,7 +110,7 @@ fn spared_multiplier_blocks_change_no_bit() {
     assert!(latency[0] != latency[1], "the hardware is another: {latency:?} cycles");
 }
 
-/// Only contacts, below the paper's platform: as many lines as there are contacts.
+/// Returns only contacts, with the paper's platform: the number of lines written is the number of contacts.
 #[test]
 fn hits_come_back_through_spl2() {
     let profile = "e8f3z".parse().expect("a format");
@@ -124,7 +124,7 @@ fn hits_come_back_through_spl2() {
     }
 }
 
-/// A configuration for the tests of patience: small SCPUs that give one bit.
+/// A configuration for the timeout tests: small SCPUs with one-bit results.
 fn slow(scpus: u32, interval: u32) -> Config {
     let (profile, contact) = ("e8f3z".parse().expect("a format"), "hit".parse().expect("fields"));
     Config { scpus, interval, profile, contact, ..Config::default() }
@@ -140,9 +140,9 @@ fn a_right_afu_is_never_given_up_below_spl2() {
     never_given_up(Shell::Spl2);
 }
 
-/// Twelve AFUs over links that make them wait: none is given up, and none is waited for without end.
+/// Twelve AFUs on links that make them wait: the driver never times out while they work, and always terminates.
 ///
-/// The first was given up below SPL2: "did not finish after 24610 cycles".
+/// The first AFU once timed out with SPL2: "did not finish after 24610 cycles".
 fn never_given_up(shell: Shell) {
     let named = |name: &str| name.parse::<Description>().expect("a link").at(200.0).expect("a clock");
     let ideal = LinkModel::ideal;
@@ -171,7 +171,7 @@ fn never_given_up(shell: Shell) {
         let config = Config { shell, ..config };
         let pairs: Vec<_> = match config.radius {
             None => Set::Random(count).pairs(1),
-            // None of them touches: nothing is written.
+            // No pairs touch, so nothing is written.
             Some(r) => vec![PairRecord::from_spheres([0.0, 0.0, 0.0, r], [9.0, 0.0, 0.0, r]); count as usize],
         };
         let what = format!("{} over {link}", config.flags().join(" "));

@@ -1,4 +1,4 @@
-//! AFUs to test, jobs for them, and what memory must hold afterwards.
+//! AFUs to test, jobs for them, and the expected contents of memory.
 
 use contact_afu::afu::shell::spl2::map;
 use contact_afu::afu::{Afu, Spec};
@@ -12,18 +12,18 @@ use contact_afu::link::{Line, Link, Stalls};
 use contact_afu::pairs::Set;
 use contact_afu::query::{ContactRecord, Flow, PairRecord};
 
-/// The AFU of these tests: all fields, and an arithmetic whose model is made quickly.
+/// The AFU of these tests: all fields, and an arithmetic whose model is built quickly.
 pub fn config(scpus: u32) -> Config {
     Config { scpus, shell: Shell::Spl2, profile: "e8f3z".parse().unwrap(), ..Config::default() }
 }
 
-/// The Verilog of [`config`]; the number of SCPUs is a parameter and not in the text.
+/// The Verilog of [`config`]. The number of SCPUs is a parameter and not in the text.
 pub fn files() -> Vec<File> {
     let afu = Afu::generate(Spec::from(config(Config::default().scpus))).unwrap();
     afu.verilog().into_iter().map(|(name, text)| File { name, text }).collect()
 }
 
-/// Cycles that the core takes from its start to the request that writes the last line, over no link at all.
+/// Cycles from the start of the core to the request for the last write, without a link.
 pub fn cycles_to_the_last_write(scpus: u32, pairs: usize) -> u32 {
     let afu = Afu::generate(Spec::from(config(scpus))).unwrap();
     let timing = afu.timing();
@@ -40,12 +40,12 @@ pub fn build(files: Vec<File>, scpus: u32) -> Model {
     Model::build(&Source::new("afu_top", files).parameter("SCPUS", scpus.into()), Trace::Off).unwrap()
 }
 
-/// A machine whose link is like a preset.
+/// A machine with a preset link.
 pub fn machine<'a>(afu: &'a Instance, spl: Spl2Model, link: &str, seed: u64) -> Machine<'a> {
     Machine::new(afu, Spl2::new(spl, Link::new(link.parse().unwrap(), seed).unwrap(), seed)).unwrap()
 }
 
-/// Where the pages of all workspaces are.
+/// Decides where the pages of all workspaces are.
 const PAGES_SEED: u64 = 7;
 
 pub fn session(machine: Machine<'_>, scpus: u32, workspace: Workspace) -> Session<Machine<'_>> {
@@ -58,19 +58,18 @@ pub fn workspace(pages: u64, source: u64, destination: u64, lines: u32) -> Resul
     Workspace::new(layout, pages, PAGES_SEED)?.with_buffers(source, destination, lines)
 }
 
-/// Runs what is loaded to its end.
+/// Runs a loaded transaction to its end.
 pub fn end<'s, 'a>(
     loaded: Transaction<'s, Machine<'a>, Loaded>,
 ) -> Result<Transaction<'s, Machine<'a>, Done>, HostError> {
     loaded.start()?.confirm()?.wait()
 }
 
-/// A whole transaction.
 pub fn run(session: &mut Session<Machine<'_>>, case: &Case) -> Result<Outcome, HostError> {
     Ok(end(session.transaction().send(&case.pairs)?)?.outcome())
 }
 
-/// SPL2 at its worst: reads in any order, almost-full for no reason, acknowledgements in pairs, CSRs at once.
+/// SPL2 at its worst: reads in any order, almost-full at random, acknowledgements in pairs, immediate CSR writes.
 pub fn rough() -> Spl2Model {
     Spl2Model {
         csr_cycles: 3,
@@ -82,12 +81,12 @@ pub fn rough() -> Spl2Model {
     }
 }
 
-/// CSR writes that cost little: a test has many sessions.
+/// Cheap CSR writes, because a test has many sessions.
 pub fn quick() -> Spl2Model {
     Spl2Model { csr_cycles: 5, ..Spl2Model::default() }
 }
 
-/// Pairs, and what must come of them.
+/// Pairs and the expected results.
 pub struct Case {
     pub pairs: Vec<PairRecord>,
     source: Vec<Line>,
@@ -95,7 +94,7 @@ pub struct Case {
     status: (u32, u32, Option<u32>),
 }
 
-/// Eight words a record, two records a line.
+/// Packs records of eight words into lines, two records per line.
 fn lines<'a>(records: impl Iterator<Item = &'a [u32; 8]>) -> Vec<Line> {
     let words: Vec<u32> = records.flatten().copied().collect();
     words.chunks(16).map(|line| std::array::from_fn(|word| line.get(word).copied().unwrap_or(0))).collect()
@@ -122,27 +121,25 @@ impl Case {
         Self::new(Set::Random(count).pairs(seed))
     }
 
-    /// Lines that each buffer must have, and no more.
+    /// The minimum number of lines of each buffer.
     pub fn room(&self) -> u32 {
         (1 + self.source.len()).max(self.lines.len()) as u32
     }
 
-    /// Two halves behind the context, with exactly the room that the case needs.
+    /// A workspace with two halves behind the context, with exactly the room that the case needs.
     pub fn workspace(&self, pages: u64) -> Workspace {
         workspace(pages, 2, 2 + u64::from(self.room()), self.room()).unwrap()
     }
 
-    /// The source lines.
     pub fn source(&self) -> &[Line] {
         &self.source
     }
 
-    /// The destination lines.
     pub fn wanted(&self) -> &[Line] {
         &self.lines
     }
 
-    /// Whether every word and every figure is right.
+    /// True if every word and every figure is right.
     pub fn is_right(&self, outcome: &Outcome) -> bool {
         outcome.error == 0
             && outcome.lines.iter().map(Option::as_ref).eq(self.lines.iter().map(Some))
@@ -154,7 +151,7 @@ impl Case {
         self.check_after(outcome, outcome.cycles, what);
     }
 
-    /// The same of a job that started so many cycles ago: the AFU has polled for the next one since it ended.
+    /// The same for a job that started `cycles` cycles ago. After its end the AFU has polled for the next job.
     #[track_caller]
     pub fn check_after(&self, outcome: &Outcome, cycles: u64, what: &str) {
         assert_eq!(outcome.error, 0, "{what}");
@@ -169,7 +166,7 @@ impl Case {
         assert!(outcome.cycles_busy < outcome.cycles, "{what}");
     }
 
-    /// Whatever was written is right; how many lines were.
+    /// Checks every line that was written; returns their number.
     #[track_caller]
     pub fn check_written(&self, outcome: &Outcome, what: &str) -> usize {
         let written = outcome.lines.iter().zip(&self.lines).filter_map(|(got, wanted)| Some((got.as_ref()?, wanted)));

@@ -1,5 +1,5 @@
-//! Faults planted in the shell's Verilog are found. One model has all of them: which one is at work, the uppermost bits
-//! of the job's watchdog say.
+//! Faults planted in the shell's Verilog are found. One model contains all of them; the top bits of the job's watchdog
+//! select one.
 
 use contact_afu::cosim::Model;
 use contact_afu::cosim::spl2::Machine;
@@ -8,26 +8,26 @@ use contact_afu::link::spl2::{Spl2Error, Spl2Model};
 
 use crate::bench::{Case, build, end, files, machine, quick, rough, run, workspace};
 
-/// What is planted.
+/// The planted faults.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(u32)]
 enum Planted {
     Nothing,
-    /// Reads go out while SPL's queue is almost full.
+    /// Reads are sent even if SPL's queue is almost full.
     AlmostFullIgnored,
-    /// Of two acknowledgements in a cycle the second is lost.
+    /// If two acknowledgements arrive in a cycle, the second is lost.
     SecondChannelLost,
-    /// No fence before the status.
+    /// There is no fence before the status.
     NoFence,
     /// Every job has the same epoch.
     EpochStuck,
-    /// The DSM's lines are written by a virtual address.
+    /// The lines of the DSM are written to a virtual address.
     VirtualDsm,
-    /// The control memory is taken for pairs.
+    /// The line of the control memory is treated as pairs.
     SourceOff,
 }
 
-/// File, the assignment's left side, the fault, and what is assigned then.
+/// File, left-hand side of the assignment, the fault, and the expression assigned then.
 const FAULTS: [(&str, &str, Planted, &str); 7] = [
     ("spl2_transmit.v", " core_rd_turn <= ", Planted::AlmostFullIgnored, "discards | ~own_rd_valid"),
     ("spl2_acknowledge.v", "wire core_s_1 = ", Planted::SecondChannelLost, "valid_1 & ~valid_0 & ~|mdata_1[13:12]"),
@@ -52,7 +52,7 @@ fn model_of_faults() -> Model {
     build(files, 2)
 }
 
-/// A session whose jobs all have a fault.
+/// A session in which all jobs have the planted fault.
 fn session(machine: Machine<'_>, workspace: Workspace, planted: Planted) -> Session<Machine<'_>> {
     let mut session = crate::bench::session(machine, 2, workspace);
     session.watchdog = (planted as u32) << SELECTOR_BIT;
@@ -86,7 +86,7 @@ fn faults_of_the_shell_are_found() {
     assert_eq!(with(Planted::SourceOff, quick(), "ideal"), Ok(false));
 }
 
-/// Without the fence the status overtakes a line of the DSM, sooner or later.
+/// Without the fence, the status eventually overtakes a line of the DSM.
 #[test]
 fn a_missing_fence_is_found() {
     let case = Case::random(5, 3);
@@ -104,7 +104,7 @@ fn a_missing_fence_is_found() {
     assert!(overtakes(Planted::NoFence));
 }
 
-/// Epochs that stand still: what a reset left behind is taken for this job's.
+/// If the epoch does not change, responses from before a reset are taken for this job's.
 #[test]
 fn an_epoch_that_stands_still_is_found() {
     let (spoilt, next) = (Case::random(301, 4), Case::random(301, 5));
@@ -117,7 +117,7 @@ fn an_epoch_that_stands_still_is_found() {
             let running = session.transaction().send(&spoilt.pairs).unwrap().start().unwrap().confirm();
             let mut running = running.unwrap();
             running.idle(moment).unwrap();
-            // The host is gone without a word.
+            // The host is gone without stopping anything.
             std::mem::forget(running);
             session.set_workspace(workspace(3, 40_000, 50_000, next.room()).unwrap());
             !run(&mut session, &next).is_ok_and(|outcome| next.is_right(&outcome))

@@ -1,5 +1,5 @@
-//! The shell `spl2` as a whole: the Verilated `afu_top` below the model of SPL2, every destination word against the
-//! reference kernel, whatever SPL2 and the link may do, and what happens after resets, aborts and lost responses.
+//! The shell `spl2` as a whole: the Verilated `afu_top` with the model of SPL2. Every destination word is compared with
+//! the reference kernel, with any timing of SPL2 and the link, and after resets, aborts and lost responses.
 #![cfg(feature = "cosim")]
 
 mod bench;

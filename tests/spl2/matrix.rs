@@ -1,4 +1,4 @@
-//! Numbers of SCPUs, counts of pairs, links and kinds of SPL2, each with each; what the AFU writes, and in what order.
+//! All combinations of numbers of SCPUs, counts of pairs, links and variants of SPL2; the AFU's writes and their order.
 
 use contact_afu::afu::shell::spl2::map::{self, control, identity, latency, performance, scratch, status};
 use contact_afu::host::{HostError, Transport};
@@ -27,7 +27,7 @@ fn jobs_one_after_another_over_every_link() {
                 let seen = session.transport().spl().seen();
                 assert!(seen.on_both > 0, "{link}, {name}: acknowledgements came on both channels at once");
                 if name == "rough" {
-                    // SPL takes four.
+                    // SPL accepts four.
                     assert!(seen.after_almostfull > 0 && seen.most_after <= 2, "{link}: {seen:?}");
                 }
             }
@@ -35,7 +35,7 @@ fn jobs_one_after_another_over_every_link() {
     }
 }
 
-/// The device's writes at a job's end: latency, performance, status, in this order whatever the link does.
+/// The device's writes at a job's end: latency, performance, status, in this order on every link.
 #[test]
 fn lines_of_the_dsm_come_in_order_and_before_the_status() {
     let case = Case::random(57, 3);
@@ -108,7 +108,7 @@ fn what_is_no_job_ends_with_an_error_and_the_next_is_right() {
         assert_eq!((outcome.error, outcome.contacts, outcome.invalid, outcome.first_invalid), (error, 0, 0, None));
         let mut done = end(done.send_next(&case.pairs).unwrap()).unwrap();
         case.check(&done.outcome(), "after an error");
-        // Neither the same number again nor a line without the start word is a job.
+        // Neither a repeated sequence number nor a line without the start word starts a job.
         let before = done.transport().device_writes().len();
         done.transport_mut().advance(2_000).unwrap();
         loaded = done.send_next(&case.pairs).unwrap();
@@ -121,7 +121,7 @@ fn what_is_no_job_ends_with_an_error_and_the_next_is_right() {
     assert_eq!(run(&mut other, &case).unwrap_err(), HostError::Capability { what, expected: 3, found: 2 });
 }
 
-/// `docs/spl2.md` ends with the map as the hardware has it.
+/// `docs/spl2.md` ends with the memory map that the hardware implements.
 #[test]
 fn the_map_in_the_documentation_is_the_hardware_s() {
     let page = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/spl2.md");

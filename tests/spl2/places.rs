@@ -1,4 +1,4 @@
-//! Buffers anywhere in the 2 GB: over the borders of pages, which lie in physical memory in another order, and up to
+//! Buffers anywhere in the 2 GB: across page boundaries, with pages in a different order in physical memory, and up to
 //! the very last line.
 
 use contact_afu::host::{HostError, Transport, TransportError};
@@ -30,13 +30,13 @@ fn over_the_borders_of_pages_and_in_the_last_line_of_2_gb() {
     }
 }
 
-/// The host's own mistake is the host's error, and one the host made in the page table is seen.
+/// Buffers outside the workspace are rejected by the host. A wrong page table leads to a page fault.
 #[test]
 fn what_lies_outside_is_refused() {
     assert!(matches!(workspace(1, 2, PAGE_LINES - 2, 4), Err(HostError::Buffers(_))));
     assert!(matches!(workspace(1, 5, 7, 4), Err(HostError::Buffers(_))));
 
-    // Two pages are laid out, SPL is told of one: the results' page faults.
+    // Two pages are laid out, but SPL knows only one, so writing the results causes a page fault.
     let case = Case::random(5, 8);
     let afu = model(3).instance(2).unwrap();
     let place = workspace(2, 2, PAGE_LINES, 4).unwrap();

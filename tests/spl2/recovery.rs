@@ -1,5 +1,5 @@
-//! Resets of every kind, aborts and lost responses at any moment: nothing wrong is ever written, and the next
-//! transaction is right, also while SPL still answers what was asked before.
+//! Resets of every kind, aborts and lost responses at any time: nothing wrong is ever written, and the next transaction
+//! is right, even while SPL still answers earlier requests.
 
 use contact_afu::cosim::spl2::Machine;
 use contact_afu::host::{HostError, Running, Session, Transaction, Workspace};
@@ -10,7 +10,7 @@ use crate::bench::{Case, cycles_to_the_last_write, end, machine, model, quick, r
 
 const SCPUS: u32 = 3;
 
-/// Early cycles of a job closely, later ones with growing distance.
+/// Early cycles of a job one by one, later ones at growing distances.
 fn moments() -> impl Iterator<Item = u64> {
     (0..30).step_by(3).chain((30..200).step_by(17)).chain((200..1300).step_by(83))
 }
@@ -19,12 +19,12 @@ fn two_cases() -> (Case, Case) {
     (Case::random(301, 21), Case::random(57, 22))
 }
 
-/// Where the next transaction is: late writes of the one before may come at any time.
+/// The workspace of the next transaction: late writes of the one before may still arrive at any time.
 fn elsewhere(case: &Case) -> Workspace {
     workspace(3, PAGE_LINES + 2, 2 * PAGE_LINES - 9, case.room()).unwrap()
 }
 
-/// Starts a job that somebody will disturb, after so many cycles.
+/// Starts a job and runs it for `moment` cycles, before the caller disturbs it.
 fn disturbed<'s, 'a>(
     session: &'s mut Session<Machine<'a>>,
     case: &Case,
@@ -36,14 +36,14 @@ fn disturbed<'s, 'a>(
     Ok(running)
 }
 
-/// The next transaction after one whose host is gone without a word: it stopped nothing.
+/// Checks the transaction after one whose host disappeared without stopping anything.
 #[track_caller]
 fn next_is_right(session: &mut Session<Machine<'_>>, next: &Case, what: &str) {
     session.set_workspace(elsewhere(next));
     next.check(&run(session, next).unwrap_or_else(|e| panic!("{what}: {e}")), what);
 }
 
-/// Runs a job for some cycles, does something to the machine, and runs the next transaction from the start.
+/// Runs a job for some cycles, disturbs the machine, and then runs the next transaction from the start.
 fn interrupted(spl: Spl2Model, how: &str, interrupt: impl Fn(&mut Machine<'_>)) {
     let (spoilt, next) = two_cases();
     let model = model(SCPUS);
@@ -63,7 +63,7 @@ fn interrupted(spl: Spl2Model, how: &str, interrupt: impl Fn(&mut Machine<'_>)) 
     }
 }
 
-/// A transaction begins with a reset of SPL: what is still on its way is answered in the middle of the next.
+/// A transaction begins with a reset of SPL. Outstanding requests are answered in the middle of the next transaction.
 #[test]
 fn a_reset_of_spl_at_any_time() {
     interrupted(quick(), "reset", |machine| machine.write_csr(0x1010, 1).unwrap());
@@ -116,7 +116,7 @@ fn abort_at_any_time_and_the_next_job_is_right() {
     }
 }
 
-/// A short job stopped in each of its cycles, from the write that starts it to its status.
+/// Stops a short job in each of its cycles, from the write that starts it to its status.
 #[test]
 fn reset_and_abort_at_every_cycle_of_a_short_job() {
     let (spoilt, next) = (Case::random(15, 31), Case::random(9, 32));
@@ -139,7 +139,7 @@ fn reset_and_abort_at_every_cycle_of_a_short_job() {
                         spoilt.check_written(&outcome, &what);
                         aborted += 1;
                     }
-                    // It was done before it saw the abort.
+                    // The job was done before the abort arrived.
                     _ => spoilt.check(&outcome, &what),
                 }
                 std::mem::forget(ended);
@@ -149,7 +149,7 @@ fn reset_and_abort_at_every_cycle_of_a_short_job() {
             }
             next_is_right(&mut session, &next, &what);
             if done {
-                // Until its last line is asked to be written, a job can be stopped, and the link takes time on top.
+                // A job can be stopped until it requests its last write, and the link's latency comes on top.
                 assert!(moment > core, "{link}: a job of {moment} cycles");
                 assert!(aborted > core || !aborts, "{link}: {aborted} of {moment} aborted, no link takes {core}");
                 break;
@@ -158,9 +158,9 @@ fn reset_and_abort_at_every_cycle_of_a_short_job() {
     }
 }
 
-/// Without a watchdog the status never comes, with one it says so; nothing wrong is written, and after a reset all is
-/// well. The first reads are the shell's own: its polls are asked again, but behind a lost read SPL2 holds them all
-/// back.
+/// Without a watchdog the status never arrives; with one, it reports the error. Nothing wrong is written, and a reset
+/// recovers. The first reads are the shell's own. Its polls are repeated, but SPL2 holds them all back behind a lost
+/// read.
 #[test]
 fn a_lost_response_is_an_error_and_never_wrong_data() {
     let (spoilt, next) = two_cases();

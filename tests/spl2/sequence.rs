@@ -1,4 +1,5 @@
-//! Jobs one after another without a reset: how soon the next one starts, and what a context that is written again does.
+//! Jobs one after another without a reset: the delay before the next one starts, and the effect of writing the context
+//! again.
 
 use contact_afu::afu::shell::spl2::map::{self, control, pointers, status};
 use contact_afu::cosim::spl2::Machine;
@@ -8,7 +9,7 @@ use contact_afu::link::spl2::PAGE_LINES;
 use crate::bench::{Case, end, machine, model, quick, session};
 
 const SCPUS: u32 = 3;
-/// Cycles of CSR write, read and answer that a poll takes on top of its pause, over an ideal link.
+/// Cycles of a poll (CSR write, read and answer) in addition to its pause, over an ideal link.
 const POLL_CYCLES: u64 = 40;
 
 #[test]
@@ -31,7 +32,7 @@ fn the_next_job_starts_when_the_last_one_has_ended() {
     assert!(cycles.iter().all(|cycles| *cycles <= most), "{cycles:?}: more than {most}");
 }
 
-/// A context of the test's own: its line in the workspace, and where its buffers are.
+/// A context written by the test: its line in the workspace, and its buffers.
 struct Context {
     workspace: Workspace,
     line: u64,
@@ -81,7 +82,7 @@ impl Context {
         self.put(machine, self.source, line);
     }
 
-    /// Whether the status is that of a whole job, with every result where this context wants it.
+    /// True if the job is complete. Checks that every result is where this context puts it.
     fn is_done(&self, machine: &Machine<'_>, case: &Case, sequence: u32) -> bool {
         let line = self.get(machine, self.line + 1);
         if status::DONE.get(&line) == 0 || status::SEQUENCE.get(&line) != sequence.into() {
@@ -95,7 +96,7 @@ impl Context {
     }
 }
 
-/// The job after it is wholly of the new context; one that runs stays wholly of the old.
+/// The next job uses only the new context. A running job uses only the old one.
 #[test]
 fn a_context_written_again_counts_from_the_next_job_on() {
     let (old, new) = (Case::random(60, 42), Case::random(33, 43));
@@ -125,7 +126,7 @@ fn a_context_written_again_counts_from_the_next_job_on() {
             assert!(done, "after {moment} cycles: no status of job {sequence:#x} in the new context");
             second.start(running.transport_mut(), &new, sequence + 1);
         }
-        // What ran went on in its own context; before it began, the new context may have come first.
+        // A running job continues in its own context. If it had not begun, it may have used the new one.
         if runs && running.is_done() {
             old.check_written(&running.wait().unwrap().outcome(), "the old context's job");
         }

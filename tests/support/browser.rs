@@ -1,5 +1,5 @@
-//! Pages opened in headless Chromium: what stands in them then, what the console says, and what was asked of a network.
-#![allow(dead_code)] // each test uses its own part
+//! Opens pages in headless Chromium: their final document, messages on the console, and network requests.
+#![allow(dead_code)] // each test uses only some of these
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -7,13 +7,13 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-/// Programs that will do, the first there is.
+/// Supported programs, in order of preference.
 const PROGRAMS: [&str; 3] = ["chromium", "chromium-browser", "google-chrome"];
-/// No network of its own, and nothing kept.
+/// Flags that disable the network and persistent state.
 const FLAGS: [&str; 15] = [
     "--headless",
     "--no-sandbox",
-    // WebGL in software, as machines that run tests have no graphics card.
+    // WebGL in software, because test machines have no graphics card.
     "--use-gl=angle",
     "--use-angle=swiftshader",
     "--enable-unsafe-swiftshader",
@@ -26,27 +26,27 @@ const FLAGS: [&str; 15] = [
     "--disable-extensions",
     "--disable-dev-shm-usage",
     "--mute-audio",
-    // Nobody out there is asked, whatever asks; what was asked for is logged all the same.
+    // Name resolution fails for every host, but requests are still logged.
     "--host-resolver-rules=MAP * ~NOTFOUND",
 ];
-/// Longer than this no page takes.
+/// No page takes longer than this.
 const PATIENCE: Duration = Duration::from_secs(90);
 
-/// A page as Chromium has it.
+/// The page after Chromium has loaded it.
 #[derive(Debug)]
 pub struct Opened {
-    /// The document, after everything in it has run.
+    /// The document after all scripts have run.
     pub dom: String,
-    /// Errors and warnings of the page on the console, a policy's refusals among them.
+    /// The page's errors and warnings on the console, including violations of its policy.
     pub console: Vec<String>,
-    /// Addresses that a network was asked for, the page itself and what lies in it (`data:`) apart.
+    /// Addresses requested from a network; `data:` addresses and the page itself are not included.
     pub fetched: BTreeSet<String>,
 }
 
-/// The program.
+/// Finds the program.
 ///
 /// # Panics
-/// When there is none: ./scripts/setup --test installs it.
+/// Panics if it is not installed: ./scripts/setup --test installs it.
 fn chromium() -> &'static str {
     let runs = |program: &&&str| {
         Command::new(program).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok()
@@ -90,7 +90,7 @@ fn address(page: &Path) -> String {
 /// Opens a page.
 ///
 /// # Panics
-/// When Chromium is missing, or does not end well.
+/// Panics if Chromium is missing or fails.
 pub fn open(page: &Path) -> Opened {
     let log = tempfile::NamedTempFile::new().expect("a temporary file");
     let output = run(&[
@@ -108,7 +108,7 @@ pub fn open(page: &Path) -> Opened {
     Opened { dom: String::from_utf8_lossy(&output.stdout).into_owned(), console, fetched: fetched(&net) }
 }
 
-/// Hosts that Chromium asks by itself, with no page at all, and the one that the flags make of them.
+/// Hosts that Chromium contacts without any page, and the name that the flags map them to.
 const OWN: [&str; 9] = [
     "~notfound",
     "google.com",
@@ -121,7 +121,7 @@ const OWN: [&str; 9] = [
     "redirector.gvt1.com",
 ];
 
-/// The addresses of a network log that are on a network.
+/// The network addresses in a network log.
 fn fetched(log: &str) -> BTreeSet<String> {
     let quoted =
         log.split('"').filter(|text| ["http://", "https://", "ws://", "wss://"].iter().any(|s| text.starts_with(s)));
@@ -130,10 +130,10 @@ fn fetched(log: &str) -> BTreeSet<String> {
     quoted.filter(|url| !own(url)).map(str::to_owned).collect()
 }
 
-/// A picture of a page, as PNG: for a person to look at.
+/// Saves a picture of a page as PNG, for a person to look at.
 ///
 /// # Panics
-/// As [`open`].
+/// See [`open`].
 pub fn picture(page: &Path, to: &Path, [width, height]: [u32; 2], dark: bool) {
     let mut arguments = vec![
         format!("--screenshot={}", to.display()),

@@ -1,10 +1,10 @@
-//! For which operands hardware must give its twin's word: that made for certain values need not for others.
+//! The operands for which hardware must give its twin's word. Hardware for certain values may differ for others.
 
 use contact_afu::number::{Format, Number, Soft, Subnormals};
 use contact_afu::operator::{Domain, Operator, Values};
 
-/// Whether hardware made for the values in `domain` gives the twin's word for these operands. `b` counts only if
-/// it has two, and serves for the third and fourth too.
+/// True if hardware made for the values in `domain` must give the twin's word for these operands. `b` is used only if
+/// there are two or more operands; it is then also the third and fourth.
 pub fn is_made_for(operator: Operator, domain: Domain, a: u128, b: u128) -> bool {
     let b = if operator.operands() == 1 { a } else { b };
     let format = domain.format();
@@ -21,17 +21,17 @@ pub fn is_made_for(operator: Operator, domain: Domain, a: u128, b: u128) -> bool
     }
 }
 
-/// Whether the result for zero or normal operands is zero or, without regard to the exponent's ends, normal.
+/// True if the result for zero or normal operands, computed with a longer exponent, is zero or in the normal range.
 fn gives_normal(operator: Operator, format: Format, a: u128, b: u128) -> bool {
     let Ok(unbounded) = Format::new(15, format.fraction_bits(), Subnormals::Flushed)
         .and_then(|wider| wider.with_rounding(format.rounding()).with_roots(format.roots()))
     else {
         return false;
     };
-    // Formats with the longest exponent cannot be looked at from a longer one: their ends are left out.
+    // Formats with the longest exponent cannot be widened, so the ends of their range are not tested.
     let widen = |word: u128| Soft::from_bits(format, word).to(unbounded).bits();
     match operator.result_format(format) {
-        // The operand alone counts where the result is of another format, or a bit.
+        // If the result has another format or is a bit, only the operands count.
         Some(result) if result == format => {}
         _ => return true,
     }
@@ -62,7 +62,7 @@ fn class(format: Format, word: u128) -> Class {
     }
 }
 
-/// Below zero: −0 is not.
+/// True for negative words, but not for −0.
 fn is_negative(format: Format, word: u128) -> bool {
     word & format.sign_mask() != 0 && word & !format.sign_mask() != 0
 }

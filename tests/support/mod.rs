@@ -1,5 +1,5 @@
-//! What several tests share: words that reach the corners, and work split over two threads.
-#![allow(dead_code)] // each test uses its own part
+//! Shared by several tests: random words that cover corner cases, and work split over two threads.
+#![allow(dead_code)] // each test uses only some of these
 
 pub mod made_for;
 pub mod swap;
@@ -11,7 +11,7 @@ use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use std::thread;
 
-/// Words of a format, half of them random, half at the corners where rounding and range go wrong.
+/// Generates words of a format: half are random, half are corner cases of rounding and range.
 pub struct Words {
     random: Xoshiro256PlusPlus,
     exponent_bits: u32,
@@ -23,7 +23,7 @@ impl Words {
         Self { random: Xoshiro256PlusPlus::seed_from_u64(seed), exponent_bits, fraction_bits }
     }
 
-    /// One word. Choices are looked up rather than branched on: a test makes hundreds of millions of words.
+    /// The next word. Choices are looked up instead of branched on, because a test makes hundreds of millions of words.
     #[inline]
     pub fn one(&mut self) -> u128 {
         let (chance, raw) = (self.random.random::<u64>(), self.random.random::<u64>());
@@ -32,7 +32,7 @@ impl Words {
         let near_one = special / 2 + (chance >> 38 & 3);
         let exponents = [0, special, 1, special - 1, near_one, near_one, near_one, any];
         let exponent = if chance & 8 == 0 { any } else { exponents[(chance & 7) as usize] };
-        // Fractions: random, one bit set or cleared, or a run of bits at either end.
+        // Kinds of fractions: random, one bit set or cleared, or a run of bits at either end.
         let bit = 1 << ((u64::from(raw as u32) * u64::from(self.fraction_bits)) >> 32);
         let fractions = [bit, !bit, bit - 1, !(bit - 1), raw >> 12, raw >> 12, raw >> 12, raw >> 12];
         let empty = u64::from(chance >> 4 & 15 == 0);
@@ -41,7 +41,7 @@ impl Words {
         u128::from(sign << self.exponent_bits | exponent) << self.fraction_bits | u128::from(fraction)
     }
 
-    /// Two words, whose exponents are near each other half of the time.
+    /// Two words; in half of the cases their exponents are near each other.
     #[inline]
     pub fn two(&mut self) -> (u128, u128) {
         let (a, b) = (self.one(), self.one());
@@ -56,7 +56,7 @@ impl Words {
     }
 }
 
-/// Runs `work` for the two halves of 0..`count` on two threads.
+/// Runs `work` on the two halves of 0..`count` in two threads.
 pub fn halves(count: u64, work: impl Fn(std::ops::Range<u64>) + Sync) {
     thread::scope(|scope| {
         scope.spawn(|| work(0..count / 2));
@@ -64,7 +64,7 @@ pub fn halves(count: u64, work: impl Fn(std::ops::Range<u64>) + Sync) {
     });
 }
 
-/// Two operands at a corner of this operator: near cancellation, near a tie, near the border of a decision.
+/// Two operands near a corner case of this operator: cancellation, a tie, or the boundary of a decision.
 pub fn corner(operator: Operator, format: Format, words: &mut Words, count: u64) -> (u128, u128) {
     let (a, b) = words.two();
     let mask = format.sign_mask() | (format.sign_mask() - 1);

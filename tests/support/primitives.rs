@@ -1,6 +1,6 @@
-//! Models of a target's primitives.
+//! Simulation models of a target's primitives.
 
-/// The models, and what makes the generated files take them: goes before those.
+/// The models, preceded by the macro that makes the generated files instantiate them. Must come before those files.
 pub fn primitives() -> String {
     let models = concat!(
         include_str!("../../tb/mult18x18d.v"),

@@ -1,4 +1,4 @@
-//! Random modules, built twice: as a graph, and as a list that is computed bit by bit in the plainest way.
+//! Random modules, built twice: as a graph, and as a list that is evaluated bit by bit in the simplest way.
 
 use contact_afu::hdl::{Graph, Module, Register, Signal};
 use proptest::prelude::*;
@@ -40,7 +40,7 @@ fn below(a: &Bits, b: &Bits) -> bool {
     a.iter().rev().cmp(b.iter().rev()).is_lt()
 }
 
-/// One line of a recipe: what, from which earlier lines, with which numbers.
+/// One line of a recipe: the operation, the earlier lines that it uses, and its parameters.
 #[derive(Clone, Debug)]
 pub struct Line {
     pub what: What,
@@ -81,7 +81,7 @@ const COMBINATIONAL: &[What] = {
 };
 const CLOCKED: &[What] = &[What::Delay, What::Delay, What::Delay, What::Register, What::RegisterEnabled, What::Memory];
 
-/// Lines of a recipe, with or without what is clocked.
+/// Lines of a recipe. If `clocked` is false, there are no registers, memories or delays.
 pub fn lines(clocked: bool) -> impl Strategy<Value = Vec<Line>> {
     let mut whats = COMBINATIONAL.to_vec();
     if clocked {
@@ -92,7 +92,7 @@ pub fn lines(clocked: bool) -> impl Strategy<Value = Vec<Line>> {
     prop::collection::vec(line, 1..60)
 }
 
-/// A line with its choices made: which lines it takes, how wide it is.
+/// A line with its choices resolved: the lines it uses, and its width.
 #[derive(Clone, Debug)]
 struct Step {
     what: What,
@@ -101,23 +101,23 @@ struct Step {
     width: u32,
 }
 
-/// A module to be, with the state of the plain computation.
+/// The description of a module, with the state of its bit-by-bit evaluation.
 pub struct Recipe {
     steps: Vec<Step>,
     pub outputs: Vec<usize>,
-    /// Values in this cycle.
+    /// The lines' values in this cycle.
     values: Vec<Bits>,
-    /// By step: a register's value, a memory read's word, what a delay has seen (the newest last).
+    /// State by step: a register's value, a memory read's word, or a delay's previous inputs (the newest last).
     held: Vec<Vec<Bits>>,
     memories: Vec<Vec<Bits>>,
 }
 
-/// The widest value, so that products of products stay small.
+/// The maximum width, so that products of products stay small.
 const WIDEST: u32 = 200;
 const MEMORY_DEPTH: u32 = 5;
 
 fn width_of(number: u32) -> u32 {
-    // Often about a word's border.
+    // Widths are often near a multiple of 64 bits.
     match number % 4 {
         0 => 1 + number / 4 % 8,
         1 => 60 + number / 4 % 10,
@@ -130,11 +130,11 @@ impl Recipe {
     pub fn new(lines: &[Line]) -> Self {
         let mut steps: Vec<Step> = Vec::new();
         for (index, line) in lines.iter().enumerate() {
-            // The first line has nothing to take from.
+            // The first line has no earlier line to use.
             let what = if index == 0 { What::Input } else { line.what };
             let mut from = line.from.map(|from| usize::from(from) % index.max(1));
             if matches!(what, What::Register | What::RegisterEnabled) {
-                // A register may take what is computed from it.
+                // A register may depend on its own output.
                 from[0] = usize::from(line.from[0]) % lines.len();
                 from[1] = usize::from(line.from[1]) % lines.len();
             }
@@ -188,7 +188,7 @@ impl Recipe {
         inputs.map(|(index, step)| (index, step.width)).collect()
     }
 
-    /// The graph of it; input `i7` and output `o7` are line 7. Delays of constants are seen to be constant.
+    /// Builds the graph. Input `i7` and output `o7` are line 7. Delays of constants are recognised as constant.
     pub fn build(&mut self) -> Arc<Module> {
         let g = Graph::new("random");
         let mut signals: Vec<Signal<'_>> = Vec::new();
@@ -249,7 +249,7 @@ impl Recipe {
         g.finish().unwrap_or_else(|errors| panic!("{errors}"))
     }
 
-    /// Every line's value with these inputs, in the order of [`Recipe::inputs`].
+    /// Evaluates every line with these inputs, in the order of [`Recipe::inputs`].
     pub fn settle(&mut self, inputs: &[Bits]) {
         let mut inputs = inputs.iter();
         for (index, step) in self.steps.iter().enumerate() {
@@ -301,7 +301,7 @@ impl Recipe {
         }
     }
 
-    /// A clock edge.
+    /// Advances the state by a clock edge.
     pub fn step(&mut self) {
         for (index, step) in self.steps.iter().enumerate() {
             let operand = |k: usize| &self.values[step.from[k]];
@@ -341,7 +341,7 @@ fn reset_value(step: &Step) -> u128 {
     if step.width >= 128 { u128::from(step.numbers[1]) } else { u128::from(step.numbers[1]) & ((1 << step.width) - 1) }
 }
 
-/// Zero, all ones or anything.
+/// Zero, all ones, or an arbitrary value.
 fn constant_value(step: &Step) -> u128 {
     let all = if step.width >= 128 { u128::MAX } else { (1 << step.width) - 1 };
     match step.numbers[1] % 3 {

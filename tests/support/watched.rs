@@ -1,4 +1,4 @@
-//! The kernel read with an `f32` that notices IEEE overflow and underflow.
+//! Evaluates the kernel with an `f32` that detects IEEE overflow and underflow.
 
 use contact_afu::kernel::contact;
 use contact_afu::number::{Format, Number};
@@ -7,16 +7,16 @@ use std::cell::Cell;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Sub, SubAssign};
 
 thread_local! {
-    /// Whether an operation of [`Watched`] overflowed or underflowed.
+    /// True if an operation of [`Watched`] overflowed or underflowed.
     static RAISED: Cell<bool> = const { Cell::new(false) };
 }
 
-/// An `f32` that notices IEEE overflow (a finite operation gives infinity) and underflow (tiny and inexact).
+/// An `f32` that detects IEEE overflow (a finite operation gives infinity) and underflow (tiny and inexact).
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Watched(f32);
 
 impl Watched {
-    /// `result`, of which `exact` says whether it is what the operation is without rounding.
+    /// Records the exceptions of an operation. `exact` is true if `result` needed no rounding.
     fn watch(result: f32, finite: bool, exact: bool) -> Self {
         let overflow = result.is_infinite() && finite;
         let underflow = result.abs() <= f32::MIN_POSITIVE && !exact;
@@ -45,7 +45,7 @@ macro_rules! watched {
     )*};
 }
 
-/// A sum that is tiny is exact.
+/// A tiny sum is always exact.
 const fn sum_is_exact(_: f64, _: f64, _: f64) -> bool {
     true
 }
@@ -102,9 +102,9 @@ impl Number for Watched {
     }
 }
 
-/// Whether the pair's own flow in f32 overflows or underflows.
+/// True if evaluating this pair's flow in f32 overflows or underflows.
 pub fn raises(query: Query, pair: &PairRecord, flow: Flow) -> bool {
-    // Only a real contact computes more than the decision does.
+    // Only a real contact computes more than the decision.
     let fields = if flow == Flow::Real { Fields::ALL } else { Fields::HIT };
     RAISED.set(false);
     let word = |word: usize| Watched(f32::from_bits(pair.0[word]));

@@ -1,4 +1,4 @@
-//! A device that somebody meddles with.
+//! Devices that are disturbed during a transaction.
 
 use std::cell::RefCell;
 use std::ops::Range;
@@ -8,7 +8,7 @@ use contact_afu::host::{Transport, TransportError};
 use contact_afu::link::spl2::DeviceWrite;
 use contact_afu::link::{LinkModel, Memory, Traffic};
 
-/// A device and what is done to it whenever time has passed.
+/// A device, and a change that is applied to it whenever time has passed.
 pub struct Meddled<T> {
     pub device: T,
     pub meddle: Box<dyn FnMut(&mut T)>,
@@ -65,10 +65,10 @@ impl<T: Transport> Transport for Meddled<T> {
     }
 }
 
-/// Memory without a device: time passes and nothing happens, from a CSR write on.
+/// A device that dies: after some CSR writes, time passes without any effect.
 pub struct Dying<T> {
     pub device: T,
-    /// CSR writes that it still takes.
+    /// The number of CSR writes that still have an effect.
     pub left: usize,
     pub cycles: u64,
 }

@@ -1,4 +1,4 @@
-//! Transactions: every wrong use, every state dropped, and the Verilated AFU beside its model in software.
+//! Transactions: every wrong use, every state dropped, and the Verilated AFU compared with its model in software.
 
 mod meddle;
 mod software;
@@ -30,7 +30,7 @@ fn software() -> Software {
     Software::new(&config(), LinkModel::ideal()).unwrap()
 }
 
-/// Pairs of every flow, invalid ones among them.
+/// Pairs of every flow, including invalid ones.
 fn pairs(count: u64) -> Vec<PairRecord> {
     Set::Random(count).pairs(5)
 }

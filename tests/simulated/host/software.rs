@@ -1,4 +1,4 @@
-//! Transactions with the AFU in software: what goes right, and what is refused.
+//! Transactions with the AFU in software: successful ones, and rejected inputs.
 
 use contact_afu::afu::shell::spl2::map::{self, control, identity, pointers, status};
 use contact_afu::config::{Config, RecordFormat, Results};
@@ -75,7 +75,7 @@ fn another_afu_is_refused_by_what_differs() {
     assert!(profile.contains("SCPU latency (of profile and clock)"), "{profile}");
 }
 
-/// Changes what the AFU says in its DSM, as soon as it is there.
+/// Changes a field of the AFU's identity in the DSM as soon as it is written.
 fn pretends(field: map::Field, value: u128) -> HostError {
     let device = Meddled::new(software(), move |device: &mut Software| {
         let Some(at) = device.device_writes().first().map(|write| write.address) else { return };
@@ -95,10 +95,10 @@ fn another_identity_or_version_is_refused() {
     assert!(error.to_string().contains("load the AFU that this version of the program generates"), "{error}");
 }
 
-/// A device that dies after so many CSR writes: whatever the host waits for then never comes.
+/// A device that dies after `left` CSR writes. Whatever the host then waits for never arrives.
 #[test]
 fn a_dead_device_is_a_time_out_that_says_for_what() {
-    // Reset; SPL DSM (2), AFU DSM (2), SPL context (2), AFU context (2), enable.
+    // The CSR writes: reset; SPL DSM (2), AFU DSM (2), SPL context (2), AFU context (2), enable.
     for left in 0..10 {
         let mut session = session(Dying { device: software(), left, cycles: 0 }, 1);
         let error = refused(&mut session, &pairs(3));
@@ -125,7 +125,7 @@ fn a_dead_device_is_a_time_out_that_says_for_what() {
     assert!(matches!(error, HostError::NoStatus { cycles: 51..=80, .. }), "{error}");
 }
 
-/// Does something to memory once the status of a job is there.
+/// Changes memory once the status of a job is there.
 fn at_status(device: Software, mut meddle: impl FnMut(&mut Software, u64) + 'static) -> Meddled<Software> {
     Meddled::new(device, move |device: &mut Software| {
         let is_status = |line: &[u32; 16]| status::DONE.get(line) == 1 && status::AFU_ID.get(line) == map::AFU_ID;
@@ -190,7 +190,7 @@ fn invalid_pairs_are_named_by_number_and_field() {
     assert_eq!(good.retrieve().unwrap().end().unwrap().strict(&pairs[..5]), Ok(()));
 }
 
-/// Records of 16 bits: four pairs a line, the reference's contacts; an AFU of other records is another one.
+/// Records of 16 bits: four pairs per line, and the reference's contacts. An AFU with other records is rejected.
 #[test]
 fn records_of_16_bits_are_agreed_on() {
     let pairs = pairs(1000);
@@ -206,7 +206,7 @@ fn records_of_16_bits_are_agreed_on() {
         let error = Session::new(software(), workspace(), expected).run(&pairs).unwrap_err();
         assert!(error.to_string().contains("words of records (0: f32, 1: f16, 2: bf16)"), "{error}");
     }
-    // A number beyond f16 makes a pair invalid there, and the host says so.
+    // A number too large for f16 makes its pair invalid, and the host reports that.
     let config = Config { record: RecordFormat::F16, ..config() };
     let expected = Expected::new(&config).unwrap();
     let device = Software::new(&config, LinkModel::ideal()).unwrap();
@@ -217,7 +217,7 @@ fn records_of_16_bits_are_agreed_on() {
     assert!(error.contains("the z1 of the first, pair 0, is in f16 NaN, infinite"), "{error}");
 }
 
-/// Only contacts: one record for each pair that touches, with its number. The engine still has one for each pair.
+/// Only contacts come back: one record per pair that touches, with its number. The engine still returns one per pair.
 #[test]
 fn hits_come_back_with_their_numbers() {
     for contact in ["hit", "depth", "depth,normal,position"] {
@@ -246,7 +246,7 @@ fn hits_come_back_with_their_numbers() {
     }
 }
 
-/// Records of hits that cannot be right are no results.
+/// Records of hits that cannot be right are rejected.
 #[test]
 fn hits_that_are_missing_or_of_no_pair_are_refused() {
     let config = Config { results: Results::Hits, ..config() };
@@ -270,7 +270,7 @@ fn hits_that_are_missing_or_of_no_pair_are_refused() {
     assert!(error.to_string().starts_with("contact 0 is of pair 3, after none, of 3 pairs, although"), "{error}");
 }
 
-/// Another job without another start of SPL, after results and after an error.
+/// A second job without restarting SPL, after results and after an error.
 #[test]
 fn the_next_job_needs_no_reset() {
     let device = Meddled::new(software(), |_| ());
@@ -300,7 +300,8 @@ fn the_next_job_needs_no_reset() {
     assert_eq!(left.count(), 1, "only the status: the pairs of both jobs are gone");
 }
 
-/// Whatever step a transaction was dropped at, the device is stopped, the workspace free, and the next one right.
+/// At whatever step a transaction is dropped, the device is stopped, the workspace is free, and the next transaction is
+/// right.
 #[test]
 fn a_dropped_transaction_ends_properly() {
     let pairs = pairs(50);

@@ -1,4 +1,4 @@
-//! The Verilated AFU: beside its model in software, over three links, and when the link fails it.
+//! The Verilated AFU: compared with its model in software over three links, and with faults of the link.
 
 use std::sync::LazyLock;
 
@@ -27,7 +27,7 @@ fn machine<'a>(afu: &'a Instance, name: &str, seed: u64) -> Machine<'a> {
     Machine::new(afu, Spl2::new(Spl2Model::default(), Link::new(link(name), seed).unwrap(), seed)).unwrap()
 }
 
-/// A line of the DSM without what counts cycles, of which the software has none.
+/// A line of the DSM without cycle counts, which the software does not have.
 fn without_time(number: u64, line: Line) -> Line {
     let mut kept = [0; 16];
     if number == u64::from(map::LATENCY_LINE) {
@@ -40,7 +40,7 @@ fn without_time(number: u64, line: Line) -> Line {
     kept
 }
 
-/// Everything that both sides share, after a job: the workspace and the DSM.
+/// All memory that both sides share, after a job: the workspace and the DSM.
 fn memory<T: Transport>(device: &T, lines: &[u64], dsm: u64) -> (Vec<Option<Line>>, Vec<Option<Line>>) {
     let memory = device.memory();
     let workspace = lines.iter().map(|&line| memory.get(line).copied()).collect();
@@ -48,13 +48,13 @@ fn memory<T: Transport>(device: &T, lines: &[u64], dsm: u64) -> (Vec<Option<Line
     (workspace, dsm)
 }
 
-/// Writes of identities and statuses, in their order.
+/// Writes of identities and statuses, in order.
 fn statuses(log: &[DeviceWrite]) -> Vec<(u64, Line)> {
     let ours = |line: &Line| [identity::AFU_ID.get(line), status::AFU_ID.get(line)].contains(&map::AFU_ID);
     log.iter().filter(|write| ours(&write.data)).map(|write| (write.address, write.data)).collect()
 }
 
-/// The same transactions with both devices: every byte, every write, over three links.
+/// Runs the same transactions on both devices: every byte and every write is equal, over three links.
 #[test]
 fn software_and_verilog_write_the_same() {
     let afu = afu();
@@ -88,7 +88,7 @@ fn software_and_verilog_write_the_same() {
     }
 }
 
-/// Ninety thousand pairs over harp1, through registers, control memory, fence and status.
+/// Ninety thousand pairs over harp1, with registers, control memory, fence and status.
 #[test]
 fn harp1_carries_what_it_allows() {
     let afu = afu();
@@ -101,7 +101,7 @@ fn harp1_carries_what_it_allows() {
     println!("{report:?}: {:.2} ns a pair", report.stated_ns(200.0) / 90_000.0);
 }
 
-/// Contacts alone, job after job: both devices write the same lines, and each line's cycle is known.
+/// Only contacts come back, job after job: both devices write the same lines, and the cycle of each line is known.
 #[test]
 fn hits_come_back_and_each_line_has_its_cycle() {
     let config = Config { scpus: 3, profile: "e8f3z".parse().unwrap(), results: Results::Hits, ..config() };
@@ -131,7 +131,7 @@ fn hits_come_back_and_each_line_has_its_cycle() {
     }
 }
 
-/// A read whose response is lost: a time-out, and never data; then all is well.
+/// If the response of a read is lost, there is a timeout and never data. The next transaction succeeds.
 #[test]
 fn a_lost_response_is_a_time_out_and_the_next_transaction_is_right() {
     let afu = afu();
@@ -161,7 +161,7 @@ fn an_abort_and_a_drop_in_mid_job_leave_the_next_transaction_right() {
     assert_eq!(session.run(&pairs).unwrap(), contacts(&pairs));
 }
 
-/// More transactions than there are epochs, and pages that are far apart.
+/// More transactions than there are epochs, with pages that are far apart.
 #[test]
 fn many_in_a_row_in_two_gigabytes() {
     let afu = afu();

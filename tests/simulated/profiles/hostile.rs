@@ -3,7 +3,7 @@ use contact_afu::pairs::Set;
 use contact_afu::query::PairRecord;
 use contact_afu::verify::Bench;
 
-/// The pairs of a seed: none, few, odd, some hundred; hard ones and any.
+/// The pairs for a seed: from none to some hundred, odd and even counts, half of them hard.
 fn pairs(seed: u64) -> Vec<PairRecord> {
     let count = [0, 1, 2, 3, 17, 64, 129, 300][(seed % 8) as usize] + seed / 8 % 5;
     let mut pairs = Set::Hard(count / 2).pairs(seed);
@@ -11,7 +11,7 @@ fn pairs(seed: u64) -> Vec<PairRecord> {
     pairs
 }
 
-/// A job, of which every bit, count and byte is checked; the cycles it took.
+/// Runs a job and checks every bit, count and byte; returns the number of cycles.
 fn job(name: &str, bench: &Bench, link: &LinkModel, seed: u64) -> u64 {
     let pairs = pairs(seed);
     let verdict = bench.run(&pairs, link, seed).unwrap_or_else(|error| panic!("{name}, seed {seed}: {error}"));
@@ -42,7 +42,7 @@ fn nothing_is_lost_over_hostile_links() {
     seeds(0, 64);
 }
 
-/// `HOSTILE_SEEDS` jobs a profile (1000), from seed `HOSTILE_FROM` on (1000).
+/// `HOSTILE_SEEDS` jobs per profile (1000), from seed `HOSTILE_FROM` on (1000).
 #[test]
 #[ignore = "minutes: 1000 links a profile"]
 fn nothing_is_lost_over_many_hostile_links() {

@@ -2,7 +2,7 @@ use contact_afu::link::LinkModel;
 use contact_afu::pairs::Set;
 use contact_afu::query::{Flow, PairRecord, Query};
 
-/// What makes a pair invalid, and where: NaN (quiet, signalling, negative), infinities, a radius below zero.
+/// Makes a pair invalid in one field: NaN (quiet, signalling, negative), infinity or a negative radius.
 fn invalid(number: usize, pair: PairRecord) -> PairRecord {
     const WORDS: [u32; 5] = [0x7FC0_0000, 0x7F80_0001, 0xFFFF_FFFF, 0x7F80_0000, 0xFF80_0000];
     const RADII: [u32; 7] = [WORDS[0], WORDS[1], WORDS[2], WORDS[3], WORDS[4], 0x8000_0001, 0xBF80_0000];
@@ -10,14 +10,14 @@ fn invalid(number: usize, pair: PairRecord) -> PairRecord {
     let field = number % 8;
     words[field] = if field % 4 == 3 { RADII[number / 8 % 7] } else { WORDS[number / 8 % 5] };
     if number.is_multiple_of(5) {
-        // Nothing right about it.
+        // A second invalid field.
         words[(field + 3) % 8] = 0xFFC0_0001;
     }
     PairRecord(words)
 }
 
-/// One job of valid pairs, and one in which invalid ones stand among them, in runs of none to five: the valid ones have
-/// the same words in both, and each invalid one is told and has no number.
+/// Runs a job of valid pairs, and one with runs of up to five invalid pairs between them. The valid pairs have the same
+/// results in both jobs. Each invalid pair is reported as such, and its numbers are zero.
 #[test]
 fn an_invalid_pair_has_no_effect_on_its_neighbours() {
     let valid: Vec<PairRecord> = Set::Hard(1_400)

@@ -1,5 +1,5 @@
-//! The Verilated AFU in each profile, through its shell and a link: what an invalid pair does to its neighbours, and
-//! what a hostile link does to a job. Nothing.
+//! The Verilated AFU in each profile, with its shell and a link: an invalid pair does not affect its neighbours, and a
+//! hostile link does not affect a job's results.
 
 mod hostile;
 mod invalid;
@@ -7,7 +7,7 @@ mod invalid;
 use contact_afu::config::{Config, Profile, Shell};
 use contact_afu::verify::Bench;
 
-/// A bench of each profile, of the models that other tests have too.
+/// A bench per profile, with models that other tests use too.
 fn benches() -> impl Iterator<Item = (&'static str, Bench)> {
     [
         ("paper", Config { scpus: 2, shell: Shell::Line, ..Config::default() }),
