@@ -2,7 +2,7 @@
 
 use std::ffi::{CStr, c_char, c_int};
 
-/// What bindgen makes of `tb/harness.h`.
+/// Bindings of `tb/harness.h`, made by bindgen.
 #[allow(non_camel_case_types, missing_docs, dead_code, clippy::all)]
 pub(super) mod raw {
     include!(concat!(env!("OUT_DIR"), "/harness.rs"));
@@ -24,7 +24,7 @@ pub(super) struct Api {
 }
 
 impl Api {
-    /// Reads a model's table; nothing if it is of another ABI or incomplete.
+    /// Reads a model's table; `None` if it is of another ABI or incomplete.
     ///
     /// # Safety
     /// `table` is null or what a model's `afu_model` returned, and that model is never unloaded.

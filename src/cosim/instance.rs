@@ -94,7 +94,7 @@ impl Instance {
     /// The input `name` of `bits` bits.
     ///
     /// # Errors
-    /// When there is no such input.
+    /// Returns an error if there is no such input.
     pub fn input(&self, name: &str, bits: u32) -> Result<Port<'_>, SimulationError> {
         self.port(name, bits, raw::AFU_INPUT)
     }
@@ -102,7 +102,7 @@ impl Instance {
     /// The output `name` of `bits` bits.
     ///
     /// # Errors
-    /// When there is no such output.
+    /// Returns an error if there is no such output.
     pub fn output(&self, name: &str, bits: u32) -> Result<Port<'_>, SimulationError> {
         self.port(name, bits, raw::AFU_OUTPUT)
     }
@@ -110,7 +110,7 @@ impl Instance {
     /// The clock input `name`.
     ///
     /// # Errors
-    /// When there is no such input of one bit.
+    /// Returns an error if there is no such input of one bit.
     pub fn clock(&self, name: &str) -> Result<Clock<'_>, SimulationError> {
         self.find(name, 1, raw::AFU_INPUT).map(|(index, _)| Clock { instance: self, index })
     }
@@ -118,7 +118,7 @@ impl Instance {
     /// Settles the outputs that depend on inputs without a clock between.
     ///
     /// # Errors
-    /// When the module ends itself.
+    /// Returns an error if the module ends itself.
     pub fn evaluate(&self) -> Result<(), SimulationError> {
         // SAFETY: the handle is live.
         self.checked(unsafe { (self.api.evaluate)(self.handle.as_ptr()) })
@@ -129,7 +129,7 @@ impl Instance {
     /// it, and not before; then another may follow.
     ///
     /// # Errors
-    /// When the model was built without, one is open already, or the file cannot be written.
+    /// Returns an error if the model was built without, one is open already, or the file cannot be written.
     pub fn trace_open(&self, path: &Path, half_period_ps: u64) -> Result<(), SimulationError> {
         let fail = |why: String| SimulationError::Waveform { path: path.to_owned(), why };
         let aside = Aside::new(path).map_err(|e| fail(e.to_string()))?;
@@ -147,7 +147,7 @@ impl Instance {
     /// Ends the waveform and puts its file in its place.
     ///
     /// # Errors
-    /// When none is open, or the file could not be written: then there is none.
+    /// Returns an error if none is open, or the file could not be written: then there is none.
     pub fn trace_close(&self) -> Result<(), SimulationError> {
         // SAFETY: the handle is live.
         self.checked(unsafe { (self.api.trace_close)(self.handle.as_ptr()) })?;
@@ -173,7 +173,7 @@ impl Clock<'_> {
     /// one.
     ///
     /// # Errors
-    /// When the module ends itself.
+    /// Returns an error if the module ends itself.
     #[inline]
     pub fn tick(self, cycles: u64) -> Result<(), SimulationError> {
         let Instance { api, handle, .. } = self.instance;

@@ -80,7 +80,7 @@ impl Model {
     /// that is right only after a lucky start shows itself.
     ///
     /// # Errors
-    /// When the module ends itself at once.
+    /// Returns an error if the module ends itself at once.
     pub fn instance(&self, seed: u64) -> Result<Instance, CosimError> {
         Ok(Instance::new(self.api, seed)?)
     }
@@ -99,13 +99,13 @@ impl Model {
         }
     }
 
-    /// The library it was loaded from; nothing for the built-in model.
+    /// The library that it was loaded from; `None` for the built-in model.
     pub fn shared_object(&self) -> Option<&Path> {
         self.shared_object.as_deref()
     }
 }
 
-/// What the loader said: the error itself names only the call.
+/// The loader's message; the error itself names only the call.
 fn cause(error: &libloading::Error) -> String {
     error.source().map_or_else(|| error.to_string(), |source| format!("{error}: {source}"))
 }

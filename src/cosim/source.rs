@@ -22,7 +22,7 @@ impl Source {
     /// The module `top` in the files that `folder/top.f` lists.
     ///
     /// # Errors
-    /// When the list or one of its files cannot be read, or names a file outside the folder.
+    /// Returns an error if the list or one of its files cannot be read, or names a file outside the folder.
     pub fn from_folder(folder: &Path, top: &str) -> Result<Self, CosimError> {
         Self::from_list(&folder.join(format!("{top}.f")), top)
     }

@@ -1,4 +1,4 @@
-//! What can go wrong in a session, and what to do about it.
+//! Errors of a session, and what to do about them.
 
 use super::transport::TransportError;
 use crate::afu::shell::spl2::map;
@@ -25,7 +25,7 @@ pub enum HostError {
     TooManyPairs {
         /// Pairs that were to be sent.
         pairs: u64,
-        /// Pairs that there is room for.
+        /// The number of pairs that fit.
         capacity: u64,
         /// Pages that would hold them.
         pages: u64,
@@ -49,7 +49,7 @@ pub enum HostError {
     Identity {
         /// Who it is.
         afu_id: u128,
-        /// Its register map's version.
+        /// The version of its register map.
         version: u32,
     },
     /// The device is another AFU of ours.
@@ -58,7 +58,7 @@ pub enum HostError {
          session for the one that is loaded"
     )]
     Capability {
-        /// Of what.
+        /// The property that differs.
         what: &'static str,
         /// As asked for.
         expected: u64,
@@ -90,23 +90,23 @@ pub enum HostError {
     /// The device ended the job with an error.
     #[error("the AFU ended the job with error {code} ({what}): {advice}")]
     Job {
-        /// Its code.
+        /// The error code.
         code: u8,
-        /// What it stands for.
+        /// The meaning of the code.
         what: &'static str,
         /// What to do.
         advice: &'static str,
     },
-    /// Pairs that are none.
+    /// Invalid pairs.
     #[error(
         "{count} invalid pairs; the {field} of the first, pair {first}, is in {record} NaN, infinite or a negative radius: correct it or leave it out"
     )]
     InvalidPairs {
-        /// How many.
+        /// Their number.
         count: u32,
         /// The number of the first.
         first: u32,
-        /// Its field.
+        /// The field.
         field: &'static str,
         /// The numbers of the AFU's records.
         record: RecordFormat,
@@ -116,7 +116,7 @@ pub enum HostError {
     Transport(#[from] TransportError),
 }
 
-/// Why the records of an AFU that returns only contacts are not believed from here on.
+/// Why the hits of an AFU cannot be trusted from here on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum HitError {
     /// A record's line was never written.
@@ -135,7 +135,7 @@ pub enum HitError {
     Number {
         /// The record, from 0.
         index: usize,
-        /// Its pair's number.
+        /// The number of its pair.
         number: u32,
         /// The number before it.
         after: Option<u32>,

@@ -28,7 +28,7 @@ impl<'s, T: Transport> Open<'s, T> {
         Self { session, is_spl_started: false, pairs: Vec::new(), report }
     }
 
-    /// How many pairs are in the source.
+    /// Number of pairs in the source.
     pub(super) fn count(&self) -> u32 {
         // `load` refuses more.
         self.pairs.len() as u32
@@ -124,7 +124,7 @@ impl<'s, T: Transport> Open<'s, T> {
 
 impl<T: Transport> Drop for Open<'_, T> {
     fn drop(&mut self) {
-        // Whatever goes wrong now, there is nobody to tell; the next transaction begins with a reset.
+        // Errors cannot be returned here; the next transaction begins with a reset.
         let _ = self.finish();
     }
 }

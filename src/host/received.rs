@@ -1,4 +1,4 @@
-//! What memory holds once a job's status is there: the outcome of the job, and its records.
+//! Reads the outcome of a job and its records from memory, once its status has arrived.
 
 use super::error::{HitError, HostError};
 use super::session::Session;
@@ -96,7 +96,7 @@ impl Records {
     }
 }
 
-/// A contact for each of so many pairs, in their order; a pair without a record reads as one without contact.
+/// One contact for each of this number of pairs, in order; a pair without a record has no contact.
 pub(crate) fn by_pair(pairs: usize, numbers: &[u32], contacts: &[ContactRecord]) -> Vec<ContactRecord> {
     let apart = ContactRecord::of_flags(Flow::Fake.flags());
     let mut all = vec![apart; pairs];

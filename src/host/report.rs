@@ -1,4 +1,4 @@
-//! What a transaction took.
+//! The cycles of a transaction.
 
 /// The cost of one transaction, in cycles of the AFU's clock.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -19,7 +19,7 @@ pub struct Report {
     pub bytes_written: u64,
     /// Cycles that those bytes take at least over the link.
     pub link_limit: f64,
-    /// Set-up that the link's description states; it stands for all of the software before a transaction.
+    /// Set-up time from the link's description; it stands for all software before a transaction.
     pub stated_set_up: u64,
     /// Tear-down that it states.
     pub stated_tear_down: u64,

@@ -1,4 +1,4 @@
-//! What a transaction gave.
+//! The results of a transaction.
 
 use super::error::HostError;
 use super::received::by_pair;
@@ -24,7 +24,7 @@ pub struct JobResults {
     pub unsettled: u64,
     /// The AFU's records: what is invalid is so in their numbers.
     pub layout: Layout,
-    /// What it took.
+    /// The cycles of its phases.
     pub report: Report,
 }
 
@@ -37,7 +37,7 @@ impl JobResults {
     /// Nothing, if every pair was one.
     ///
     /// # Errors
-    /// [`HostError::InvalidPairs`], naming the first of `pairs` that is none, and its field.
+    /// Returns [`HostError::InvalidPairs`], which names the first invalid pair of `pairs` and its field.
     pub fn strict(&self, pairs: &[PairRecord]) -> Result<(), HostError> {
         let Some(first) = self.first_invalid else { return Ok(()) };
         let record = self.layout.record();

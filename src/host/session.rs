@@ -21,11 +21,11 @@ pub(super) const PROGRESS_CYCLES: u64 = 4096;
 /// The AFU that a session expects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Expected {
-    /// Its capability word.
+    /// The capability word.
     pub capability: u64,
     /// The bits of that word in which the AFU must agree.
     pub compared: u64,
-    /// Where records lie in its lines.
+    /// The layout of records in its lines.
     pub layout: Layout,
 }
 
@@ -33,7 +33,7 @@ impl Expected {
     /// The AFU of a configuration.
     ///
     /// # Errors
-    /// When it cannot be generated.
+    /// Returns an error if it cannot be generated.
     pub fn new(config: &Config) -> Result<Self, BuildError> {
         let afu = Afu::generate(Spec::from(config.clone()))?;
         Ok(Self { capability: afu.capability(), compared: u64::MAX, layout: afu.layout() })
@@ -107,7 +107,7 @@ impl<T: Transport> Session<T> {
         &mut self.transport
     }
 
-    /// What each transaction took that came to its end, in their order.
+    /// The reports of all completed transactions, in order.
     pub fn reports(&self) -> &[Report] {
         &self.reports
     }
@@ -123,7 +123,7 @@ impl<T: Transport> Session<T> {
         (first..first + lines).for_each(|line| self.transport.memory_mut().set(line, &[0; 16]));
     }
 
-    /// How long so many pairs may take.
+    /// The cycles that this number of pairs may take.
     fn patience(&self, pairs: u64) -> Patience {
         let layout = self.workspace.layout();
         let (reads, writes) = (layout.source_lines(pairs), layout.destination_lines(pairs));
@@ -194,7 +194,7 @@ impl<T: Transport> Session<T> {
         Ok(())
     }
 
-    /// Whether the DSM is of the AFU that is expected.
+    /// True if the DSM has the identity of the expected AFU.
     pub(super) fn check_identity(&mut self) -> Result<(), HostError> {
         let line = self.dsm(map::IDENTITY_LINE);
         let (afu_id, version) = (identity::AFU_ID.get(&line), identity::VERSION.get(&line) as u32);

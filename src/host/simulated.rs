@@ -25,7 +25,7 @@ impl Run<'_> {
     /// Runs the job on `afu` over `link`.
     ///
     /// # Errors
-    /// What the host or, without one, the driver says.
+    /// The error of the host or, without a host, of the driver.
     pub(crate) fn on<E>(self, afu: &Instance, link: Link) -> Result<Outcome, E>
     where
         E: From<HostError> + From<DriveError>,

@@ -16,7 +16,7 @@ use crate::link::{LINE_BYTES, Line, LinkModel, Memory, Traffic};
 use crate::query::Flow;
 use crate::record::{Layout, pack_contacts, unpack_pairs};
 
-/// What reads of lines find that nobody wrote, as the simulated link has it.
+/// The content of lines that were never written, as in the simulated link.
 const UNWRITTEN: Line = [0xDEAD_BEEF; 16];
 const DSM_LINES: u64 = map::DSM_BYTES / LINE_BYTES;
 /// The status of a job that found no invalid pair.
@@ -48,7 +48,7 @@ impl Software {
     /// The AFU of a configuration; of the link only what its description states counts.
     ///
     /// # Errors
-    /// When there is no such AFU.
+    /// Returns an error if there is no such AFU.
     pub fn new(config: &Config, link: LinkModel) -> Result<Self, BuildError> {
         let afu = Afu::generate(Spec::from(config.clone()))?;
         Ok(Self {

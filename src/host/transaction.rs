@@ -26,7 +26,7 @@ pub struct Started {
 pub struct Running {
     begin: Begin,
 }
-/// After step 5: the status is there.
+/// After step 5: the status has arrived.
 #[derive(Debug)]
 pub struct Done {
     begin: Begin,
@@ -71,7 +71,7 @@ pub struct Retrieved {
 ///     Ok(())
 /// }
 /// ```
-/// Results cannot be read before the status is there:
+/// Results cannot be read before the status has arrived:
 /// ```compile_fail,E0599
 /// # use contact_afu::host::*;
 /// fn early<T: Transport>(running: Transaction<'_, T, Running>) -> Result<(), HostError> {
@@ -166,7 +166,7 @@ impl<'s, T: Transport> Transaction<'s, T, Started> {
     /// SPL starts, and was waited for then.)
     ///
     /// # Errors
-    /// When it is another by now.
+    /// Returns an error if it is another by now.
     pub fn confirm(self) -> Result<Transaction<'s, T, Running>, HostError> {
         self.open.session.check_identity()?;
         Ok(self.to(|Started { begin }| Running { begin }))
@@ -185,12 +185,12 @@ impl<'s, T: Transport> Transaction<'s, T, Running> {
     /// Lets time pass without looking.
     ///
     /// # Errors
-    /// What the device did wrong meanwhile.
+    /// Returns the device's protocol errors since then.
     pub fn idle(&mut self, cycles: u64) -> Result<(), HostError> {
         Ok(self.transport_mut().advance(cycles)?)
     }
 
-    /// Whether the status is there.
+    /// True if the status has arrived.
     pub fn is_done(&self) -> bool {
         self.open.session.status(&self.state.begin).is_some()
     }
@@ -259,7 +259,7 @@ impl<'s, T: Transport> Transaction<'s, T, Retrieved> {
     /// Step 7: stops SPL and frees the workspace.
     ///
     /// # Errors
-    /// What the device did wrong meanwhile.
+    /// Returns the device's protocol errors since then.
     pub fn end(mut self) -> Result<JobResults, HostError> {
         let report = self.open.finish()?;
         self.open.session.reports.push(report);

@@ -1,4 +1,4 @@
-//! What a host needs of a device and the memory between them.
+//! The interface between a host and a device, with the memory that they share.
 
 use std::ops::Range;
 
@@ -10,7 +10,7 @@ pub trait Transport {
     /// Writes a 32-bit CSR, SPL's or the AFU's; it has arrived when this returns.
     ///
     /// # Errors
-    /// What the device did wrong meanwhile.
+    /// Returns the device's protocol errors since then.
     fn write_csr(&mut self, byte_offset: u32, value: u32) -> Result<(), TransportError>;
 
     /// Physical memory, in lines.
@@ -19,10 +19,10 @@ pub trait Transport {
     /// Physical memory, for the host's hand.
     fn memory_mut(&mut self) -> &mut Memory;
 
-    /// Lets so many cycles of the device's clock pass.
+    /// Advances the device by this number of clock cycles.
     ///
     /// # Errors
-    /// What the device did wrong meanwhile.
+    /// Returns the device's protocol errors since then.
     fn advance(&mut self, cycles: u64) -> Result<(), TransportError>;
 
     /// Cycles so far.
@@ -57,11 +57,11 @@ pub trait Transport {
         Spl2Model::default()
     }
 
-    /// What went over it so far.
+    /// The traffic so far.
     fn traffic(&self) -> Traffic;
 }
 
-/// What a device did wrong, or was told wrongly.
+/// A protocol error of a device, or of the host that drives it.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TransportError {
     /// An address that the page table has no page for.
@@ -79,7 +79,7 @@ pub enum TransportError {
     Protocol {
         /// The cycle, counted from the device's first.
         cycle: u64,
-        /// What it did.
+        /// The error.
         what: Spl2Error,
     },
     /// Anything else.

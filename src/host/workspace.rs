@@ -86,17 +86,17 @@ impl Workspace {
         Self::new(layout, pages_for(&layout, pairs), seed)
     }
 
-    /// Its pages.
+    /// The number of pages.
     pub fn pages(&self) -> u64 {
         self.pages.count()
     }
 
-    /// Its bytes.
+    /// The size in bytes.
     pub fn bytes(&self) -> u64 {
         self.pages() * PAGE_BYTES
     }
 
-    /// Where records lie in it.
+    /// The layout of the records.
     pub fn layout(&self) -> &Layout {
         &self.layout
     }
@@ -138,7 +138,7 @@ impl Workspace {
         self.physical(address).ok_or(HostError::Outside(address))
     }
 
-    /// The lines that a job of so many pairs may touch.
+    /// The lines that a job of this number of pairs may access.
     pub(super) fn limits(&self, pairs: u64) -> Limits {
         let line = |address: u64| address / LINE_BYTES;
         let (context, source, destination) = (line(self.context()), line(self.source()), line(self.destination()));
@@ -170,7 +170,7 @@ fn half_lines(pages: u64) -> u64 {
     (pages * PAGE_LINES - CONTEXT_LINES) / 2
 }
 
-/// Pages that so many pairs need, be they more than there can be.
+/// The number of pages that this number of pairs needs; it may be more than the maximum.
 pub(super) fn pages_for(layout: &Layout, pairs: u64) -> u64 {
     let half = (layout.source_lines(pairs) + u64::from(map::DATA_LINE)).max(layout.destination_lines(pairs));
     (2 * half + CONTEXT_LINES).div_ceil(PAGE_LINES)

@@ -29,7 +29,7 @@ pub struct WriteRequest {
     pub data: Line,
 }
 
-/// What an AFU asks in a cycle. A request that is not accepted is repeated unchanged in the next.
+/// The requests of an AFU in a cycle. A request that is not accepted is repeated unchanged in the next cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Requests {
     /// A read.
@@ -45,7 +45,7 @@ pub struct ReadResponse {
     pub tag: u16,
     /// The line.
     pub data: Line,
-    /// Whether the read failed.
+    /// True if the read failed.
     pub error: bool,
 }
 
@@ -54,16 +54,16 @@ pub struct ReadResponse {
 pub struct WriteResponse {
     /// The request's.
     pub tag: u16,
-    /// Whether the write failed.
+    /// True if the write failed.
     pub error: bool,
 }
 
-/// What the link does in a cycle.
+/// The outputs of the link in a cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Replies {
-    /// Whether this cycle's read request is accepted, or would be.
+    /// True if a read request is accepted in this cycle.
     pub read_ready: bool,
-    /// Whether this cycle's write request is accepted, or would be.
+    /// True if a write request is accepted in this cycle.
     pub write_ready: bool,
     /// The response to an earlier read.
     pub read: Option<ReadResponse>,
@@ -98,7 +98,7 @@ struct Read {
 struct Write {
     request: WriteRequest,
     error: bool,
-    /// The job it is part of; nothing where it must not write.
+    /// The job that it belongs to; `None` if it must not write.
     job: Option<u64>,
 }
 
@@ -106,7 +106,7 @@ struct Write {
 #[derive(Clone, Debug)]
 pub struct Link {
     model: LinkModel,
-    /// What the link leads to.
+    /// The memory behind the link.
     pub memory: Memory,
     random: Xoshiro256PlusPlus,
     now: u64,
@@ -127,7 +127,7 @@ impl Link {
     /// A link like `model`, to empty memory; the same for the same `seed`.
     ///
     /// # Errors
-    /// When the model holds a value outside its range.
+    /// Returns an error if the model holds a value outside its range.
     pub fn new(model: LinkModel, seed: u64) -> Result<Self, LinkError> {
         model.check()?;
         Ok(Self {
@@ -148,12 +148,12 @@ impl Link {
         })
     }
 
-    /// What it is like.
+    /// The model of the link.
     pub fn model(&self) -> &LinkModel {
         &self.model
     }
 
-    /// What went over it so far.
+    /// The traffic so far.
     pub fn traffic(&self) -> Traffic {
         self.traffic
     }

@@ -21,7 +21,7 @@ impl Description {
     /// The link of a file: JSON is a [`LinkModel`] in cycles, anything else a [`Physical`] in TOML.
     ///
     /// # Errors
-    /// When `text` is not what its name says, with `file` and the line.
+    /// Returns an error if `text` is not what its name says, with `file` and the line.
     pub fn parse(file: &str, text: &str) -> Result<Self, LinkError> {
         if !file.ends_with(".json") {
             return Ok(Self::Physical(Box::new(Physical::parse(file, text)?)));
@@ -35,7 +35,7 @@ impl Description {
     /// The link at a clock of `mhz`.
     ///
     /// # Errors
-    /// As [`Physical::at`].
+    /// Returns the errors of [`Physical::at`].
     pub fn at(&self, mhz: f64) -> Result<LinkModel, LinkError> {
         match self {
             Self::Cycles(model) => Ok(LinkModel::clone(model)),

@@ -10,10 +10,10 @@ use super::model::MAX_OUTSTANDING;
 pub struct Direction {
     /// Cycles from the acceptance of a request to its response, at least 1.
     pub latency: u32,
-    /// Up to so many cycles more, as `shape` says.
+    /// Additional cycles at most, distributed by `shape`.
     #[serde(default)]
     pub tail: u32,
-    /// How the tail is distributed.
+    /// The distribution of the tail.
     #[serde(default)]
     pub shape: Shape,
     /// Rare responses that are much later.
@@ -30,7 +30,7 @@ pub struct Direction {
     pub in_flight: u32,
 }
 
-/// How the cycles beyond the least latency are distributed.
+/// The distribution of the cycles beyond the minimum latency.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Shape {

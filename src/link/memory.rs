@@ -1,4 +1,4 @@
-//! Sparse memory of 64-byte lines, which knows what a job may touch and remembers what went wrong.
+//! Sparse memory of 64-byte lines, which checks the accesses of a job and records violations.
 
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
@@ -13,7 +13,7 @@ pub type Line = [u32; 16];
 /// Lines of a page, a power of two: one bit each in a u64.
 const PAGE_LINES: u64 = 64;
 
-/// What reads of lines find that nobody wrote: no field of a record looks like it.
+/// The content of lines that were never written; no field of a record looks like it.
 const UNWRITTEN: Line = [0xDEAD_BEEF; 16];
 
 /// Violations kept; the rest is counted.
@@ -142,7 +142,7 @@ impl Memory {
         self.guard.as_ref().map_or(&[], |guard| &guard.violations)
     }
 
-    /// How many violations there were since [`Memory::guard`].
+    /// Number of violations since [`Memory::guard`].
     pub fn violation_count(&self) -> u64 {
         self.guard.as_ref().map_or(0, |guard| guard.violation_count)
     }

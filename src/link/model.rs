@@ -1,4 +1,4 @@
-//! What a link is like, as data, and what it allows at best.
+//! The model of a link as data, and the link limit.
 
 use std::fmt;
 use std::str::FromStr;
@@ -16,13 +16,13 @@ pub const MAX_OUTSTANDING: u32 = 64;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LinkModel {
-    /// What reports call it.
+    /// The name in reports.
     pub name: String,
     /// From a read request to its data.
     pub read: Direction,
     /// From a write request to its acknowledgement.
     pub write: Direction,
-    /// Whether responses of one direction overtake each other.
+    /// True if responses of one direction may overtake each other.
     pub order: Order,
     /// The same for writes, where it is another.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -30,7 +30,7 @@ pub struct LinkModel {
     /// Lines a cycle in both directions together, above 0 and up to 2.
     #[serde(default = "both")]
     pub lines_per_cycle: f64,
-    /// What the host waits for beside a job.
+    /// The host's waiting times before and after a job.
     #[serde(default)]
     pub session: SessionCost,
     /// Faults planted from the start.
@@ -38,7 +38,7 @@ pub struct LinkModel {
     pub faults: Vec<Fault>,
 }
 
-/// What the host's side of a link costs, in cycles of the AFU's clock.
+/// The costs of the host's side of a link, in cycles of the AFU's clock.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SessionCost {
@@ -63,7 +63,7 @@ pub enum LinkError {
     /// Not the name of a preset.
     #[error("unknown link `{0}`: use {names}", names = super::NAMES.join(", "))]
     Unknown(String),
-    /// A file of a link that is none.
+    /// A file that does not describe a link.
     #[error("{file}: {message}")]
     File {
         /// The file.
@@ -78,9 +78,9 @@ pub enum LinkError {
         link: String,
         /// The field.
         field: &'static str,
-        /// What it holds.
+        /// The value found.
         value: f64,
-        /// What it may hold.
+        /// The values allowed.
         range: &'static str,
     },
 }
@@ -127,7 +127,7 @@ impl LinkModel {
         }
     }
 
-    /// Whether every value is in its range.
+    /// Checks that every value is in its range.
     ///
     /// # Errors
     /// [`LinkError::Range`] with the first that is not.

@@ -1,4 +1,4 @@
-//! When lines go that are ready: bandwidth alone, without latency.
+//! The cycles in which ready lines leave: bandwidth only, without latency.
 
 use super::direction::Direction;
 use super::model::LinkModel;

@@ -13,20 +13,20 @@ use super::model::{LinkError, LinkModel, SessionCost};
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Physical {
-    /// What reports call it.
+    /// The name in reports.
     pub name: String,
-    /// Whether reads overtake each other, and writes too unless `write_order` says otherwise.
+    /// True if reads may overtake each other, and writes too unless `write_order` differs.
     pub order: OrderName,
-    /// Whether writes overtake each other.
+    /// True if writes may overtake each other.
     #[serde(default)]
     pub write_order: Option<OrderName>,
     /// From a read request to its data.
     pub read: PhysicalDirection,
     /// From a write request to its acknowledgement.
     pub write: PhysicalDirection,
-    /// What both share.
+    /// The bandwidth that both directions share.
     pub joint: Joint,
-    /// What the host waits for.
+    /// The waiting times of the host.
     #[serde(default)]
     pub session: PhysicalSession,
     /// Faults planted from the start.
@@ -51,7 +51,7 @@ pub struct PhysicalDirection {
     /// Nanoseconds from a request to its response at least.
     #[serde(deserialize_with = "time")]
     pub latency_ns: Figure,
-    /// Nanoseconds at most; without it there is no tail.
+    /// Maximum in nanoseconds; without it there is no tail.
     #[serde(default, deserialize_with = "Figure::optional_time")]
     pub slowest_ns: Option<Figure>,
     /// The mean of the nanoseconds beyond `latency_ns`, of a geometric distribution cut off at `slowest_ns`; without it
@@ -69,7 +69,7 @@ pub struct PhysicalDirection {
     pub in_flight: Figure,
 }
 
-/// What the directions share.
+/// The bandwidth that the directions share.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Joint {
@@ -78,7 +78,7 @@ pub struct Joint {
     pub bandwidth_gb_s: Figure,
 }
 
-/// What the host waits for beside a job; what is left out takes no time.
+/// The host's waiting times before and after a job; those left out are zero.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PhysicalSession {
@@ -137,7 +137,7 @@ impl Physical {
     /// cycle, which is what the AFU's port has.
     ///
     /// # Errors
-    /// When at that clock a value is outside what a model can hold.
+    /// Returns an error if at that clock a value is outside what a model can hold.
     pub fn at(&self, mhz: f64) -> Result<LinkModel, LinkError> {
         let cycles = |ns: f64| (ns * mhz / 1000.0).round();
         let lines_per_cycle = |gb_s: &Figure| gb_s.value * 1000.0 / (LINE_BYTES as f64 * mhz);
@@ -172,7 +172,7 @@ impl Physical {
         Ok(model)
     }
 
-    /// Every figure there is, under its key.
+    /// All figures with their keys.
     pub fn figures(&self) -> Vec<(String, &Figure)> {
         let Self { read, write, joint, session, .. } = self;
         let shared = [("bandwidth_gb_s", Some(&joint.bandwidth_gb_s))];

@@ -61,7 +61,7 @@ impl<T> Queue<T> {
         self.waiting.iter_mut().map(|(_, item)| item)
     }
 
-    /// Whether the link takes another request.
+    /// True if the link accepts another request.
     pub(super) fn has_room(&self) -> bool {
         self.waiting.len() < self.direction.in_flight as usize
     }

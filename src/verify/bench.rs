@@ -51,7 +51,7 @@ impl Bench {
     /// Verilog, else one from the cache or from Verilator.
     ///
     /// # Errors
-    /// When the configuration cannot be generated, a tool is missing, or one refuses.
+    /// Returns an error if the configuration cannot be generated, a tool is missing, or one refuses.
     pub fn new(config: &Config) -> Result<Self, VerifyError> {
         Self::traced(config, Trace::Off)
     }
@@ -133,7 +133,7 @@ impl Bench {
     /// what the registers hold that no reset reaches.
     ///
     /// # Errors
-    /// When the job does not end, or the AFU breaks the line port's protocol. Mismatches are no error.
+    /// Returns an error if the job does not end, or the AFU breaks the line port's protocol. Mismatches are no error.
     pub fn run(&self, pairs: &[PairRecord], link: &LinkModel, seed: u64) -> Result<Verdict, VerifyError> {
         self.run_with(pairs, link, seed, None, |_| {})
     }
@@ -183,7 +183,7 @@ impl Bench {
 /// SHA-256 of the Verilog that would be generated for a configuration: [`Bench::rtl_sha256`] without a model.
 ///
 /// # Errors
-/// When the configuration cannot be generated.
+/// Returns an error if the configuration cannot be generated.
 pub fn rtl_sha256(config: &Config) -> Result<String, VerifyError> {
     Ok(generated(config)?.sha256())
 }

@@ -9,7 +9,7 @@ use crate::query::{PairRecord, Query};
 /// The pairs of the corpus `file`; none where there is no such file.
 ///
 /// # Errors
-/// When there is one that cannot be read or is no CSV or npy file of pairs.
+/// Returns an error if there is one that cannot be read or is no CSV or npy file of pairs.
 pub fn read(query: Query, file: &Path) -> Result<Loaded, FileError> {
     match file.try_exists() {
         Ok(false) => Ok(Loaded { pairs: Vec::new(), rounded: None }),
@@ -21,7 +21,7 @@ pub fn read(query: Query, file: &Path) -> Result<Loaded, FileError> {
 /// file is left alone.
 ///
 /// # Errors
-/// As [`read`], and when it cannot be written.
+/// Returns the errors of [`read`], and when it cannot be written.
 pub fn join(query: Query, file: &Path, pairs: impl IntoIterator<Item = PairRecord>) -> Result<usize, FileError> {
     let mut corpus = read(query, file)?.pairs;
     let mut known: HashSet<PairRecord> = corpus.iter().copied().collect();

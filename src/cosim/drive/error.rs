@@ -1,4 +1,4 @@
-//! Why a job has no outcome.
+//! Errors of a job without outcome.
 
 use std::fmt;
 
@@ -23,7 +23,7 @@ pub enum DriveError {
     /// The AFU has another number of SCPUs.
     #[error("expected an AFU with SCPUs = {expected}, found {found}")]
     Scpus {
-        /// As the job wants it.
+        /// The value that the job expects.
         expected: u32,
         /// As the AFU says.
         found: u32,
@@ -31,7 +31,7 @@ pub enum DriveError {
     /// The AFU gives other results than the job expects.
     #[error("expected an AFU with results {expected}, found {found}")]
     Results {
-        /// As the job wants it.
+        /// The value that the job expects.
         expected: Results,
         /// As the AFU says.
         found: Results,
@@ -42,7 +42,7 @@ pub enum DriveError {
     /// A job was started while another runs.
     #[error("the AFU is busy with another job")]
     Busy,
-    /// The outcome of a job was asked for that is not done.
+    /// The outcome was requested of a job that is not finished.
     #[error("no job has finished")]
     NotDone,
     /// The job does not end.
@@ -62,14 +62,14 @@ pub enum DriveError {
     },
 }
 
-/// What a job that does not end is waiting for.
+/// What an unfinished job waits for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Waiting {
     /// The link's response to a request.
     Response {
-        /// Whether it is a read.
+        /// True for a read.
         is_read: bool,
-        /// Its tag.
+        /// The tag.
         tag: u16,
         /// Cycles since it was accepted.
         cycles: u64,

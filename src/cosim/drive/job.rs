@@ -8,9 +8,9 @@ use crate::link::{LINE_BYTES, Line, Link, Memory, Replies, Requests, Traffic};
 use crate::outcome::Outcome;
 use crate::patience::{Patience, Work};
 
-/// Where sources lie unless the job says otherwise: a line address.
+/// The default line address of sources.
 const SOURCE: u64 = 0x1000;
-/// Where results go unless the job says otherwise; beyond every source.
+/// The default line address of results, beyond every source.
 const DESTINATION: u64 = 1 << 40;
 
 /// A job for an AFU.
@@ -57,7 +57,7 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// What of it takes time.
+    /// The parts of the job that take time.
     pub(super) fn work(&self) -> Work {
         let (pairs, reads) = (self.pairs.into(), self.source.len() as u64);
         Work { pairs, reads, writes: self.destination_lines, watchdog: self.watchdog }
@@ -71,7 +71,7 @@ impl<'a> Job<'a> {
         self.destination_address..self.destination_address + self.destination_lines
     }
 
-    /// Whether source and destination lie in the address space and apart.
+    /// Checks that source and destination lie in the address space and do not overlap.
     pub(super) fn check(&self) -> Result<(), DriveError> {
         let space = 1 << crate::afu::ADDRESS_BITS;
         let fits = |first: u64, lines: u64| first <= space && lines <= space - first;
@@ -88,7 +88,7 @@ impl<'a> Job<'a> {
         Ok(())
     }
 
-    /// Puts the source where the AFU finds it, and nothing where it writes.
+    /// Writes the source to memory, and clears the destination.
     pub(super) fn place(&self, memory: &mut Memory) {
         for (address, line) in self.source_range().zip(self.source) {
             memory.set(address, line);
@@ -130,12 +130,12 @@ impl Running {
         }
     }
 
-    /// Whether it has taken longer than a right AFU would.
+    /// True if it has taken longer than a correct AFU would.
     pub(super) fn is_overdue(&self, cycle: u64) -> bool {
         cycle - self.started > self.patience.whole || cycle - self.last_sign > self.patience.quiet
     }
 
-    /// The first line address that a job with so many contacts must leave unwritten.
+    /// The first line address that a job with this number of contacts must not write.
     pub(super) fn end(&self, contacts: u32) -> u64 {
         match self.hits_per_line {
             None => self.destination.end,

@@ -43,7 +43,7 @@ impl<'a> Driver<'a> {
     /// Takes hold of the ports of `afu`, a module with the `line` shell's ports, and resets it.
     ///
     /// # Errors
-    /// When a port is missing, or the module ends itself.
+    /// Returns an error if a port is missing, or the module ends itself.
     pub fn new(afu: &'a Instance, link: Link) -> Result<Self, DriveError> {
         let (clock, ports) = (afu.clock("clk")?, Ports::new(afu)?);
         let monitor = Monitor::default();
@@ -55,7 +55,7 @@ impl<'a> Driver<'a> {
     /// Resets the AFU, whatever it is doing. The link goes on: what was asked before is still answered.
     ///
     /// # Errors
-    /// When the module ends itself.
+    /// Returns an error if the module ends itself.
     pub fn reset(&mut self) -> Result<(), DriveError> {
         self.running = None;
         self.monitor.forget();
@@ -72,7 +72,7 @@ impl<'a> Driver<'a> {
         Ok(())
     }
 
-    /// What the AFU says of itself.
+    /// The capability word of the AFU.
     pub fn capability(&self) -> Capability {
         Capability::from_bits(self.ports.capability())
     }
@@ -95,8 +95,8 @@ impl<'a> Driver<'a> {
     /// Runs a job to its end.
     ///
     /// # Errors
-    /// When the AFU breaks the protocol, gives no sign of life, or ends itself. A job that ends with an error code is
-    /// an [`Outcome`].
+    /// Returns an error if the AFU breaks the protocol, gives no sign of life, or ends itself. A job that ends with an
+    /// error code is an [`Outcome`].
     pub fn run(&mut self, job: &Job) -> Result<Outcome, DriveError> {
         self.start(job)?;
         while !self.step()? {}
@@ -106,7 +106,7 @@ impl<'a> Driver<'a> {
     /// Puts a job's source into memory and starts the AFU on it.
     ///
     /// # Errors
-    /// When the AFU is not the one that was expected or is busy, or as in [`Driver::step`].
+    /// Returns an error if the AFU is not the one that was expected or is busy, or as in [`Driver::step`].
     pub fn start(&mut self, job: &Job) -> Result<(), DriveError> {
         let afu = self.capability();
         let Capability { scpus: found, results, .. } = afu;
@@ -135,7 +135,8 @@ impl<'a> Driver<'a> {
     /// One cycle; whether the job is done.
     ///
     /// # Errors
-    /// When the AFU breaks the protocol, takes longer than a right one would ([`patience`]), or ends itself.
+    /// Returns an error if the AFU breaks the protocol, takes longer than a right one would ([`patience`]), or ends
+    /// itself.
     pub fn step(&mut self) -> Result<bool, DriveError> {
         if self.ports.is_done() {
             let (error, contacts) = (self.ports.error(), self.ports.counters().contacts);
@@ -154,7 +155,7 @@ impl<'a> Driver<'a> {
     /// The outcome of a job that is done.
     ///
     /// # Errors
-    /// When none was started, or it is not done.
+    /// Returns an error if none was started, or it is not done.
     pub fn finish(&mut self) -> Result<Outcome, DriveError> {
         if !self.ports.is_done() {
             return Err(DriveError::NotDone);

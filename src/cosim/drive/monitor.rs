@@ -9,22 +9,22 @@ const SLOT_BITS: u32 = 6;
 
 /// The error code with which an AFU ends that will not wait for a lost response.
 const WATCHDOG: u8 = 4;
-/// The error code with which an AFU ends that found more contacts than there is room for.
+/// The error code of an AFU that found more contacts than there is room for.
 const OVERFLOW: u8 = 6;
 
-/// How an AFU broke the protocol.
+/// A protocol violation of an AFU.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ProtocolError {
     /// A request changed before it was accepted.
     #[error("a {} request changed or was withdrawn before it was accepted", direction(*is_read))]
     Unstable {
-        /// Whether it is a read.
+        /// True for a read.
         is_read: bool,
     },
     /// A tag was used before the response of its last use.
     #[error("a {} used tag {tag:#05x} before the response to its last use", direction(*is_read))]
     TagReused {
-        /// Whether it is a read.
+        /// True for a read.
         is_read: bool,
         /// The tag.
         tag: u16,
@@ -32,7 +32,7 @@ pub enum ProtocolError {
     /// A tag of another job.
     #[error("a {} used tag {tag:#05x}, but the job's epoch is {epoch}", direction(*is_read))]
     WrongEpoch {
-        /// Whether it is a read.
+        /// True for a read.
         is_read: bool,
         /// The tag.
         tag: u16,
@@ -42,13 +42,13 @@ pub enum ProtocolError {
     /// More requests outstanding than agreed.
     #[error("more than {MAX_OUTSTANDING} outstanding {}s", direction(*is_read))]
     TooMany {
-        /// Whether they are reads.
+        /// True for reads.
         is_read: bool,
     },
     /// A request without a job. (One that a job gave up while it stood on the port stays there.)
     #[error("a {} request while no job runs", direction(*is_read))]
     Idle {
-        /// Whether it is a read.
+        /// True for a read.
         is_read: bool,
     },
     /// An access to a line that is not the job's.
@@ -134,7 +134,7 @@ pub(super) struct Monitor {
     epoch: u8,
     /// Requests of the last cycle that were not accepted.
     pending: Requests,
-    /// Whether the last job gave up what was outstanding.
+    /// True if the last job gave up its outstanding requests.
     gave_up: bool,
     /// Whether the read, or the write, on the port is one that a job gave up.
     leftover: [bool; 2],
@@ -248,7 +248,7 @@ impl Monitor {
             return Err(ProtocolError::Unstable { is_read: false });
         }
         self.pending.read = requests.read.filter(|_| !replies.read_ready);
-        // A write carries a line: in most cycles there is none to remember.
+        // A write carries a line; in most cycles there is no write.
         if requests.write.is_some() && !replies.write_ready {
             self.pending.write = requests.write;
         } else if self.pending.write.is_some() {

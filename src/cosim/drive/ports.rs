@@ -22,7 +22,7 @@ pub(super) struct Ports<'a> {
     writes: WriteOutputs<Port<'a>>,
 }
 
-/// What the AFU counted.
+/// The counters of the AFU.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Counters {
     pub(super) contacts: u32,
@@ -56,7 +56,7 @@ impl<'a> Ports<'a> {
         self.reset.set((active != self.reset_active_low).into());
     }
 
-    /// Asks for nothing.
+    /// Sets all requests to idle.
     pub(super) fn quiet(&self) {
         self.job.start.set(0);
         self.job.abort_job.set(0);
@@ -117,7 +117,7 @@ impl<'a> Ports<'a> {
         }
     }
 
-    /// What the AFU asks in this cycle.
+    /// The AFU's requests in this cycle.
     #[inline]
     pub(super) fn requests(&self) -> Requests {
         let (reads, writes) = (&self.reads, &self.writes);
@@ -133,7 +133,8 @@ impl<'a> Ports<'a> {
         Requests { read, write }
     }
 
-    /// What the link does in this cycle. Without a response, tag and data keep what they had: nobody may look.
+    /// Applies the link's outputs of this cycle. Without a response, tag and data keep their old values, which are
+    /// invalid.
     #[inline]
     pub(super) fn reply(&self, replies: &Replies) {
         self.read_replies.rd_req_ready.set(replies.read_ready.into());

@@ -32,7 +32,7 @@ impl<'a> Machine<'a> {
     /// Takes hold of the ports of `afu`, a module with the `spl2` shell's ports, and resets the system.
     ///
     /// # Errors
-    /// When a port is missing, or the module ends itself.
+    /// Returns an error if a port is missing, or the module ends itself.
     pub fn new(afu: &'a Instance, spl: Spl2) -> Result<Self, MachineError> {
         let (clock, ports) = (afu.clock("clk")?, Ports::new(afu)?);
         let mut machine = Self { clock, ports, spl, cycle: 0, last_read: None, last_work: 0 };
@@ -43,7 +43,7 @@ impl<'a> Machine<'a> {
     /// The system's reset: AFU and SPL forget everything, memory stays.
     ///
     /// # Errors
-    /// When the module ends itself.
+    /// Returns an error if the module ends itself.
     pub fn system_reset(&mut self) -> Result<(), MachineError> {
         self.ports.system_reset(true);
         for _ in 0..RESET_CYCLES {
@@ -58,7 +58,7 @@ impl<'a> Machine<'a> {
     /// say.
     ///
     /// # Errors
-    /// As [`Machine::advance`].
+    /// Returns the errors of [`Machine::advance`].
     pub fn write_csr(&mut self, byte_offset: u32, value: u32) -> Result<(), MachineError> {
         self.spl.write_csr(byte_offset, value);
         self.advance(u64::from(self.spl.model().csr_cycles).max(1))
@@ -67,7 +67,7 @@ impl<'a> Machine<'a> {
     /// Runs the clock.
     ///
     /// # Errors
-    /// When the AFU breaks the port's protocol, or ends itself.
+    /// Returns an error if the AFU breaks the port's protocol, or ends itself.
     pub fn advance(&mut self, cycles: u64) -> Result<(), MachineError> {
         for _ in 0..cycles {
             let transmit = self.ports.transmit();

@@ -1,4 +1,4 @@
-//! What must not happen at SPL2's port.
+//! Violations at SPL2's port.
 
 /// What the AFU, or the host, must not do.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -18,7 +18,7 @@ pub enum Spl2Error {
         what: &'static str,
         /// The 99 bits.
         header: u128,
-        /// What is wrong with it.
+        /// The violation.
         why: &'static str,
     },
     /// The `mdata` of a request that is still outstanding.

@@ -15,7 +15,7 @@ pub struct Header {
     pub kind: u32,
     /// Mdata, 13:0.
     pub mdata: u16,
-    /// Bits that are nothing's.
+    /// Unused bits.
     pub rest: bool,
 }
 
@@ -43,7 +43,7 @@ impl Header {
     }
 }
 
-/// What the AFU transmits in a cycle.
+/// The outputs of the AFU in a cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Transmit {
     /// A read's header.
@@ -54,7 +54,7 @@ pub struct Transmit {
     pub interrupt: bool,
 }
 
-/// What comes on receive channel 0.
+/// The kinds of messages on receive channel 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Receive0 {
     /// A read's data.
@@ -88,7 +88,7 @@ pub(super) fn read_response(mdata: u16) -> u32 {
     4 << 14 | u32::from(mdata)
 }
 
-/// What the AFU receives in a cycle.
+/// The inputs of the AFU in a cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Receive {
     /// `spl_enable`.

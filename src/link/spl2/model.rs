@@ -36,7 +36,7 @@ pub enum CsrOffset {
 /// The first offset that is not SPL's.
 const SPL_END: u32 = 0x2000;
 
-/// What SPL2 is like beyond its [`LinkModel`](crate::link::LinkModel).
+/// Parameters of SPL2 beyond its [`LinkModel`](crate::link::LinkModel).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spl2Model {
     /// Cycles of a CSR write: about 145 (730 ns), as the driver's platform file says.
@@ -47,7 +47,7 @@ pub struct Spl2Model {
     pub reset_cycles: u32,
     /// The share of cycles in which acknowledgements are held back, so that two can come at once.
     pub held: f64,
-    /// Whether a fence is acknowledged. (Not known.)
+    /// True if a fence is acknowledged. (The real behaviour is not known.)
     pub fence_answers: bool,
     /// Spans in which almost-full is high for no reason the AFU could know.
     pub almostfull: Stalls,
@@ -77,7 +77,7 @@ pub struct DeviceWrite {
     pub cycle: u64,
 }
 
-/// What happened so far that a test wants to have happened.
+/// Events that tests require to have happened.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Seen {
     /// Cycles in which writes were acknowledged on both channels.
@@ -144,7 +144,7 @@ impl Spl2 {
         }
     }
 
-    /// What it is like.
+    /// The model.
     pub fn model(&self) -> &Spl2Model {
         &self.model
     }
@@ -159,7 +159,7 @@ impl Spl2 {
         &mut self.link
     }
 
-    /// What happened so far.
+    /// The events so far.
     pub fn seen(&self) -> Seen {
         self.seen
     }
@@ -221,7 +221,7 @@ impl Spl2 {
     /// One clock cycle: takes what the AFU transmits in it, gives what it receives in it.
     ///
     /// # Errors
-    /// What the AFU, or the host, must not have done.
+    /// Returns the violations of the AFU or the host.
     pub fn cycle(&mut self, transmit: &Transmit) -> Result<Receive, Spl2Error> {
         self.cycle += 1;
         let config = self.take_csr()?;

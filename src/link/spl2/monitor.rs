@@ -89,7 +89,7 @@ impl Direction {
     }
 }
 
-/// What of memory a job may touch, if anybody said so.
+/// The memory that a job may access, if it is restricted.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Guard {
     limits: Option<Limits>,

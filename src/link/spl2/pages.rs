@@ -37,7 +37,7 @@ impl Pages {
         Self { first: first / PAGE_BYTES, lines }
     }
 
-    /// How many there are.
+    /// The number of pages.
     pub fn count(&self) -> u64 {
         self.lines.len() as u64
     }

@@ -57,7 +57,7 @@ impl Reads {
         }
     }
 
-    /// The link's answer; those that a system reset forgot are nobody's.
+    /// The link's answer; answers from before a system reset are dropped.
     pub(super) fn answered(&mut self, response: &ReadResponse) {
         let mut all = self.window.iter_mut().chain(&mut self.stale);
         if let Some(read) = all.find(|read| read.id == response.tag && read.data.is_none()) {
@@ -65,7 +65,7 @@ impl Reads {
         }
     }
 
-    /// What goes to the AFU now: old answers first, then the next in turn, or any.
+    /// The next answer to the AFU: old answers first, then the next in turn, or any.
     pub(super) fn deliver(&mut self, in_order: bool) -> Option<(u16, Line)> {
         let stale = self.stale.iter().position(|read| read.data.is_some());
         let read = match stale {

@@ -111,7 +111,7 @@ impl Writes {
         self.queue.drain(..).map(|(header, _)| header.mdata).collect()
     }
 
-    /// The whole system is reset: what is on its way is written and nobody hears of it.
+    /// System reset: writes in flight are completed, without responses.
     pub(super) fn forget(&mut self) {
         self.queue.clear();
         self.sent.clear();
