@@ -1,4 +1,4 @@
-//! What went wrong while a graph was built, with names and the place in the generator's source.
+//! Errors in building a graph, with names and the place in the generator's source.
 
 use std::fmt;
 use std::panic::Location;
@@ -8,9 +8,9 @@ use std::panic::Location;
 pub struct Error {
     /// The module under construction.
     pub module: String,
-    /// What is wrong and with which signals.
+    /// The error, with the signals concerned.
     pub message: String,
-    /// Where the operation stands in the generator's source.
+    /// The place of the operation in the generator's source.
     pub place: &'static Location<'static>,
 }
 

@@ -23,7 +23,7 @@ pub(super) fn finish(mut inner: Inner) -> Result<Module, BuildErrors> {
     }
 }
 
-/// What lives, operands first; or a node that depends on itself.
+/// The live nodes, operands first; or a node that depends on itself.
 fn order(inner: &mut Inner) -> Result<Vec<NodeId>, NodeId> {
     resolve_wires(inner)?;
     let live = Walk::new(inner).order()?;
@@ -158,7 +158,7 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// What `id` needs in the same cycle, and what it needs before the next one.
+/// The nodes that `id` needs in the same cycle, and those that it needs before the next one.
 fn dependencies(inner: &Inner, id: NodeId) -> (Vec<NodeId>, Vec<NodeId>) {
     let node = &inner.nodes[id.index()];
     match node.op {

@@ -1,4 +1,4 @@
-//! What an operation comes to when an operand is a constant: less logic, and Verilog without `x & 1'b1`.
+//! Simplifies operations with constant operands: less logic, and Verilog without `x & 1'b1`.
 
 use super::module::Op;
 use super::signal::Signal;

@@ -279,7 +279,7 @@ impl Graph {
     }
 }
 
-/// Whether `name` can stand in Verilog as it is.
+/// True if `name` is a valid identifier in Verilog.
 pub(super) fn is_identifier(name: &str) -> bool {
     let mut bytes = name.bytes();
     bytes.next().is_some_and(|b| b.is_ascii_alphabetic() || b == b'_')

@@ -1,4 +1,4 @@
-//! How busy lines are: a value whose bits choose in many places comes late wherever it goes.
+//! Fan-out: a value whose bits select in many places arrives late everywhere.
 
 use super::module::{Module, NodeId, Op};
 
@@ -17,7 +17,7 @@ pub(super) fn loads(module: &Module) -> Vec<u32> {
             loads[chooser(module, node.operands[position]).index()] += node.width;
         }
     }
-    // Its complement and its copies are as busy: a register may lie on either side of them.
+    // Its complement and its copies have the same fan-out: a register may lie on either side of them.
     for id in module.ids() {
         loads[id.index()] = loads[id.index()].max(loads[chooser(module, id).index()]);
     }

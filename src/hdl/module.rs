@@ -14,7 +14,7 @@ impl NodeId {
     }
 }
 
-/// What a node computes. Operand widths equal the node's width unless said.
+/// The operation of a node. Operands have the node's width unless stated otherwise.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Op {
     /// An input port.
@@ -53,7 +53,7 @@ pub enum Op {
         /// The lowest bit taken.
         low: u32,
     },
-    /// 2^n bits, of which the one whose index is the operand (of n bits) is set.
+    /// One-hot decoder: of 2^n bits, the bit whose index is the operand (of n bits) is set.
     OneHot,
     /// The word of a table whose index is the operand, of n bits: a table has 2^n words.
     Lookup(Arc<[u128]>),
@@ -63,7 +63,7 @@ pub enum Op {
     All,
     /// The operand `cycles` ≥ 1 clock cycles ago. Never reset, never stalled.
     Delay {
-        /// How many cycles.
+        /// The number of cycles.
         cycles: u32,
     },
     /// A register. Operands: next value, then an enable (1 bit) if it has one.
@@ -91,11 +91,11 @@ pub enum Op {
 /// One node of a module.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Node {
-    /// What it computes.
+    /// The operation.
     pub op: Op,
-    /// Its width in bits, at least 1.
+    /// The width in bits, at least 1.
     pub width: u32,
-    /// Its operands.
+    /// The operands.
     pub operands: Vec<NodeId>,
     /// The name it was given.
     pub name: Option<String>,
@@ -106,11 +106,11 @@ pub struct Node {
 /// A port of a module.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Port {
-    /// Its name.
+    /// The name.
     pub name: String,
-    /// Its width in bits.
+    /// The width in bits.
     pub width: u32,
-    /// Whether it is an output; then `node` is the value driven.
+    /// True for an output; then `node` is the value driven.
     pub output: bool,
     /// The input's own node, or the output's value. Absent where an input is not used by anything.
     pub node: Option<NodeId>,
@@ -119,9 +119,9 @@ pub struct Port {
 /// An integer parameter of the Verilog module, or a `localparam` that is computed from one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Parameter {
-    /// Its name.
+    /// The name.
     pub name: String,
-    /// The value it has when nobody overrides it.
+    /// The default value.
     pub default: u32,
     /// Smallest allowed value, checked at elaboration.
     pub min: u32,
@@ -137,7 +137,7 @@ pub struct Parameter {
 pub struct Rounded {
     /// Index of the parameter, which comes first.
     pub of: usize,
-    /// What it is rounded down to a multiple of; at least 1.
+    /// The value is rounded down to a multiple of this; at least 1.
     pub multiple: u32,
 }
 
@@ -151,7 +151,7 @@ impl Rounded {
 /// A memory with one write port and any number of registered read ports.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Memory {
-    /// Its name.
+    /// The name.
     pub name: String,
     /// Words.
     pub depth: u32,
@@ -161,7 +161,7 @@ pub struct Memory {
     pub write: Option<[NodeId; 3]>,
 }
 
-/// How many copies of a module an instance stands for.
+/// The number of copies that an instance stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum InstanceCount {
     /// One.
@@ -174,11 +174,11 @@ pub enum InstanceCount {
 /// An instance, or an array of instances, of another module.
 #[derive(Clone, Debug)]
 pub struct Instance {
-    /// Its name.
+    /// The name.
     pub name: String,
-    /// What it is an instance of.
+    /// The instantiated module.
     pub module: Arc<Module>,
-    /// How many copies.
+    /// The number of copies.
     pub count: InstanceCount,
     /// The value of each input port, by port index; `None` for outputs and for `index` of an array.
     pub inputs: Vec<Option<NodeId>>,
@@ -199,7 +199,7 @@ pub enum Primitive {
 }
 
 impl Primitive {
-    /// Its vendor's name for it.
+    /// The vendor's name.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Mult18x18d => "MULT18X18D",
@@ -208,7 +208,7 @@ impl Primitive {
         }
     }
 
-    /// What a module's name ends in that stands for it.
+    /// The ending of the name of the module that models it.
     pub(super) const fn suffix(self) -> &'static str {
         match self {
             Self::Mult18x18d | Self::Ccu2c | Self::Dp16kd => "_ecp5",
@@ -216,7 +216,7 @@ impl Primitive {
     }
 }
 
-/// How generated registers are reset.
+/// The reset style of generated registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Reset {
     /// Reset acts without a clock edge.
@@ -228,9 +228,9 @@ pub struct Reset {
 /// A checked module.
 #[derive(Clone, Debug)]
 pub struct Module {
-    /// Its name, as in Verilog.
+    /// The name in Verilog.
     pub name: String,
-    /// What it is, for its header: lines of text.
+    /// The description for its header: lines of text.
     pub about: Vec<String>,
     /// Ports in the order they were declared, without clock and reset.
     pub ports: Vec<Port>,
@@ -250,7 +250,7 @@ pub struct Module {
     pub latency: u32,
     /// The vendor's primitive that synthesis takes in the place of its nodes.
     pub primitive: Option<Primitive>,
-    /// What its stages come to, for a pipeline made by [`cut`](super::cut).
+    /// The timing of its stages, for a pipeline made by [`cut`](super::cut).
     pub timing: Option<super::Timing>,
 }
 
@@ -271,7 +271,7 @@ pub(super) const DISTRIBUTED_DEPTH: u32 = 16;
 /// own output register, which synthesis does not find, and what follows a delay would have to be as slow.
 pub(super) const LONGEST_DISTRIBUTED_DELAY: u32 = 256;
 
-/// Whether a delay of a value of `width` bits is a memory with a pointer.
+/// True if a delay of a value of `width` bits is a memory with a pointer.
 pub(super) fn is_memory_delay(cycles: u32, width: u32) -> bool {
     if width >= NARROWEST_MEMORY_DELAY {
         cycles >= SHORTEST_MEMORY_DELAY
@@ -303,19 +303,19 @@ impl Module {
         (0..self.nodes.len() as u32).map(NodeId)
     }
 
-    /// Whether anything inside is clocked.
+    /// True if anything inside is clocked.
     pub(crate) fn is_clocked(&self) -> bool {
         !self.memories.is_empty()
             || self.nodes.iter().any(|n| matches!(n.op, Op::Delay { .. } | Op::Register { .. } | Op::MemoryRead { .. }))
             || self.instances.iter().any(|i| i.module.is_clocked())
     }
 
-    /// Whether it has a reset port: something inside is reset, and not by the module itself.
+    /// True if it has a reset port: something inside is reset, and not by the module itself.
     pub fn has_reset_port(&self) -> bool {
         self.reset.is_none() && self.is_reset()
     }
 
-    /// Whether anything inside is reset.
+    /// True if anything inside is reset.
     pub(crate) fn is_reset(&self) -> bool {
         self.nodes.iter().any(|n| match n.op {
             Op::Delay { cycles } => is_memory_delay(cycles, n.width),

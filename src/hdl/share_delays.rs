@@ -92,7 +92,7 @@ fn step(cycles: u32, width: u32, is_late: bool) -> Option<u32> {
     }
 }
 
-/// Whether a value comes from registers, through wiring alone. Inputs and outputs of instances do.
+/// True if a value comes from registers through wiring only. Inputs and outputs of instances do.
 fn is_registered(nodes: &[Node], id: NodeId) -> bool {
     let node = &nodes[id.index()];
     match node.op {

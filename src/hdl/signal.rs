@@ -42,12 +42,12 @@ impl<'g> Signal<'g> {
         self.graph
     }
 
-    /// Its width in bits; 0 if it is poisoned.
+    /// The width in bits; 0 if it is poisoned.
     pub fn width(self) -> u32 {
         self.id.map_or(0, |id| self.graph.inner.borrow().nodes[id.index()].width)
     }
 
-    /// Its value, if it is a constant.
+    /// The value, if it is a constant.
     pub fn as_constant(self) -> Option<u128> {
         match self.graph.inner.borrow().nodes[self.id?.index()].op {
             Op::Constant(value) => Some(value),
@@ -55,7 +55,7 @@ impl<'g> Signal<'g> {
         }
     }
 
-    /// Its name, or what it computes, for messages.
+    /// The name, or the operation, for messages.
     pub(super) fn describe(self) -> String {
         let Some(id) = self.id else { return "poison".to_owned() };
         let node = self.graph.node(id);
@@ -220,7 +220,7 @@ impl<'g> Signal<'g> {
         if self.width() == 1 { self } else { self.unary("all", Op::All, 1, Location::caller()) }
     }
 
-    /// 2^width bits, of which the one whose index this value is is set. Up to 7 bits wide.
+    /// One-hot decoder: of 2^width bits, the bit whose index is this value is set. Up to 7 bits wide.
     #[track_caller]
     pub fn one_hot(self) -> Self {
         let width = self.width();

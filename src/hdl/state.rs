@@ -1,4 +1,4 @@
-//! What remembers: registers and memories; and instances of other modules.
+//! State: registers and memories; and instances of other modules.
 
 use std::ops::Deref;
 use std::panic::Location;

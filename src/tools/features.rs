@@ -5,11 +5,11 @@ use serde::Serialize;
 /// A cargo feature.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub(crate) struct Feature {
-    /// Its name.
+    /// The name.
     pub name: &'static str,
-    /// Whether it is part of this program.
+    /// True if it is part of this program.
     pub built_in: bool,
-    /// What needs it.
+    /// The commands that need it.
     pub needed_for: &'static str,
 }
 

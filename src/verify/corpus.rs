@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::pairs::{FileError, Loaded, read_with_notes, write_pairs};
 use crate::query::{PairRecord, Query};
 
-/// The pairs of the corpus `file`; none where there is no such file.
+/// The pairs of the corpus `file`; empty if the file does not exist.
 ///
 /// # Errors
 /// Returns an error if there is one that cannot be read or is no CSV or npy file of pairs.

@@ -16,7 +16,7 @@ pub struct BenchEngine<'a> {
     totals: Totals,
 }
 
-/// What an engine did so far.
+/// The work of an engine so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Totals {
     /// Jobs.
@@ -33,7 +33,7 @@ impl<'a> BenchEngine<'a> {
         Self { bench, link, seed, totals: Totals::default() }
     }
 
-    /// What it did so far.
+    /// The work so far.
     pub fn totals(&self) -> Totals {
         self.totals
     }
@@ -45,7 +45,7 @@ impl<'a> BenchEngine<'a> {
 pub struct Disagreement {
     /// The job's number, from 0.
     pub job: u64,
-    /// Its pairs.
+    /// The number of pairs.
     pub pairs: usize,
     /// Records that differ.
     pub mismatches: usize,

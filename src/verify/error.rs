@@ -1,4 +1,4 @@
-//! Why there is no verdict.
+//! Errors of a job without a verdict.
 
 use crate::afu::BuildError;
 use crate::config::ReadError;
@@ -38,7 +38,7 @@ pub enum VerifyError {
 }
 
 impl VerifyError {
-    /// Whether a job that began went wrong, by itself or by the AFU: it does not finish, breaks the protocol, or stops.
+    /// True if a job that began failed: it does not finish, breaks the protocol, or stops.
     pub fn is_job_failure(&self) -> bool {
         matches!(
             self,

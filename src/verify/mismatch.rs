@@ -1,4 +1,4 @@
-//! A record that differs from the reference's, told so that a person can begin to search.
+//! A record that differs from the reference, with what a person needs to find the cause.
 
 use std::fmt;
 
@@ -8,15 +8,15 @@ use crate::query::{ContactRecord, Flow, PairRecord, Query};
 /// value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Mismatch {
-    /// What was asked of the pair.
+    /// The query of the pair.
     pub query: Query,
     /// The pair's number in its job, from 0.
     pub number: usize,
-    /// The cycle of the job in which its line was last written; none: it never was.
+    /// The cycle of the job in which its line was last written; `None` if never.
     pub cycle: Option<u64>,
-    /// What went in.
+    /// The pair.
     pub pair: PairRecord,
-    /// What the reference kernel gives.
+    /// The record of the reference kernel.
     pub expected: ContactRecord,
     /// What lies in destination memory; none: nothing does. Where only contacts come back, zero words are expected of a
     /// pair without one.

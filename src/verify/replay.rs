@@ -1,4 +1,4 @@
-//! How a job is run again.
+//! The command that runs a job again.
 
 use std::fmt;
 use std::path::{Path, PathBuf};

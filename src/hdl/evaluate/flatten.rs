@@ -13,16 +13,16 @@ pub(super) type FlatId = usize;
 #[derive(Debug)]
 pub(super) struct Scope {
     pub module: Arc<Module>,
-    /// Its hierarchical name with a dot behind; empty for the top.
+    /// The hierarchical name followed by a dot; empty for the top.
     pub path: String,
     pub base: FlatId,
     /// The values of its parameters.
     pub parameters: Vec<u32>,
-    /// Where its memories begin in the list of all memories.
+    /// Index of its first memory in the list of all memories.
     pub memories: usize,
 }
 
-/// Where a node's value comes from.
+/// The source of a node's value.
 #[derive(Clone, Debug)]
 pub(super) enum Link {
     /// It is computed from its operands.
@@ -147,7 +147,7 @@ impl Flat {
         format!("{}{name}", self.scope(id).path)
     }
 
-    /// The `k`-th value `id` needs in the same cycle, if there are so many.
+    /// The `k`-th value that `id` needs in the same cycle, or `None`.
     fn operand(&self, id: FlatId, k: usize) -> Option<FlatId> {
         match &self.links[id] {
             Link::Own => {
@@ -161,7 +161,7 @@ impl Flat {
         }
     }
 
-    /// What `roots` and the state behind them need, operands first.
+    /// The nodes that `roots` and the state behind them need, operands first.
     ///
     /// # Errors
     /// A combinational loop, which may run through several modules.
@@ -224,7 +224,7 @@ impl Flat {
     }
 }
 
-/// Whether a value is held from one clock edge to the next.
+/// True if a value is held from one clock edge to the next.
 pub(super) fn is_state(op: &Op) -> bool {
     matches!(op, Op::Delay { .. } | Op::Register { .. } | Op::MemoryRead { .. })
 }

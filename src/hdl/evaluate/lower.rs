@@ -10,7 +10,7 @@ use crate::hdl::module::{Node, Op};
 /// A word before it has a place: what computes it stands in [`Lowered::sources`].
 pub(super) type Word = u32;
 
-/// What a word is.
+/// The kind of a word.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Source {
     Constant(u64),
@@ -35,7 +35,7 @@ pub(super) struct Lowered {
     constants: HashMap<u64, Word>,
 }
 
-/// The place of a node that nothing needs.
+/// The place of a dead node.
 pub(super) const DEAD: u32 = u32::MAX;
 
 /// Words a value of `width` bits takes.

@@ -58,7 +58,7 @@ pub struct Pin {
 }
 
 impl Pin {
-    /// Its width in bits.
+    /// The width in bits.
     pub fn width(self) -> u32 {
         self.width
     }
@@ -79,7 +79,7 @@ pub struct Evaluator {
     /// By flat node: where its words' places stand in `places`.
     nodes: Vec<u32>,
     ports: Vec<Pin>,
-    /// What resets a module that resets itself.
+    /// The reset input of a module that resets itself.
     reset: Option<Pin>,
     settled: bool,
 }
@@ -261,7 +261,7 @@ impl Evaluator {
         self.settled = false;
     }
 
-    /// How many one-word steps are done to settle: what a cycle costs.
+    /// The number of one-word steps to settle: the cost of a cycle.
     pub fn steps(&self) -> usize {
         self.tape.steps.len()
     }

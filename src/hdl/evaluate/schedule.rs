@@ -4,7 +4,7 @@
 use super::lower::{Lowered, Source, Word};
 use super::tape::{KINDS, Kind, Step, Tape};
 
-/// Where words ended up.
+/// The places of the words.
 #[derive(Debug)]
 pub(super) struct Layout {
     pub tape: Tape,
@@ -12,7 +12,7 @@ pub(super) struct Layout {
     pub words: Vec<u64>,
     /// By word before scheduling: its place.
     pub place: Vec<u32>,
-    /// Where state begins.
+    /// Index of the first word of state.
     pub state: usize,
 }
 
@@ -55,7 +55,7 @@ pub(super) fn schedule(lowered: &Lowered, state: &[Word]) -> Layout {
     Layout { tape, words, place, state: first_state }
 }
 
-/// Greedy: of all kinds take the one with most steps ready, and go on with it until none is.
+/// Greedy: choose the kind with the most ready steps, and continue with it until none is ready.
 fn order(lowered: &Lowered) -> Vec<(Kind, Word)> {
     let count = lowered.sources.len();
     let is_step = |word: Word| matches!(lowered.sources[word as usize], Source::Step(..));

@@ -1,4 +1,4 @@
-//! What a clock edge changes: registers, delays and memories. All of them sample before any of them changes.
+//! The state that a clock edge changes: registers, delays and memories. All of them sample before any of them changes.
 
 use std::collections::BTreeMap;
 

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-/// What a step computes from the words `a`, `b`, `c` and the immediate. Words hold their value zero-extended.
+/// The operation of a step on the words `a`, `b`, `c` and the immediate. Words hold their value zero-extended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub(super) enum Kind {
@@ -48,7 +48,7 @@ pub(super) enum Kind {
     OneHot,
 }
 
-/// How many kinds there are.
+/// The number of kinds.
 pub(super) const KINDS: usize = Kind::OneHot as usize + 1;
 
 /// The immediate of a bit field: shift right by `low` (0 to 63), keep `bits` (1 to 64).

@@ -1,4 +1,4 @@
-//! What a delay is written as: registers, a shift register where it is narrow, a memory with a pointer otherwise.
+//! Delays: written as registers, as a shift register if narrow, otherwise as a memory with a pointer.
 
 use super::super::module::{LONGEST_REGISTER_DELAY, Node, Op, is_memory_delay};
 
@@ -6,14 +6,14 @@ use super::super::module::{LONGEST_REGISTER_DELAY, Node, Op, is_memory_delay};
 pub(super) enum DelayKind {
     /// One register: a delay of a few cycles is a chain of such.
     Register,
-    /// A register behind a line of so many words.
+    /// A register after a shift register of this number of words.
     Shift(u32),
-    /// A register behind a memory of so many words.
+    /// A register after a memory of this number of words.
     Memory(u32),
 }
 
 impl DelayKind {
-    /// The kind of a delay; nothing for other nodes.
+    /// The kind of a delay; `None` for other nodes.
     pub fn of(node: &Node) -> Option<Self> {
         let Op::Delay { cycles } = node.op else { return None };
         Some(if is_memory_delay(cycles, node.width) {
@@ -33,7 +33,7 @@ impl DelayKind {
         }
     }
 
-    /// What happens to the delay `node`, called `name`, at the clock edge.
+    /// The statements of the delay `node`, called `name`, at the clock edge.
     pub fn clocked(node: &Node, name: &str, source: &str) -> String {
         let width = node.width;
         match Self::of(node) {

@@ -1,4 +1,4 @@
-//! Expressions. Every operand is as wide as its context wants, so nothing is ever extended or cut silently.
+//! Expressions. Every operand has the width of its context, so nothing is ever extended or truncated silently.
 
 use super::super::module::{Module, Node, NodeId, Op};
 use super::names::Names;
@@ -34,7 +34,7 @@ impl Expressions<'_> {
         if single { text } else { format!("({text})") }
     }
 
-    /// What a node computes, in terms of its operands.
+    /// The expression of a node, in terms of its operands.
     pub fn definition(&self, id: NodeId) -> String {
         let node = self.module.node(id);
         let term = |position: usize| self.term(node.operands[position]);
@@ -155,7 +155,7 @@ pub(super) fn constant(width: u32, value: u128) -> String {
     }
 }
 
-/// `[7:0] `, or nothing for one bit.
+/// `[7:0] `, or an empty text for one bit.
 pub(super) fn range(width: u32) -> String {
     if width == 1 { String::new() } else { format!("[{}:0] ", width - 1) }
 }

@@ -3,7 +3,7 @@
 use super::super::module::{Module, Op};
 use super::expression::{constant, range};
 
-/// Whether the module is a table between registers and nothing else, which is what a block memory does.
+/// True if the module is only a table between registers, which a block memory can implement.
 pub(super) fn is_block_memory(module: &Module) -> bool {
     let is_part = |op: &Op| matches!(op, Op::Input | Op::Delay { .. } | Op::Lookup(_));
     module.nodes.iter().all(|node| is_part(&node.op)) && module.latency == 2

@@ -13,16 +13,16 @@ mod unused;
 
 use super::module::{Module, Reset};
 
-/// How Verilog is written.
+/// Options of the printer.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Style {
-    /// How registers are reset.
+    /// The reset style of registers.
     pub reset: Reset,
-    /// What the names of this module and of those it instantiates begin with.
+    /// The prefix of the names of this module and of those that it instantiates.
     pub prefix: String,
     /// Lines every file's header carries, such as the generator and its parameters.
     pub header: Vec<String>,
-    /// Which memories the family has.
+    /// The kinds of memory that the family has.
     pub memories: Memories,
 }
 

@@ -1,4 +1,4 @@
-//! Which nodes are declared under a name of their own, and which name that is.
+//! Decides which nodes are declared, and their names.
 
 use std::collections::{BTreeSet, HashMap, HashSet};
 
@@ -8,11 +8,11 @@ use super::super::module::{Module, Node, NodeId, Op};
 /// A derived name longer than this is cut back to its first part.
 const LONGEST_DERIVED: usize = 36;
 
-/// What is known of each node before text is made.
+/// Properties of each node before text is made.
 pub(super) struct Names {
     /// The declared name, `None` for what is written in place.
     pub declared: Vec<Option<String>>,
-    /// Whether the name is that of an output port, so that the port is the declaration.
+    /// True if the name is that of an output port, so that the port is the declaration.
     pub is_port: Vec<bool>,
 }
 
@@ -155,7 +155,7 @@ fn join(left: &str, word: &str, right: &str) -> String {
     format!("{}_{word}", cut.trim_end_matches('_'))
 }
 
-/// Two values of one name are told apart by a number: the only counter in a name.
+/// Two values of one name are distinguished by a number: the only counter in a name.
 fn unique(taken: &HashSet<String>, wanted: String) -> String {
     let wanted = if wanted.starts_with(|c: char| c.is_ascii_digit()) { format!("n{wanted}") } else { wanted };
     if !taken.contains(&wanted) {
@@ -171,7 +171,7 @@ fn unique(taken: &HashSet<String>, wanted: String) -> String {
     }
 }
 
-/// How often each node is used, and whether something needs it to be an identifier.
+/// The number of uses of each node, and whether a use needs an identifier.
 struct Uses {
     count: Vec<u32>,
     sliced: Vec<bool>,

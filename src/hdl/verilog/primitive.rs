@@ -17,7 +17,7 @@ pub(super) fn either(primitive: Primitive, module: &Module, behaviour: &str) -> 
 
 /// Ports `a` and `b` into the low bits of the factors, the product out of the low bits of the block's.
 ///
-/// The primitive has a port a bit, and wants each one connected.
+/// The primitive has one port per bit, and each must be connected.
 fn mult18x18d(module: &Module) -> String {
     let width = |name: &str| module.port(name).map_or(0, |(_, port)| port.width);
     let factor = |port: &str| {

@@ -86,7 +86,7 @@ fn is_own(names: &Names, id: NodeId, port: &str) -> bool {
     names.declared[id.index()].as_deref() == Some(port)
 }
 
-/// Whether a node is a Verilog `reg`.
+/// True if a node is a Verilog `reg`.
 pub(super) fn is_register(module: &Module, id: NodeId) -> bool {
     matches!(module.node(id).op, Op::Delay { .. } | Op::Register { .. } | Op::MemoryRead { .. })
         || matches!(module.node(id).op, Op::InstanceOutput { instance, .. }

@@ -36,7 +36,7 @@ impl<'a> Sections<'a> {
         pointers + &body
     }
 
-    /// Whether every value has its stage, so that the file can follow them in time.
+    /// True if every value has its stage, so that the file can be ordered by stage.
     fn is_feed_forward(&self) -> bool {
         let staged = |id: NodeId| match self.module.node(id).op {
             Op::Register { .. } => false,

@@ -1,9 +1,9 @@
-//! Bits that nothing reads, gathered in one wire whose name says so: linters then know it is meant.
+//! Unused bits, gathered in one wire whose name says so: linters then accept them.
 
 use super::super::module::{InstanceCount, Module, NodeId, Op};
 use super::names::Names;
 
-/// The text that names every declared bit nothing reads; empty if there is none.
+/// The text that names every declared bit without a reader; empty if there is none.
 pub(super) fn unused(module: &Module, names: &Names) -> String {
     let used = used_bits(module, names);
     let mut parts = Vec::new();
@@ -48,7 +48,7 @@ pub(super) fn unused(module: &Module, names: &Names) -> String {
     text + "};\n"
 }
 
-/// Output ports of an instance that nothing uses, with the name of the wire that takes each.
+/// Unused output ports of an instance, with the name of the wire for each.
 pub(super) fn unconnected(module: &Module, instance: usize) -> Vec<(usize, String)> {
     let used = |port: usize| module.nodes.iter().any(|node| node.op == Op::InstanceOutput { instance, port });
     let of = &module.instances[instance];
