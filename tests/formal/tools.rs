@@ -29,7 +29,7 @@ fn text(output: &Output) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
 }
 
-/// The text of the harness. If `only` is given, all other assertions are removed, because they might fail first.
+/// The text of the harness. If `only` is given, all other assertions become covers, because they might fail first.
 fn harness(name: &str, only: Option<&str>) -> String {
     let text = fs::read_to_string(root().join("tb/formal").join(name)).expect("the harness");
     let Some(only) = only else { return text };
