@@ -19,8 +19,8 @@ fn pair(touching: bool, number: u16) -> PairRecord {
     PairRecord::from_spheres([f32::from(number), 0.0, 0.0, 1.0], [f32::from(number), far, 0.0, 1.0])
 }
 
-/// Pairs of which none, one in twenty or all touch, with and without invalid pairs; and random pairs: 0, 1, 2, 3 and
-/// 177.
+/// Jobs in which no pair, one pair in twenty or every pair touches, with and without invalid pairs. Also random jobs of
+/// 0, 1, 2, 3 and 177 pairs.
 fn cases(config: &Config) -> Vec<Case> {
     let kinds: [fn(u16) -> bool; 3] = [|_| false, |number| number % 20 == 7, |_| true];
     let mut cases: Vec<Case> = [0, 1, 2, 3, 177].into_iter().map(|n| Case::random(config, n, n + 5)).collect();

@@ -1,4 +1,4 @@
-//! Files of pairs and contacts: what is written reads back, and what is wrong is named.
+//! Files of pairs and contacts: what is written reads back the same, and errors are named.
 
 use contact_afu::kernel::Reference;
 use contact_afu::number::Format;
@@ -18,7 +18,7 @@ fn put(folder: &TempDir, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
     file
 }
 
-/// NaN as CSV can have it.
+/// The word of a number after CSV, which has only one NaN.
 fn canonical(word: u32) -> u32 {
     if f32::from_bits(word).is_nan() { 0x7FC0_0000 } else { word }
 }
@@ -65,13 +65,13 @@ fn hits_survive_both_formats_with_their_numbers() {
     }
     let text = fs::read_to_string(folder.path().join("hits.csv")).unwrap();
     assert_eq!(text.lines().nth(1).unwrap().split(',').next(), Some(hits[0].0.to_string().as_str()));
-    // Nine words a record, the number first: an array that numpy reads.
+    // An array for numpy with nine words per record, the number first.
     let bytes = fs::read(folder.path().join("hits.npy")).unwrap();
     let header = String::from_utf8_lossy(&bytes[..128]).into_owned();
     assert!(header.contains("'<u4'") && header.contains(&format!("({}, 9)", hits.len())), "{header}");
     let data = &bytes[bytes.len() - 36 * hits.len()..];
     assert_eq!(data[..4], hits[0].0.to_le_bytes());
-    // Another order is somebody's mistake.
+    // Records in another order are rejected.
     for name in ["hits.csv", "hits.npy"] {
         let file = folder.path().join(name);
         pairs::write_hits(&file, &[hits[1], hits[0]]).unwrap();
@@ -107,7 +107,7 @@ fn columns_stand_in_any_order_and_spaces_do_not_count() {
     assert_eq!(pairs::read_pairs(Query::SphereSphere, &file).unwrap(), [expected]);
 }
 
-/// Our npy files are another library's too, and the other way round.
+/// Another library reads our npy files, and we read its files.
 #[test]
 fn npy_is_understood_by_another_library() {
     use npyz::WriterBuilder;
@@ -134,7 +134,7 @@ fn spheres(file: &Path) -> Result<Vec<PairRecord>, pairs::FileError> {
     pairs::read_pairs(Query::SphereSphere, file)
 }
 
-/// The one line that a wrong file gives, its folder left out.
+/// The single error line for an invalid file, without its folder.
 fn complaint<T: std::fmt::Debug>(read: fn(&Path) -> Result<T, pairs::FileError>, file: &Path) -> String {
     let error = read(file).unwrap_err().to_string();
     let name = file.display().to_string();
@@ -181,7 +181,7 @@ fn a_wrong_csv_is_named_by_line_and_field() {
     }
 }
 
-/// What pandas and NumPy write by default is refused with the option that cures it.
+/// Files in the default formats of pandas and NumPy are rejected, and the error names the option that helps.
 #[test]
 fn a_csv_of_a_common_tool_is_refused_with_its_cure() {
     let folder = folder();
@@ -218,7 +218,7 @@ fn a_csv_of_a_common_tool_is_refused_with_its_cure() {
     }
 }
 
-/// Arrays as NumPy's users have them are taken, and what had to be rounded is told.
+/// Arrays of NumPy's other types and shapes are accepted, and rounded numbers are reported.
 #[test]
 fn arrays_of_other_types_and_orders_are_converted() {
     use npyz::{Order, WriterBuilder};
@@ -268,7 +268,7 @@ fn arrays_of_other_types_and_orders_are_converted() {
 fn numbers_that_binary32_does_not_have_are_rounded_with_a_note() {
     let folder = folder();
     let header = |descr: &str| format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': (2, 8), }}\n");
-    // Sixteen numbers, of which the fourth and the ninth are not binary32's, and the last is a NaN.
+    // Sixteen numbers. The fourth and the ninth are not representable in binary32, and the last is a NaN.
     let mut values = [1.0_f64; 16];
     (values[3], values[8], values[15]) = (0.1, 1e-60, f64::NAN);
     let data: Vec<u8> = values.iter().flat_map(|value| value.to_be_bytes()).collect();
@@ -293,7 +293,7 @@ fn numbers_that_binary32_does_not_have_are_rounded_with_a_note() {
     assert_eq!(loaded.rounded, None);
 }
 
-/// A version 1.0 header.
+/// An npy file with a header of version 1.0.
 fn npy(dictionary: &str, data: usize) -> Vec<u8> {
     let length = (dictionary.len() as u16).to_le_bytes();
     [b"\x93NUMPY\x01\x00", &length[..], dictionary.as_bytes(), &vec![0; data]].concat()

@@ -1,4 +1,5 @@
-//! A sphere and a plane: the reference against its twin and ODE's formula, and what docs/sphere-plane.md promises.
+//! A sphere and a plane: the reference against its twin and ODE's formula, and the bounds that docs/sphere-plane.md
+//! promises.
 
 use crate::support::halves;
 use crate::support::watched::raises;
@@ -12,7 +13,7 @@ use contact_afu::query::{ContactRecord, Fields, Flow, PairRecord};
 
 /// Half a unit in the last place of binary32, relative.
 const U: f64 = 1.0 / (1 << 24) as f64;
-/// Half of the smallest binary32 number: what writing a number that is subnormal there can cost.
+/// Half of the smallest binary32 number: the maximum error from storing a subnormal number.
 const SMALLEST: f64 = f32::from_bits(1) as f64 / 2.0;
 
 fn reference(arithmetic: Format, fields: Fields) -> Reference {
@@ -29,7 +30,7 @@ const fn every_fields() -> [Fields; 8] {
     all
 }
 
-/// Random pairs, invalid ones among them, and hard ones.
+/// Random pairs, including invalid ones, and hard pairs.
 fn pairs(count: u64, seed: u64) -> Vec<PairRecord> {
     [Set::Random(count / 2), Set::Hard(count / 2)]
         .into_iter()
@@ -48,8 +49,8 @@ fn a_contact_is_on_the_sphere_and_touching_counts() {
     assert_eq!(at(3.5_f32.next_up()), ContactRecord::of_flags(Flow::Fake.flags()));
 }
 
-/// What is not asked for is a zero word; what is has the same bits whatever else is asked for. In binary32 the
-/// machine's `f32` and its twin agree.
+/// A field that is not selected is zero. A selected field has the same bits whichever others are selected. In binary32
+/// the machine's `f32` and its twin agree.
 #[test]
 fn the_twin_has_the_same_bits_for_every_subset_of_fields() {
     for format in ["paper", "wide", "half", "e6f9z"].map(|name| name.parse().expect("a format")) {
@@ -65,7 +66,7 @@ fn the_twin_has_the_same_bits_for_every_subset_of_fields() {
     }
 }
 
-/// How many contacts of binary32 differ from the formula's.
+/// The number of binary32 contacts that differ from those of the formula.
 fn differing(pairs: &[PairRecord], mend: impl Fn(&PairRecord, Answer) -> Answer) -> usize {
     let paper = reference(Format::BINARY32, Fields::ALL);
     let answers = Formula(SpherePlane).answers(pairs).expect("it always answers");
@@ -77,7 +78,7 @@ fn paper_is_the_formula_in_f32_and_a_planted_rounding_is_seen() {
     let pairs: Vec<_> = pairs(400_000, 4).into_iter().filter(|pair| pair.is_valid(SpherePlane)).collect();
     assert_eq!(differing(&pairs, |_, answer| answer), 0);
     let fused = |pair: &PairRecord, answer: Answer| {
-        // The last two sums rounded as one.
+        // The last two sums are rounded as one.
         let [x, y, z, r, nx, ny, nz, d] = pair.values();
         let along = f64::from((nx * x + ny * y) + nz * z);
         let depth = ((f64::from(d) - along) + f64::from(r)) as f32;
@@ -86,7 +87,7 @@ fn paper_is_the_formula_in_f32_and_a_planted_rounding_is_seen() {
     assert!(differing(&pairs, fused) > 10_000);
 }
 
-/// Of a wide format no value is subnormal or infinite: the hardware has no logic for those.
+/// In a wide format no value is subnormal or infinite, because the hardware has no logic for those.
 #[test]
 fn nothing_in_wide_leaves_the_normal_range() {
     for fields in every_fields() {
@@ -111,13 +112,13 @@ fn wide_is_binary32_wherever_that_neither_overflows_nor_underflows() {
             flows[flow as usize] += 1;
         }
     }
-    // The test means something: each flow is there, and where f32 fails the two do differ.
+    // The test is not vacuous: each flow occurs, and the two do differ where f32 fails.
     assert!([Flow::Invalid, Flow::Fake, Flow::Real].iter().all(|&flow| flows[flow as usize] > 10_000), "{flows:?}");
     assert!(different > 10_000, "{different} differ");
 }
 
-/// The largest errors, as multiples of what each is bounded by: of the decision and the depth, 2^-24 of the sizes that
-/// the depth is made of; of the position, 2^-24 of |c| + 2·|n·r|, axis by axis.
+/// The largest errors as multiples of their units. For the decision and the depth the unit is 2^-24 of the terms of the
+/// depth. For the position it is 2^-24 of |c| + 2·|n·r|, per axis.
 #[derive(Clone, Copy, Debug, Default)]
 struct Worst {
     decision: f64,
@@ -140,7 +141,7 @@ impl Worst {
         }
         self.other_normals += u32::from(found.0[3..6] != pair.0[4..7]);
         let error = |given: f32, exact: f64| {
-            // An infinity stands for the number that would follow the largest one, and for all beyond.
+            // An infinity stands for the number that would follow the largest one, and for all larger numbers.
             let largest = || 2.0_f64.powi(128).max(exact.abs()).copysign(given.into());
             let given = if given.is_infinite() { largest() } else { given.into() };
             ((given - exact).abs() - SMALLEST).max(0.0)
@@ -160,8 +161,8 @@ impl Worst {
         worst
     }
 
-    /// A product goes through five roundings on its way into the depth, n·r through two on its way into the position,
-    /// and the normal through none.
+    /// A product is rounded five times on its way into the depth, n·r twice on its way into the position, and the
+    /// normal never.
     fn is_as_promised(&self) -> bool {
         self.other_normals == 0 && self.decision <= 5.000_001 && self.depth <= 5.000_001 && self.position <= 1.000_001
     }
@@ -173,15 +174,15 @@ fn errors_of_wide_are_those_of_its_roundings() {
     let worst = Worst::of(&reference(Format::WIDE, Fields::ALL), &pairs);
     println!("{worst:?}");
     assert!(worst.is_as_promised(), "{worst:?}");
-    // Pairs that are hard come near what is promised, and a wrong rounding is seen.
+    // Hard pairs come close to the bounds, and wrong roundings are detected.
     assert!(worst.depth > 2.0 && worst.position > 0.9 && worst.decision > 1.0 && worst.wrong > 100, "{worst:?}");
     let toward_zero = Format::WIDE.with_rounding(Rounding::TowardZero);
     let worst = Worst::of(&reference(toward_zero, Fields::ALL), &pairs);
     assert!(!worst.is_as_promised() && worst.other_normals == 0, "{worst:?}");
 }
 
-/// No gross failure of `wide`, and the bits of `paper` where those are no failure of binary32's range. Returns how many
-/// pairs the profile paper fails grossly.
+/// `wide` has no gross failure, and it has the bits of `paper` except where binary32's range fails. Returns the number
+/// of gross failures of the profile paper.
 fn wide_never_fails_grossly(category: &Category, pairs: &[PairRecord]) -> usize {
     let (wide, paper) = (reference(Format::WIDE, Fields::ALL), reference(Format::BINARY32, Fields::ALL));
     let mut worst = Worst::default();
@@ -210,7 +211,7 @@ fn wide_never_fails_grossly_in_any_category() {
     assert!(failures > 0, "the pairs are hard: sums of binary32 overflow");
 }
 
-/// A million pairs of the hard set, 85 000 of each category: the share above, at length.
+/// The long version of the test above: a million pairs of the hard set, 85 000 of each category.
 #[test]
 #[ignore = "half a minute: a million truths"]
 fn wide_never_fails_grossly_in_a_million_pairs() {

@@ -1,4 +1,5 @@
-//! `Soft` against an independent soft-float library: every pair of words of an 8-bit format, random words of others.
+//! `Soft` against an independent soft-float library: every pair of words of an 8-bit format, and random words of
+//! others.
 
 use crate::support::Words;
 use contact_afu::number::{Format, Number, Rounding, Soft, Subnormals};
@@ -20,7 +21,7 @@ fn kept(exponent: usize, fraction: usize) -> Format {
     Format::new(exponent as u32, fraction as u32, Subnormals::Kept).unwrap()
 }
 
-/// The peer's word, with the one NaN of ours.
+/// The other library's word, with our only NaN instead of its NaNs.
 fn word<const E: usize, const F: usize>(value: Peer<E, F>) -> u128 {
     if value.is_nan() { kept(E, F).nan_bits() } else { value.to_bits() }
 }
@@ -37,18 +38,18 @@ fn check_pair<const E: usize, const F: usize>(a: u128, b: u128) {
     assert_eq!(x.root_exceeds(y), x.sqrt().gt(y), "root of {x:?} > {y:?}");
 }
 
-/// As [`check_pair`], rounded toward zero.
+/// Like [`check_pair`], but rounded toward zero.
 fn check_pair_toward_zero<const E: usize, const F: usize>(a: u128, b: u128) {
     let format = kept(E, F).with_rounding(Rounding::TowardZero);
     let (x, y) = (Soft::from_bits(format, a), Soft::from_bits(format, b));
     let (p, q) = (Peer::<E, F>::from_bits(a), Peer::<E, F>::from_bits(b));
-    // The peer's sum of opposite numbers, and ours, is +0 toward zero as it is to nearest.
+    // The sum of opposite numbers is +0 in both libraries, also when rounding toward zero.
     assert_eq!((x + y).bits(), word(p.add_r(q, Round::TowardZero).value), "{x:?} + {y:?}");
     assert_eq!((x - y).bits(), word(p.sub_r(q, Round::TowardZero).value), "{x:?} - {y:?}");
     assert_eq!((x * y).bits(), word(p.mul_r(q, Round::TowardZero).value), "{x:?} * {y:?}");
     assert_eq!((x / y).bits(), word(p.div_r(q, Round::TowardZero).value), "{x:?} / {y:?}");
     assert_eq!(x.root_exceeds(y), x.sqrt().gt(y), "root of {x:?} > {y:?}");
-    // The root is the largest number whose square is not above: binary64 has room for the squares.
+    // The root is the largest number whose square is not larger than the operand. Binary64 holds the squares exactly.
     let (root, value) = (x.sqrt(), x.to_f64());
     if F <= 25 && E <= 10 && value > 0.0 && value.is_finite() {
         let next = Soft::from_bits(format, root.bits() + 1).to_f64();
@@ -59,7 +60,7 @@ fn check_pair_toward_zero<const E: usize, const F: usize>(a: u128, b: u128) {
 fn check_conversion<const E: usize, const F: usize, const E2: usize, const F2: usize>(a: u128) {
     let ours = Soft::from_bits(kept(E, F), a).to(kept(E2, F2));
     let converted = <Peer<E, F> as FloatConvert<Peer<E2, F2>>>::convert(Peer::<E, F>::from_bits(a), &mut false);
-    // A conversion within one format leaves the word as it is, NaN included.
+    // A conversion within one format does not change the word, NaN included.
     let expected = if (E, F) == (E2, F2) { a } else { word(converted.value) };
     assert_eq!(ours.bits(), expected, "{a:#x} from e{E}f{F} to e{E2}f{F2}");
 }
@@ -130,7 +131,7 @@ fn binary32_survives_the_wide_format() {
     }
 }
 
-/// The root of an 8-bit word, by way of a binary64 root: double rounding is innocuous there, since 53 ≥ 2·3 + 2.
+/// The root of an 8-bit word, computed through a binary64 root: double rounding is harmless here, because 53 ≥ 2·3 + 2.
 #[test]
 fn every_root_and_reciprocal_of_an_8_bit_format() {
     let format = kept(5, 2);
@@ -144,8 +145,8 @@ fn every_root_and_reciprocal_of_an_8_bit_format() {
     }
 }
 
-/// The flushing twin of an 8-bit format, by way of a format with more exponents: what is below the smallest normal
-/// number, after rounding, is zero of its sign; and so are such operands.
+/// The flushing twin of an 8-bit format, computed through a format with more exponents. Results below the smallest
+/// normal number, after rounding, are zeros of the same sign; and so are such operands.
 #[test]
 fn every_pair_of_a_flushing_8_bit_format() {
     let format = Format::new(5, 2, Subnormals::Flushed).unwrap();

@@ -5,7 +5,7 @@ use contact_afu::number::{Format, Number, Soft};
 
 const MILLION: u64 = 1_000_000;
 
-/// A result's word, every NaN the canonical one.
+/// A result's word, with the canonical NaN for every NaN.
 fn word32(value: f32) -> u128 {
     if value.is_nan() { Format::BINARY32.nan_bits() } else { value.to_bits().into() }
 }
@@ -71,7 +71,7 @@ fn every_binary32_root() {
 fn every_binary32_reciprocal() {
     halves(1 << 23, |part| {
         for significand in part {
-            // In the middle of the range, and where the result is subnormal.
+            // In the middle of the range, and with subnormal results.
             for exponent in [0x3F80_0000, 0x7E80_0000] {
                 let x = f32::from_bits(exponent + significand as u32);
                 assert!(Soft::from_f32(x).recip().bits() == word32(1.0 / x), "1 / {x:?}");
@@ -111,12 +111,12 @@ fn binary64() {
     });
 }
 
-/// Two numbers around tangency: q is within 4 ulp of s², rounded.
+/// Two numbers close to tangency: q is within 4 ulp of the rounded s².
 fn near_tangent(words: &mut Words) -> (f32, f32) {
     loop {
         let s = f32::from_bits(words.one() as u32 & 0x7FFF_FFFF);
         let q = s * s;
-        // Down there the rounded square is 0 or too coarse, up there it is no number.
+        // If s is too small, the rounded square is zero or too coarse. If it is too large, the square is infinite.
         if !(s.is_normal() && q.is_normal()) {
             continue;
         }
@@ -128,7 +128,7 @@ fn near_tangent(words: &mut Words) -> (f32, f32) {
     }
 }
 
-/// The root-free decision is the root's, and comparing rounded squares is not.
+/// The decision without a root equals the one with a root. A comparison of rounded squares does not.
 #[test]
 fn decision_without_a_root() {
     use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
