@@ -7,7 +7,7 @@ use super::graph::Graph;
 use super::module::{Module, Primitive};
 use super::state::address_width;
 
-/// Whether what is written and what is read can be left out.
+/// True if the written and the read value can be left out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ports {
     /// A word is written in every cycle, and the word that was read goes to its register in every cycle.

@@ -1,4 +1,4 @@
-//! How long operations take on a target's fabric, for cutting pipelines. All times are in nanoseconds.
+//! Delays of operations on a target's fabric, for cutting pipelines. All times are in nanoseconds.
 
 use std::ops::RangeInclusive;
 
@@ -13,7 +13,7 @@ const TABLE_INDEX: RangeInclusive<u32> = 6..=9;
 /// The widest word of a block memory.
 const TABLE_BITS: u32 = 36;
 
-/// What a clocked design of a target can do between two registers.
+/// The delays of a target between two registers.
 ///
 /// Times are of register-to-register figures of one open flow (Yosys 0.70, nextpnr-ecp5 0.11, LFE5U-85F speed grade 8);
 /// routing is contained in each.
@@ -34,7 +34,7 @@ pub struct DelayModel {
     pub lut_inputs: u32,
     /// One level of two-way multiplexers, beside what its select line takes.
     pub mux: f64,
-    /// Of the period, what is kept for what no model of operations knows: where things come to lie, seed by seed.
+    /// The part of the period that is reserved for placement, which no model of operations knows.
     #[serde(default)]
     pub margin: f64,
     /// A line that goes to 2^n places takes n times this longer.
@@ -75,7 +75,7 @@ pub struct DelayModel {
     /// The primitive such a memory is written as; without one synthesis has to find it.
     #[serde(default)]
     pub memory_primitive: Option<Primitive>,
-    /// Whether what can be made without multiplier blocks is: for a device that runs out of them first.
+    /// True to make operators without multiplier blocks where possible: for a device that runs out of them first.
     #[serde(default)]
     pub spares_multipliers: bool,
     /// The primitive a multiplier block with registers is written as; without one synthesis has to find it.
@@ -146,7 +146,7 @@ impl DelayModel {
         }
     }
 
-    /// What a fit may change: every time in it. Positive, since it is moved by factors.
+    /// The parameters of a fit: all times. They are positive, because a fit changes them by factors.
     pub fn parameters(&self) -> [f64; 10] {
         let Self { register, lut, spread, gate, mux, fanout, carry, carry_bit, carry_out, multiplier, .. } = *self;
         [register, lut, spread, gate, mux, fanout, carry, carry_bit, carry_out, multiplier].map(|time| time.max(0.01))
@@ -269,7 +269,7 @@ impl DelayModel {
         }
     }
 
-    /// What a line to so many places takes beyond one to a single place.
+    /// The additional delay of a net with this fan-out, compared with a fan-out of one.
     fn line(&self, places: u32) -> f64 {
         self.fanout * f64::from(places.max(1)).log2()
     }
@@ -307,7 +307,7 @@ impl DelayModel {
     }
 }
 
-/// Whether a value comes straight out of a carry chain.
+/// True if a value comes straight out of a carry chain.
 fn is_chained(module: &Module, id: NodeId) -> bool {
     match module.node(id).op {
         Op::Slice { .. } => is_chained(module, module.node(id).operands[0]),

@@ -63,7 +63,7 @@ pub trait Number:
     fn select(condition: Self::Bool, yes: Self, no: Self) -> Self;
     /// This number in another format, rounded once; in its own format it stays as it is.
     fn to(self, format: Format) -> Self;
-    /// Gives the value a name in generated hardware; elsewhere nothing.
+    /// Gives the value a name in generated hardware; has no effect elsewhere.
     #[must_use]
     fn named(self, _name: &str) -> Self {
         self

@@ -51,7 +51,7 @@ impl Number for f32 {
     }
 
     /// # Panics
-    /// When `format` is not [`Format::BINARY32`]: an `f32` can be in no other.
+    /// Panics if `format` is not [`Format::BINARY32`], the only format of an `f32`.
     #[inline(always)]
     fn to(self, format: Format) -> Self {
         assert!(format == Format::BINARY32, "an f32 cannot be converted to {format}: use Soft");

@@ -1,6 +1,6 @@
-//! What arithmetic may choose beside its widths.
+//! Options of an arithmetic beside its widths.
 
-/// How a result that does not fit is rounded.
+/// The rounding of a result that does not fit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Rounding {
     /// To the nearest, ties to even (IEEE 754-2019, clause 4.3.1).
@@ -10,7 +10,7 @@ pub enum Rounding {
     TowardZero,
 }
 
-/// What happens between zero and the smallest normal number.
+/// The treatment of values between zero and the smallest normal number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Subnormals {
     /// Gradual underflow (IEEE 754-2019, clause 3.4).
@@ -20,7 +20,7 @@ pub enum Subnormals {
     Flushed,
 }
 
-/// How exact square roots and reciprocals are. Quotients of two numbers are always rounded correctly.
+/// The accuracy of square roots and reciprocals. Quotients of two numbers are always rounded correctly.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Roots {
     /// Rounded correctly, as every other operation.

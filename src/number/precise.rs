@@ -10,7 +10,7 @@ use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssi
 const POINT: u32 = 1472;
 /// 64-bit digits: 320 bits stand before the point, the sign among them.
 const DIGITS: usize = 28;
-/// What results are rounded to before they are rounded to a word: multiples of 2^−1100.
+/// Results are rounded to multiples of 2^−1100 before they are rounded to a word.
 const SNAP: u32 = 1100;
 
 /// A multiple of 2^−1472 below 2^319, in two's complement.
@@ -48,17 +48,17 @@ impl Precise {
         if value < 0.0 { -number } else { number }
     }
 
-    /// Whether it is below zero.
+    /// True if it is below zero.
     pub const fn is_negative(self) -> bool {
         self.0[DIGITS - 1] >> 63 == 1
     }
 
-    /// Whether it is zero.
+    /// True if it is zero.
     pub fn is_zero(self) -> bool {
         self == Self::ZERO
     }
 
-    /// Its magnitude.
+    /// The magnitude.
     #[must_use]
     pub fn abs(self) -> Self {
         if self.is_negative() { -self } else { self }
@@ -106,7 +106,7 @@ impl Precise {
         self.big() << POINT
     }
 
-    /// What does not fit (nothing that binary32 pairs give) loses its leading bits.
+    /// A value that does not fit loses its leading bits; binary32 pairs give no such value.
     fn from_big(value: &BigInt) -> Self {
         let mut number = Self::ZERO;
         for (digit, from) in number.0.iter_mut().zip(value.iter_u64_digits()) {

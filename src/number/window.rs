@@ -11,7 +11,7 @@ pub const WINDOW_BITS: u32 = 64;
 pub const WINDOW_LOST_BITS: u32 = 2;
 /// The same where an operand is not exact: each square is then within 2^17, all four and what is cut off within 2^20.
 pub const WINDOW_INEXACT_BITS: u32 = 20;
-/// Of a positive value so many leading bits must be right.
+/// Number of leading bits that must be right in a positive value.
 pub const WINDOW_LEADING_BITS: u32 = 28;
 
 /// Numbers in which the sign and the leading bits of a² − (x² + y² + z²) can be told, or told to be in doubt.

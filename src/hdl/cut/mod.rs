@@ -15,14 +15,14 @@ use super::error::{BuildErrors, Error};
 use super::graph::{Graph, Inner};
 use super::module::{Module, Node, NodeId, Op};
 
-/// What a pipeline's stages come to, by the delay model they were cut with.
+/// The timing of a pipeline's stages, by the delay model that they were cut with.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Timing {
     /// The clock it attains. Below the one asked for where a single operation takes longer than its period.
     pub clock_mhz: f64,
     /// The slowest stage, counted from 0.
     pub stage: u32,
-    /// What lies on that stage's slowest path, by name where it has one.
+    /// The named nodes on the critical path of that stage.
     pub critical: Vec<String>,
     /// Bits held in registers, those of the outputs among them.
     pub register_bits: u64,

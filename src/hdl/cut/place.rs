@@ -28,7 +28,7 @@ pub(super) struct Plan<'a> {
     pub ranks: Vec<u32>,
     /// Who uses a value, each once.
     users: Vec<Vec<NodeId>>,
-    /// Whether a value drives an output.
+    /// True if a value drives an output.
     is_output: Vec<bool>,
     /// Bits that a register of the value takes: constant parts of it need none.
     bits: Vec<u64>,
@@ -39,7 +39,7 @@ pub(super) struct Plan<'a> {
     /// Made of constants and parameters alone: good in any stage.
     pub invariant: Vec<bool>,
     pub stage: Vec<u32>,
-    /// How many stages there are.
+    /// The number of stages.
     pub stages: u32,
 }
 
@@ -110,7 +110,8 @@ impl<'a> Plan<'a> {
         plan
     }
 
-    /// Whether a path that long may stand in one stage. What takes longer alone may only share a stage with wiring.
+    /// True if a path of this delay may stand in one stage. An operation that is slower alone may only share a stage
+    /// with wiring.
     fn fits(&self, before: f64, delay: f64, behind: f64) -> bool {
         before + delay + behind <= self.budget.max(before).max(delay).max(behind)
     }
@@ -149,7 +150,7 @@ impl<'a> Plan<'a> {
         here.map(|operand| self.arrival[operand.index()]).fold(0.0, f64::max)
     }
 
-    /// What follows in the same stage, if the operation stands in `stage`.
+    /// The delay that follows in the same stage, if the operation stands in `stage`.
     fn tail_at(&self, id: NodeId, stage: u32) -> f64 {
         let behind = |user: &NodeId| match self.ranks[user.index()] {
             0 if self.stage[user.index()] == stage => self.delay[user.index()] + self.tail[user.index()],

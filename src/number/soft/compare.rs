@@ -4,7 +4,7 @@ use super::parts::{Class, Parts};
 use crate::number::{Format, Rounding};
 use std::cmp::Ordering;
 
-/// How a compares to b; nothing when either is NaN. −0 equals +0.
+/// Compares a with b; `None` if either is a NaN. −0 equals +0.
 pub fn order(format: Format, a: u128, b: u128) -> Option<Ordering> {
     Some(key(format, a)?.cmp(&key(format, b)?))
 }

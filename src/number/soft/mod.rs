@@ -65,7 +65,7 @@ impl Soft {
         self.format
     }
 
-    /// Whether the word is a NaN, canonical or not.
+    /// True if the word is a NaN, canonical or not.
     pub fn is_nan(self) -> bool {
         self.bits & !self.format.sign_mask() > self.format.infinity_bits()
     }

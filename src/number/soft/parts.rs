@@ -2,7 +2,7 @@
 
 use crate::number::{Format, Rounding};
 
-/// What kind of value a number is.
+/// The class of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
     Zero,
@@ -118,7 +118,7 @@ fn round(format: Format, exponent: i32, significand: u64) -> (u32, u64) {
     if biased < 1 {
         (0, 0)
     } else if biased >= format.special_exponent() as i32 {
-        // Toward zero nothing finite becomes infinite (IEEE 754-2019, clause 7.4).
+        // Rounding toward zero, no finite value becomes infinite (IEEE 754-2019, clause 7.4).
         if nearest {
             (format.special_exponent(), 0)
         } else {
