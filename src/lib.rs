@@ -62,6 +62,7 @@ pub mod record;
 pub mod report;
 pub mod scene;
 pub mod store;
+pub mod study;
 #[cfg(feature = "cosim")]
 pub mod sweep;
 pub mod synth;

@@ -9,7 +9,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use serde::de::DeserializeOwned;
+use serde::de::{DeserializeOwned, IgnoredAny};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
@@ -84,6 +84,18 @@ pub enum StoreError {
 struct Measurement<K, T> {
     key: K,
     value: T,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    spent: Option<Spent>,
+}
+
+/// What a measurement took on the machine that made it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Spent {
+    /// Seconds.
+    pub seconds: f64,
+    /// The most memory that the process and one of its children had held by then, MiB.
+    pub peak_memory_mib: u64,
 }
 
 impl Store {
@@ -121,11 +133,28 @@ impl Store {
     /// # Errors
     /// Returns an error if the file is there and cannot be read.
     pub fn get<T: DeserializeOwned>(&self, key: &Key) -> Result<Option<T>, StoreError> {
+        Ok(self.measurement(key)?.map(|kept| kept.value))
+    }
+
+    /// True if a measurement is kept under a key.
+    pub fn has(&self, key: &Key) -> bool {
+        self.measurement::<IgnoredAny>(key).is_ok_and(|kept| kept.is_some())
+    }
+
+    /// What the measurement under a key took; `None` if there is none, or if nobody took the time.
+    ///
+    /// # Errors
+    /// Returns the errors of [`Store::get`].
+    pub(crate) fn spent(&self, key: &Key) -> Result<Option<Spent>, StoreError> {
+        Ok(self.measurement::<IgnoredAny>(key)?.and_then(|kept| kept.spent))
+    }
+
+    fn measurement<T: DeserializeOwned>(&self, key: &Key) -> Result<Option<Measurement<Key, T>>, StoreError> {
         let path = self.file(key, "json");
         match fs::read(&path) {
             Ok(text) => {
                 let kept = serde_json::from_slice::<Measurement<Key, T>>(&text).ok();
-                Ok(kept.filter(|kept| kept.key == *key).map(|kept| kept.value))
+                Ok(kept.filter(|kept| kept.key == *key))
             }
             Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
             Err(error) => Err(StoreError::io("read", &path, error)),
@@ -137,9 +166,21 @@ impl Store {
     /// # Errors
     /// Returns an error if the value has no JSON, or the file system refuses.
     pub fn put(&self, key: &Key, value: &impl Serialize) -> Result<(), StoreError> {
-        let text = serde_json::to_vec(&Measurement { key, value }).map_err(|e| StoreError::Json(e.to_string()))?;
+        self.write(&Measurement { key, value, spent: None })
+    }
+
+    /// Keeps a measurement, and what it took.
+    ///
+    /// # Errors
+    /// Returns the errors of [`Store::put`].
+    pub(crate) fn put_spent(&self, key: &Key, value: &impl Serialize, spent: Spent) -> Result<(), StoreError> {
+        self.write(&Measurement { key, value, spent: Some(spent) })
+    }
+
+    fn write<T: Serialize>(&self, measurement: &Measurement<&Key, &T>) -> Result<(), StoreError> {
+        let text = serde_json::to_vec(measurement).map_err(|e| StoreError::Json(e.to_string()))?;
         self.create()?;
-        let path = self.file(key, "json");
+        let path = self.file(measurement.key, "json");
         files::replace(&path, |out| out.write_all(&text)).map_err(|error| StoreError::io("write", &path, error))
     }
 
@@ -165,20 +206,29 @@ impl Store {
     /// # Errors
     /// Returns an error if the folder is there and cannot be read.
     pub fn list(&self) -> Result<Vec<Key>, StoreError> {
-        let fail = |error| StoreError::io("read", &self.folder, error);
-        let entries = match fs::read_dir(&self.folder) {
-            Ok(entries) => entries,
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
-            Err(error) => return Err(fail(error)),
-        };
-        let mut paths =
-            entries.map(|entry| entry.map(|entry| entry.path())).collect::<Result<Vec<_>, _>>().map_err(fail)?;
-        paths.sort();
+        let paths = self.files("json")?;
         let key = |path: &PathBuf| {
             let kept: Measurement<Key, Value> = serde_json::from_slice(&fs::read(path).ok()?).ok()?;
             Some(kept.key).filter(|key| self.file(key, "json") == *path)
         };
         Ok(paths.iter().filter_map(key).collect())
+    }
+
+    /// The files with this extension, in the order of their names.
+    ///
+    /// # Errors
+    /// Returns an error if the folder is there and cannot be read.
+    pub(crate) fn files(&self, extension: &str) -> Result<Vec<PathBuf>, StoreError> {
+        let fail = |error| StoreError::io("read", &self.folder, error);
+        let entries = match fs::read_dir(&self.folder) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
+            entries => entries.map_err(fail)?,
+        };
+        let paths = entries.map(|entry| entry.map(|entry| entry.path())).collect::<Result<Vec<_>, _>>();
+        let mut paths = paths.map_err(fail)?;
+        paths.retain(|path| path.extension().is_some_and(|of| of == extension));
+        paths.sort();
+        Ok(paths)
     }
 
     /// Where a file beside a measurement lies.
@@ -196,13 +246,14 @@ impl Store {
         made.map_err(|error| StoreError::io("create a folder in", &self.folder, error))
     }
 
-    fn create(&self) -> Result<(), StoreError> {
+    /// Makes the folder, if it is not there.
+    pub(crate) fn create(&self) -> Result<(), StoreError> {
         fs::create_dir_all(&self.folder).map_err(|error| StoreError::io("create", &self.folder, error))
     }
 }
 
 impl StoreError {
-    fn io(action: &'static str, path: &Path, error: io::Error) -> Self {
+    pub(crate) fn io(action: &'static str, path: &Path, error: io::Error) -> Self {
         Self::Io { action, path: path.to_owned(), error: files::without_path(error) }
     }
 }

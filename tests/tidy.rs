@@ -11,6 +11,7 @@ const HOUSE: &[(&str, &[&str])] = &[
     ("number", &[]),
     ("files", &[]),
     ("store", &["files"]),
+    ("study", &["store", "files"]),
     ("hdl", &[]),
     ("plot", &[]),
     ("query", &["number"]),
@@ -34,20 +35,23 @@ const HOUSE: &[(&str, &[&str])] = &[
     ("tools", &["cosim"]),
     (
         "synth",
-        &["store", "query", "record", "tools", "config", "afu", "pipeline", "operator", "hdl", "number", "files"],
+        &[
+            "study", "store", "query", "record", "tools", "config", "afu", "pipeline", "operator", "hdl", "number",
+            "files",
+        ],
     ),
     (
         "report",
         &[
-            "query", "record", "plot", "synth", "verify", "host", "tools", "cosim", "config", "afu", "link", "pairs",
-            "number", "files",
+            "study", "query", "record", "plot", "synth", "verify", "host", "tools", "cosim", "config", "afu", "link",
+            "pairs", "number", "files",
         ],
     ),
     (
         "accuracy",
         &[
-            "store", "query", "record", "report", "plot", "synth", "verify", "host", "cosim", "config", "ode", "afu",
-            "link", "pairs", "kernel", "number",
+            "study", "store", "query", "record", "report", "plot", "synth", "verify", "host", "cosim", "config", "ode",
+            "afu", "link", "pairs", "kernel", "number",
         ],
     ),
     (
@@ -67,8 +71,8 @@ const HOUSE: &[(&str, &[&str])] = &[
     (
         "sweep",
         &[
-            "store", "query", "record", "report", "plot", "synth", "verify", "host", "cosim", "config", "afu", "link",
-            "pairs", "number",
+            "study", "store", "query", "record", "report", "plot", "synth", "verify", "host", "cosim", "config", "afu",
+            "link", "pairs", "number",
         ],
     ),
 ];

@@ -15,7 +15,7 @@ mod hard;
 mod link;
 mod list;
 mod machine;
-#[cfg(feature = "cosim")]
+mod merge;
 mod origin;
 mod output;
 mod pairs;
@@ -24,6 +24,7 @@ mod paper;
 mod progress;
 mod rtl;
 mod scene;
+mod study;
 #[cfg(feature = "cosim")]
 mod sweep;
 mod synth;
@@ -67,6 +68,7 @@ enum Command {
     Accuracy(accuracy::Accuracy),
     #[cfg(feature = "cosim")]
     Choose(choose::Choose),
+    Merge(merge::Merge),
     Hard(hard::Hard),
     Doctor(doctor::Doctor),
     Completions(completions::Completions),
@@ -100,6 +102,7 @@ fn run(program: &Program) -> Result<(), Failure> {
         Command::Accuracy(options) => accuracy::run(options),
         #[cfg(feature = "cosim")]
         Command::Choose(options) => choose::run(options),
+        Command::Merge(options) => merge::run(options),
         Command::Hard(options) => hard::run(options),
         Command::Doctor(options) => doctor::run(options),
         Command::Completions(options) => completions::run(options),

@@ -8,6 +8,45 @@ pub fn command() -> String {
     std::iter::once("afu".to_owned()).chain(std::env::args().skip(1)).collect::<Vec<_>>().join(" ")
 }
 
+/// Options with a value, and flags, that decide no result of a study: where results go, and who measures.
+const ELSEWHERE: [&str; 8] = ["--out", "--store", "--shard", "--lease", "--limit", "--study", "--json", "--jobs"];
+const FLAGS: [&str; 1] = ["--force"];
+
+/// The command line of a study without options that decide no result: the same for all processes that work on it.
+pub fn study() -> String {
+    study_of(std::env::args().skip(1))
+}
+
+fn study_of(arguments: impl Iterator<Item = String>) -> String {
+    let mut words = vec!["afu".to_owned()];
+    let mut arguments = arguments;
+    while let Some(word) = arguments.next() {
+        let name = word.split('=').next().unwrap_or_default();
+        if FLAGS.contains(&name) {
+            continue;
+        }
+        if ELSEWHERE.contains(&name) {
+            if name == word {
+                arguments.next();
+            }
+            continue;
+        }
+        words.push(word);
+    }
+    quoted(&words)
+}
+
+/// Words as a shell takes them: those that it would change stand in quotes.
+pub fn quoted<T: AsRef<str>>(words: &[T]) -> String {
+    let is_plain =
+        |word: &str| !word.is_empty() && word.chars().all(|c| c.is_alphanumeric() || "_-./,:=+@%".contains(c));
+    let quote = |word: &T| match word.as_ref() {
+        word if is_plain(word) => word.to_owned(),
+        word => shlex::try_quote(word).map_or_else(|_| word.to_owned(), |quoted| quoted.into_owned()),
+    };
+    words.iter().map(quote).collect::<Vec<_>>().join(" ")
+}
+
 /// What the processor calls itself.
 pub fn processor() -> String {
     let info = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
@@ -43,7 +82,14 @@ fn day(mut days: u64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::day;
+    use super::{day, study_of};
+
+    #[test]
+    fn a_study_s_command_says_what_decides_its_results() {
+        let text = "sweep --scpus 1..4 --out o --store=s --shard 1/2 --force --pairs 'my pairs.csv' --json - --lease 5 --synth";
+        let words = shlex::split(text).expect("quoted well");
+        assert_eq!(study_of(words.into_iter()), "afu sweep --scpus 1..4 --pairs 'my pairs.csv' --synth");
+    }
 
     #[test]
     fn days_are_those_of_the_calendar() {

@@ -1,6 +1,5 @@
 //! What long work shows on standard error: a bar on a terminal, lines elsewhere.
 
-#[cfg(feature = "cosim")]
 use std::io::{self, IsTerminal};
 use std::time::Duration;
 
@@ -28,7 +27,6 @@ pub fn behind(bar: &ProgressBar, what: &str) {
 }
 
 /// Says something where there is no terminal to show a bar.
-#[cfg(feature = "cosim")]
 pub fn line(what: &str) {
     if !io::stderr().is_terminal() {
         eprintln!("{what}");

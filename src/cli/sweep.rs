@@ -5,12 +5,13 @@ use std::path::PathBuf;
 use clap::Args;
 use contact_afu::config::Config;
 use contact_afu::report::table::counted;
-use contact_afu::sweep::{SweepError, SweepResults, Swept, Task, fill};
+use contact_afu::sweep::{Request, SweepError, SweepResults, Swept, Task};
 
 use super::failure::{Failure, Kind};
 use super::list::List;
 use super::machine::{Machine, warn_of_unused_scpus};
-use super::{link, output, progress};
+use super::study::Shared;
+use super::{link, output, progress, study};
 
 /// Run the same job on AFUs of different sizes: throughput, latency and simulation time
 ///
@@ -34,14 +35,14 @@ pub struct Sweep {
     /// Seed of random pairs, of the link, and of the initial values of registers without reset
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = super::usage::seed)]
     seed: u64,
-    /// Folder to write: report.html (table and plot), throughput.svg, manifest.json with all results, sweep.csv, and
-    /// measurements/ to resume from
-    #[arg(long, value_name = "DIR")]
-    out: PathBuf,
+    /// Folder to write: report.html (table and plot), throughput.svg, manifest.json with all results, sweep.csv,
+    /// host.csv (seconds to build and simulate), and measurements/ to resume from
+    #[arg(long, value_name = "DIR", required_unless_present = "store")]
+    out: Option<PathBuf>,
     /// Write into a folder that afu did not make, or replace another sweep; other files stay
-    #[arg(long)]
+    #[arg(long, requires = "out")]
     force: bool,
-    /// Also write the results as JSON (schema contact-afu/sweep/1) to a file, or to standard output for -
+    /// Also write the results as JSON (schema contact-afu/sweep/2) to a file, or to standard output for -
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
     /// Also count the LUTs, flip-flops and DSP blocks of one SCPU of each AFU: Yosys, for an ECP5
@@ -49,6 +50,8 @@ pub struct Sweep {
     synth: bool,
     #[command(flatten)]
     machine: Machine,
+    #[command(flatten)]
+    shared: Shared,
 }
 
 pub fn run(options: &Sweep) -> Result<(), Failure> {
@@ -59,25 +62,36 @@ pub fn run(options: &Sweep) -> Result<(), Failure> {
     let pairs = super::pairs::load(base.query, &options.pairs, options.seed)?;
     let task = Task { pairs: &pairs, link: &link, seed: options.seed, counts: options.synth };
     let swept = Swept { scpus: options.scpus.0.clone(), interval: options.interval.0.clone() };
-    let mut results = SweepResults::new(&options.pairs, &options.link, &task, &base, swept);
+    let results = SweepResults::new(&options.pairs, &options.link, &task, &base, swept);
+    let out = options.out.as_deref();
+    if let Some(folder) = out {
+        results.check(folder, options.force)?;
+    }
+    let request = Request::new(results, &configs, &task)?;
+    options.shared.keep("sweep", &request)?;
+    let store = study::store(options.shared.store.as_deref(), out)?;
+    let resumed = request.known(&store);
+    let mut worker = options.shared.worker();
     let bar = progress::spinner("");
-    let resumed = fill(&mut results, &configs, &task, &options.out, options.force, |config| {
-        bar.set_message(format!(
-            "{}, interval {}: building the model and running it",
-            counted(config.scpus.into(), "SCPU"),
-            config.interval
-        ));
-    });
+    let results = request.run(&configs, &task, &store, &mut worker, out, |news| options.shared.show(&bar, &news));
     bar.finish_and_clear();
-    let resumed = resumed?;
+    let results = results?;
     if resumed > 0 {
-        eprintln!("{resumed} of {} rows come from an earlier run", results.rows.len());
+        eprintln!("{resumed} of {} come from an earlier run", counted(configs.len() as u64, "row"));
     }
-    let stdout_taken = options.json.as_deref().is_some_and(output::is_stdout);
-    output::show(&results.table(), stdout_taken)?;
-    if let Some(path) = &options.json {
-        output::json(path, &results)?;
+    if !options.shared.is_part() {
+        let stdout_taken = options.json.as_deref().is_some_and(output::is_stdout);
+        output::show(&results.table(), stdout_taken)?;
+        if let Some(path) = &options.json {
+            output::json(path, &results)?;
+        }
     }
+    options.shared.end(&worker)?;
+    passed(&results)
+}
+
+/// An error if an AFU of the sweep is wrong.
+pub fn passed(results: &SweepResults) -> Result<(), Failure> {
     let bad: Vec<String> = results.rows.iter().filter(|row| !row.passed()).map(|row| row.scpus.to_string()).collect();
     if bad.is_empty() {
         Ok(())

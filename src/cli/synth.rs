@@ -10,14 +10,16 @@ use contact_afu::number::Format;
 use contact_afu::operator::{Operator, Values};
 use contact_afu::pipeline::is_normal;
 use contact_afu::query::Fields;
-use contact_afu::report::folder::replace_file;
+use contact_afu::report::folder::{check_study, replace_file};
+use contact_afu::report::synth_study::{SCHEMA, SynthStudy};
 use contact_afu::report::{intervals, operators, synth as report};
-use contact_afu::synth::{self, Figures, SynthError, Target, Unit, synthesise};
+use contact_afu::synth::{self, Figures, Request, SynthError, Target, Unit};
 
 use super::failure::{Failure, Kind};
 use super::list::List;
 use super::machine::{One, warn_of_unused_scpus};
-use super::{output, progress};
+use super::study::Shared;
+use super::{output, progress, study};
 
 /// Report the area and clock of an operator, an SCPU or an AFU on an FPGA
 ///
@@ -32,13 +34,13 @@ pub struct Synth {
     #[arg(long)]
     kernel: bool,
     /// Fit the target's delay model to routed circuits and write the model and its errors to FILE
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["operator", "kernel", "json", "check"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["operator", "kernel", "json", "check", "store"])]
     fit: Option<PathBuf>,
     /// Print docs/operators.md, operators beside the best public cores, from files that --json wrote
-    #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with_all = ["operator", "kernel", "json", "check", "fit"])]
+    #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with_all = ["operator", "kernel", "json", "check", "store", "fit"])]
     table: Vec<PathBuf>,
     /// Print docs/interval.md, an SCPU's area by initiation interval, from files that --json wrote
-    #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with_all = ["operator", "kernel", "json", "check", "fit", "table"])]
+    #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with_all = ["operator", "kernel", "json", "check", "store", "fit", "table"])]
     intervals: Vec<PathBuf>,
     /// Also write the picture of --intervals to an SVG file
     #[arg(long, value_name = "FILE", requires = "intervals")]
@@ -60,8 +62,16 @@ pub struct Synth {
     /// Also write the figures as JSON to a file, or to standard output for -
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
+    /// Folder to write: report.html, figures.csv, manifest.json with all figures, and measurements/ to resume from
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["fit", "table", "intervals"])]
+    out: Option<PathBuf>,
+    /// Write into a folder that afu did not make, or replace another study; other files stay
+    #[arg(long, requires = "out")]
+    force: bool,
     #[command(flatten)]
     one: One,
+    #[command(flatten)]
+    shared: Shared,
 }
 
 pub fn run(options: &Synth) -> Result<(), Failure> {
@@ -79,20 +89,31 @@ pub fn run(options: &Synth) -> Result<(), Failure> {
     let seeds = if options.no_route { Vec::new() } else { options.seeds.0.clone() };
     let how = synth::Options { target, seeds };
     let units = units(options, &config, target)?;
-    let spinner = progress::spinner("");
-    let mut all = Vec::new();
-    for unit in &units {
-        all.push(synthesise(unit, &how, |what| spinner.set_message(what.to_owned()))?);
+    let out = options.out.as_deref();
+    if let Some(folder) = out {
+        check_study(folder, SCHEMA, options.force)?;
     }
-    spinner.finish_and_clear();
-
-    output::show(&report::text(&all), options.json.as_deref().is_some_and(output::is_stdout))?;
-    if let Some(path) = &options.json {
-        match all.as_slice() {
-            [one] => output::json(path, one)?,
-            all => output::json(path, &all)?,
-        }
+    let request = Request::new(&units, &how)?;
+    options.shared.keep("synth", &request)?;
+    let store = study::store(options.shared.store.as_deref(), out)?;
+    let mut worker = options.shared.worker();
+    if let Some(folder) = out {
+        // From the first measurement on the folder is known as ours.
+        SynthStudy::new(Vec::new(), &worker).save(folder)?;
     }
+    let bar = progress::spinner("");
+    let step = |what: &str| bar.set_message(what.to_owned());
+    let all = request.run(&units, &how, &store, &mut worker, step, |news| options.shared.show(&bar, &news));
+    bar.finish_and_clear();
+    let results = SynthStudy::new(all?, &worker);
+    if let Some(folder) = out {
+        results.save(folder)?;
+    }
+    let all = &results.figures;
+    if !options.shared.is_part() && !all.is_empty() {
+        show(&results, options.json.as_deref())?;
+    }
+    options.shared.end(&worker)?;
     match all.iter().find(|figures| options.check && figures.meets() == Some(false)) {
         None => Ok(()),
         Some(slow) => {
@@ -100,6 +121,16 @@ pub fn run(options: &Synth) -> Result<(), Failure> {
             let message = format!("{}: expected {} MHz, found {clock:.1}", report::title(slow), slow.asked_mhz);
             Err(Failure::new(Kind::Failed, message))
         }
+    }
+}
+
+/// Shows the tables, and writes the figures as JSON: one unit's, or a list.
+pub fn show(results: &SynthStudy, json: Option<&Path>) -> Result<(), Failure> {
+    output::show(&results.text(), json.is_some_and(output::is_stdout))?;
+    match (json, results.figures.as_slice()) {
+        (None, _) => Ok(()),
+        (Some(path), [one]) => output::json(path, one),
+        (Some(path), _) => output::json(path, &results.figures),
     }
 }
 

@@ -15,7 +15,7 @@ use super::Program;
 pub const GROUPS: [(&str, &[&str]); 4] = [
     ("Hardware", &["rtl", "synth"]),
     ("Simulation", &["cosim", "sweep", "pairs"]),
-    ("Studies", &["accuracy", "choose", "hard", "paper", "scene"]),
+    ("Studies", &["accuracy", "choose", "hard", "paper", "scene", "merge"]),
     ("This program", &["doctor", "completions", "help"]),
 ];
 

@@ -144,7 +144,7 @@ pub fn check(target: &Path, force: bool) -> Result<(), Error> {
 ///
 /// # Errors
 /// Returns the errors of [`check`], or [`Error::Other`].
-pub(crate) fn check_study(target: &Path, schema: &str, force: bool) -> Result<(), Error> {
+pub fn check_study(target: &Path, schema: &str, force: bool) -> Result<(), Error> {
     check(target, force)?;
     // Within a study the number alone differs.
     let study = |schema: &str| schema.trim_end_matches(|c: char| c.is_ascii_digit()).to_owned();

@@ -13,6 +13,7 @@ pub mod manifest;
 pub mod operators;
 pub mod page;
 pub mod synth;
+pub mod synth_study;
 pub mod table;
 #[cfg(feature = "cosim")]
 pub mod tally;

@@ -4,10 +4,12 @@ use super::table::{figure, grouped, table};
 use crate::synth::fit::{Fit, Point};
 use crate::synth::{Figures, Hop};
 
+/// The columns of [`row`].
+pub(super) const HEADING: [&str; 11] =
+    ["unit", "asked MHz", "model MHz", "MHz", "cycles", "ns", "LUT", "FF", "DSP", "BRAM", "MHz by seed"];
+
 /// The figures of the units side by side, then the critical path of each.
 pub fn text(all: &[Figures]) -> String {
-    const HEADING: [&str; 11] =
-        ["unit", "asked MHz", "model MHz", "MHz", "cycles", "ns", "LUT", "FF", "DSP", "BRAM", "MHz by seed"];
     let mut out = table(&HEADING, all.iter().map(row));
     for figures in all.iter().filter(|figures| !figures.critical.is_empty()) {
         out += &format!("\n\n{}: critical path\n{}", title(figures), path(&figures.critical));
@@ -25,7 +27,8 @@ pub fn title(figures: &Figures) -> String {
     format!("{} {}{}, {}", figures.unit, figures.profile, by(figures), figures.target)
 }
 
-fn row(figures: &Figures) -> [String; 11] {
+/// The cells of a unit.
+pub(super) fn row(figures: &Figures) -> [String; 11] {
     let seeds: Vec<String> = figures.seeds.iter().map(|run| format!("{}: {:.1}", run.seed, run.clock_mhz)).collect();
     [
         title(figures),
@@ -43,7 +46,7 @@ fn row(figures: &Figures) -> [String; 11] {
 }
 
 /// A path, one line per hop: stage, logic delay, routing delay, signal.
-fn path(hops: &[Hop]) -> String {
+pub(super) fn path(hops: &[Hop]) -> String {
     let line = |hop: &Hop| {
         let stage = hop.stage.map_or_else(String::new, |stage| format!("stage {stage}"));
         format!("  {stage:<9} {:5.2} ns logic, {:5.2} ns routing  {}", hop.logic_ns, hop.routing_ns, hop.signal)

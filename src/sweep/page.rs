@@ -28,6 +28,7 @@ pub(super) fn page(results: &SweepResults) -> String {
         }
         h2 { "Rows" }
         (rows(results))
+        @if !results.missing.is_empty() { p { b { "Missing: " } (results.missing.join("; ")) "." } }
         p.soft { code { "sweep.csv" } " has every column, " code { "manifest.json" } " the configuration." }
     };
     page::page("Throughput by number of SCPUs", &body)
@@ -101,7 +102,7 @@ fn rows(results: &SweepResults) -> Markup {
     let counted = results.rows.iter().any(|row| row.scpu_luts.is_some());
     let heading = ["SCPUs", "interval", "M pairs/s", "share of the link limit", "latency, cycles", "cycles per pair"];
     let area = counted.then_some(["LUT per SCPU", "DSP per SCPU"]);
-    let heading = heading.into_iter().chain(area.into_iter().flatten()).chain(["mismatches", "build, s"]);
+    let heading = heading.into_iter().chain(area.into_iter().flatten()).chain(["mismatches"]);
     let count = |count: Option<u64>| count.map_or_else(|| "–".to_owned(), grouped);
     let row = |row: &Row| {
         let figures = [
@@ -113,8 +114,7 @@ fn rows(results: &SweepResults) -> Markup {
             figure(row.cycles_per_pair, 3),
         ];
         let area = counted.then(|| [count(row.scpu_luts), count(row.scpu_dsps)]);
-        let rest = [grouped(row.mismatches), format!("{:.1}", row.build_seconds)];
-        figures.into_iter().chain(area.into_iter().flatten()).chain(rest).collect()
+        figures.into_iter().chain(area.into_iter().flatten()).chain([grouped(row.mismatches)]).collect()
     };
     table("", &heading.collect::<Vec<_>>(), 0, &results.rows.iter().map(row).collect::<Vec<_>>())
 }
@@ -142,8 +142,6 @@ mod tests {
             bytes_written: 3200,
             latency_cycles: Some(80),
             clock_mhz: 200.0,
-            build_seconds: 1.0,
-            simulation_seconds: 1.0,
             scpu_luts: luts,
             scpu_ffs: luts,
             scpu_dsps: luts,

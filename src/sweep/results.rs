@@ -6,6 +6,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use super::row::HostSeconds;
 use super::{Row, Task, fingerprint, page};
 use crate::config::Config;
 use crate::report::table::table;
@@ -13,20 +14,23 @@ use crate::report::{folder, manifest};
 use crate::store::sha256;
 
 /// The schema of a sweep's `manifest.json`.
-pub const SCHEMA: &str = "contact-afu/sweep/1";
+pub const SCHEMA: &str = "contact-afu/sweep/2";
 /// The rows alone, in a sweep's folder.
 const CSV: &str = "sweep.csv";
+/// Seconds on the machine that simulated: the only file of a sweep that differs from run to run.
+const HOST: &str = "host.csv";
 /// For people: a page, and its first plot alone.
 const PAGE: &str = "report.html";
 const PICTURE: &str = "throughput.svg";
 
 /// A sweep: what every AFU was given, and the rows so far. Its folder has `manifest.json`, by which it is known,
-/// the rows alone as `sweep.csv`, the page `report.html` and its plot `throughput.svg`.
+/// the rows alone as `sweep.csv`, the page `report.html`, its plot `throughput.svg`, and `host.csv`, the seconds that
+/// models and simulations took.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SweepResults {
-    schema: String,
-    version: String,
+    pub(super) schema: String,
+    pub(super) version: String,
     /// The pairs: a set's name, or a file.
     pub pairs: String,
     /// SHA-256 of the pairs' words.
@@ -45,6 +49,11 @@ pub struct SweepResults {
     pub swept: Swept,
     /// The rows, in the order asked for.
     pub rows: Vec<Row>,
+    /// The points that are missing, or that failed.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub missing: Vec<String>,
+    #[serde(skip)]
+    pub(super) host: Vec<HostSeconds>,
 }
 
 /// The options that a sweep varies.
@@ -72,6 +81,8 @@ impl SweepResults {
             config: config.clone(),
             swept,
             rows: Vec::new(),
+            missing: Vec::new(),
+            host: Vec::new(),
         }
     }
 
@@ -146,6 +157,7 @@ impl SweepResults {
         folder::create(folder)?;
         folder::replace_json(&folder.join(manifest::NAME), self)?;
         folder::replace_csv(&folder.join(CSV), |out| self.rows.iter().try_for_each(|row| out.serialize(row)))?;
+        folder::replace_csv(&folder.join(HOST), |out| self.host.iter().try_for_each(|row| out.serialize(row)))?;
         folder::replace_file(&folder.join(PICTURE), page::throughput(self).svg().as_bytes())?;
         folder::replace_file(&folder.join(PAGE), page::page(self).as_bytes())
     }
@@ -185,8 +197,6 @@ mod tests {
             bytes_written: 320,
             latency_cycles: None,
             clock_mhz: 200.0,
-            build_seconds: 1.5,
-            simulation_seconds: 0.5,
             rtl_sha256: "00".to_owned(),
         }
     }

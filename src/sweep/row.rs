@@ -8,6 +8,30 @@ use crate::report::tally::Tally;
 use crate::synth::Area;
 use crate::verify::Verdict;
 
+/// A simulated AFU, as the store keeps it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Simulated {
+    /// Its figures, without area.
+    pub row: Row,
+    /// What they took on the machine that simulated: no two runs are alike in this.
+    pub host: HostSeconds,
+}
+
+/// What an AFU took on the machine that simulated it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct HostSeconds {
+    /// Sphere Collision Processing Units.
+    pub scpus: u32,
+    /// Cycles from one pair to the next in one SCPU.
+    pub interval: u32,
+    /// Seconds to build the model from nothing, Verilator's runtime included.
+    pub build_seconds: f64,
+    /// Seconds of the simulation.
+    pub simulation_seconds: f64,
+}
+
 /// One AFU's figures. The columns of the CSV and the keys of the JSON are these fields.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -41,10 +65,6 @@ pub struct Row {
     pub latency_cycles: Option<u64>,
     /// The clock, MHz.
     pub clock_mhz: f64,
-    /// Seconds to build the model from nothing, Verilator's runtime included.
-    pub build_seconds: f64,
-    /// Seconds the simulation took.
-    pub simulation_seconds: f64,
     /// LUTs of one SCPU on an ECP5 as Yosys counts them; `None` if they were not counted.
     #[serde(default)]
     pub scpu_luts: Option<u64>,
@@ -60,7 +80,7 @@ pub struct Row {
 
 impl Row {
     /// The row of a job with this verdict.
-    pub(super) fn of(config: &Config, rtl_sha256: &str, verdict: &Verdict, build_seconds: f64) -> Self {
+    pub(super) fn of(config: &Config, rtl_sha256: &str, verdict: &Verdict) -> Self {
         let tally = Tally::of(verdict, config);
         let cycles_per_pair = tally.cycles_per_pair();
         Self {
@@ -78,8 +98,6 @@ impl Row {
             bytes_written: tally.bytes_written,
             latency_cycles: tally.latency_cycles,
             clock_mhz: config.clock_mhz,
-            build_seconds,
-            simulation_seconds: tally.host_seconds,
             scpu_luts: None,
             scpu_ffs: None,
             scpu_dsps: None,
@@ -87,9 +105,9 @@ impl Row {
         }
     }
 
-    /// The row with the area of one SCPU.
-    pub(super) fn with_area(self, area: Area) -> Self {
-        let Area { luts, ffs, dsps, .. } = area;
+    /// The row with the area of one SCPU, if that is known.
+    pub(super) fn with_area(self, area: Option<Area>) -> Self {
+        let Some(Area { luts, ffs, dsps, .. }) = area else { return self };
         Self { scpu_luts: Some(luts), scpu_ffs: Some(ffs), scpu_dsps: Some(dsps), ..self }
     }
 
@@ -99,7 +117,7 @@ impl Row {
     }
 
     /// The heading of the table for people.
-    pub(super) const HEADING: [&'static str; 13] = [
+    pub(super) const HEADING: [&'static str; 11] = [
         "SCPUs",
         "interval",
         "pairs",
@@ -111,12 +129,10 @@ impl Row {
         "latency, cycles",
         "LUT per SCPU",
         "DSP per SCPU",
-        "build, s",
-        "simulation, s",
     ];
 
     /// The row of the table for people.
-    pub(super) fn cells(&self) -> [String; 13] {
+    pub(super) fn cells(&self) -> [String; 11] {
         let count = |count: Option<u64>| count.map_or_else(|| "-".to_owned(), grouped);
         [
             self.scpus.to_string(),
@@ -130,8 +146,6 @@ impl Row {
             count(self.latency_cycles),
             count(self.scpu_luts),
             count(self.scpu_dsps),
-            format!("{:.1}", self.build_seconds),
-            format!("{:.1}", self.simulation_seconds),
         ]
     }
 }

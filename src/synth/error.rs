@@ -57,6 +57,15 @@ pub enum SynthError {
 }
 
 impl SynthError {
+    /// True if this unit is to blame: it cannot be generated, or a program failed on it. False if others would fail as
+    /// well: a program is missing, or the disk is full.
+    pub fn is_of_unit(&self) -> bool {
+        match self {
+            Self::Generate(_) | Self::Hardware(_) | Self::Failed { .. } | Self::Unexpected { .. } => true,
+            Self::MissingTool(_) | Self::Io { .. } | Self::Store(_) => false,
+        }
+    }
+
     pub(super) fn io(action: &'static str, path: &Path, source: io::Error) -> Self {
         Self::Io { action, path: path.to_owned(), source: files::without_path(source) }
     }

@@ -38,6 +38,24 @@ pub enum VerifyError {
 }
 
 impl VerifyError {
+    /// True if this AFU is to blame: it cannot be generated or built, or its job fails. False if others would fail as
+    /// well: a tool is missing, the disk is full, or the link or the pairs cannot be used.
+    pub fn is_of_afu(&self) -> bool {
+        use crate::cosim::verilate::Error::{Compile, Refused, Unexpected};
+        match self {
+            Self::Generate(_) | Self::Drive(_) | Self::Host(_) => true,
+            Self::Model(CosimError::Build(error)) => {
+                matches!(error, Refused { .. } | Compile { .. } | Unexpected { .. })
+            }
+            Self::Model(CosimError::Load { .. } | CosimError::Simulation(_)) => true,
+            Self::Model(CosimError::MissingTool { .. } | CosimError::Source(_) | CosimError::NoCache)
+            | Self::Manifest(_)
+            | Self::Link(_)
+            | Self::Radius(_)
+            | Self::Pairs(_) => false,
+        }
+    }
+
     /// True if a job that began failed: it does not finish, breaks the protocol, or stops.
     pub fn is_job_failure(&self) -> bool {
         matches!(

@@ -18,7 +18,7 @@ fn a_sweep_has_a_row_for_each_size_and_is_resumed() {
     };
     let rows = |assert: &assert_cmd::assert::Assert| -> Vec<Value> {
         let json: Value = serde_json::from_slice(&assert.get_output().stdout).expect("JSON alone");
-        assert_eq!(json["schema"], "contact-afu/sweep/1");
+        assert_eq!(json["schema"], "contact-afu/sweep/2");
         json["rows"].as_array().expect("rows").clone()
     };
     let first = sweep("1");
@@ -64,6 +64,22 @@ fn a_sweep_has_a_row_for_each_size_and_is_resumed() {
     afu(room.path(), &["sweep", "--scpus", "1", "--pairs", "random:1000", "--out", "out", "--force"]).success();
     let forced: Value = serde_json::from_slice(&manifest()).expect("JSON");
     assert_eq!((&forced["pairs"], &forced["rows"][0]["pairs"]), (&"random:1000".into(), &1000.into()));
+
+    // The same by two shards: one has the point.
+    let options = ["sweep", "--scpus", "1", "--pairs", "random:1000", "--store", "store", "--shard"];
+    for shard in ["1/2", "2/2"] {
+        afu(room.path(), &[&options[..], &[shard]].concat()).success();
+    }
+    let merged = afu(room.path(), &["merge", "--store", "store", "--out", "merged"]).success();
+    assert!(String::from_utf8_lossy(&merged.get_output().stdout).contains("random:1000 over link ideal, seed 1"));
+    let results = ["manifest.json", "sweep.csv", "report.html", "throughput.svg"];
+    for file in results {
+        let read = |folder: &str| fs::read(room.path().join(folder).join(file)).expect("written");
+        assert_eq!(read("merged"), read("out"), "{file}");
+    }
+    let seconds = fs::read_to_string(room.path().join("merged/host.csv")).expect("written");
+    assert!(seconds.starts_with("scpus,interval,build_seconds,simulation_seconds\n1,1,"), "{seconds}");
+    assert_eq!(fs::read_dir(room.path().join("merged")).expect("there").count(), results.len() + 1);
 }
 
 #[test]

@@ -12,6 +12,7 @@ mod cli_accuracy;
 mod cli_cosim;
 mod cli_files;
 mod cli_hard;
+mod cli_merge;
 #[cfg(feature = "cosim")]
 mod cli_paper;
 mod cli_rtl;
