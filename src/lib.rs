@@ -41,6 +41,7 @@ pub mod afu;
 pub mod config;
 #[cfg(feature = "cosim")]
 pub mod cosim;
+mod count;
 pub mod files;
 pub mod hdl;
 pub mod host;

@@ -9,6 +9,7 @@ use std::process::Command;
 /// The modules that each module may import; `ARCHITECTURE.md` draws them. A module may always import itself.
 const HOUSE: &[(&str, &[&str])] = &[
     ("number", &[]),
+    ("count", &[]),
     ("files", &[]),
     ("store", &["files"]),
     ("study", &["store", "files"]),
@@ -18,20 +19,26 @@ const HOUSE: &[(&str, &[&str])] = &[
     ("kernel", &["query", "number"]),
     ("config", &["number", "query", "kernel"]),
     ("record", &["number", "query", "kernel", "config"]),
-    ("pairs", &["number", "query", "kernel", "files"]),
-    ("ode", &["pairs", "query", "kernel"]),
+    ("pairs", &["count", "number", "query", "kernel", "files"]),
+    ("ode", &["count", "pairs", "query", "kernel"]),
     ("operator", &["hdl", "number"]),
     ("pipeline", &["operator", "query", "kernel", "hdl", "number"]),
-    ("afu", &["record", "config", "pipeline", "operator", "query", "hdl", "number"]),
+    ("afu", &["count", "record", "config", "pipeline", "operator", "query", "hdl", "number"]),
     ("link", &["number"]),
     ("patience", &["link", "afu", "record", "config"]),
     ("outcome", &["link", "afu"]),
     (
         "cosim",
-        &["outcome", "store", "query", "record", "config", "patience", "afu", "link", "pairs", "number", "files"],
+        &[
+            "count", "outcome", "store", "query", "record", "config", "patience", "afu", "link", "pairs", "number",
+            "files",
+        ],
     ),
-    ("host", &["outcome", "query", "record", "cosim", "patience", "link", "afu", "config", "kernel", "number"]),
-    ("verify", &["query", "record", "host", "cosim", "link", "pairs", "afu", "config", "kernel", "number"]),
+    (
+        "host",
+        &["count", "outcome", "query", "record", "cosim", "patience", "link", "afu", "config", "kernel", "number"],
+    ),
+    ("verify", &["count", "query", "record", "host", "cosim", "link", "pairs", "afu", "config", "kernel", "number"]),
     ("tools", &["cosim"]),
     (
         "synth",
@@ -43,29 +50,29 @@ const HOUSE: &[(&str, &[&str])] = &[
     (
         "report",
         &[
-            "study", "query", "record", "plot", "synth", "verify", "host", "tools", "cosim", "config", "afu", "link",
-            "pairs", "number", "files",
+            "count", "study", "query", "record", "plot", "synth", "verify", "host", "tools", "cosim", "config", "afu",
+            "link", "pairs", "number", "files",
         ],
     ),
     (
         "accuracy",
         &[
-            "study", "store", "query", "record", "report", "plot", "synth", "verify", "host", "cosim", "config", "ode",
-            "afu", "link", "pairs", "kernel", "number",
+            "count", "study", "store", "query", "record", "report", "plot", "synth", "verify", "host", "cosim",
+            "config", "ode", "afu", "link", "pairs", "kernel", "number",
         ],
     ),
     (
         "paper",
         &[
-            "query", "store", "report", "plot", "verify", "host", "cosim", "config", "ode", "afu", "link", "pairs",
-            "kernel", "number",
+            "count", "query", "store", "report", "plot", "verify", "host", "cosim", "config", "ode", "afu", "link",
+            "pairs", "kernel", "number",
         ],
     ),
     (
         "scene",
         &[
-            "query", "record", "report", "plot", "synth", "ode", "config", "afu", "pipeline", "kernel", "pairs",
-            "number",
+            "count", "query", "record", "report", "plot", "synth", "ode", "config", "afu", "pipeline", "kernel",
+            "pairs", "number",
         ],
     ),
     (

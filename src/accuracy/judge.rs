@@ -37,7 +37,7 @@ impl Standard {
     }
 }
 
-/// The verdict on an answer: the limits of gross failure (BAD) that it breaks, and its errors.
+/// The verdict on an answer: the limits of gross failure that it breaks, and its errors.
 ///
 /// The limits: a wrong decision is gross if its [`margin`](Truth::margin) is more than 2^−20 (below that it is wrong,
 /// but not gross); an infinity or a NaN; a normal whose length differs from 1 by more than 10^−6, or whose direction by

@@ -128,7 +128,7 @@ impl HardResults {
             text += &format!("{}\n\n", table(&heading, lines));
         }
         let of = if self.query.is_default() { String::new() } else { format!(" of {}", self.query) };
-        text += &format!("gross failures (BAD), hard:{}{of} with seed {}\n{}", self.pairs, self.seed, self.summary());
+        text += &format!("gross failures, hard:{}{of} with seed {}\n{}", self.pairs, self.seed, self.summary());
         self.absent.iter().fold(text, |text, what| format!("{text}\n{what}"))
     }
 

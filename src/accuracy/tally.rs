@@ -26,7 +26,7 @@ pub struct Tally {
     pub depth: u64,
     /// Answers with a wrong position.
     pub position: u64,
-    /// Gross failures.
+    /// Gross failures. The key in JSON keeps its old name until the schema changes.
     #[serde(rename = "BAD")]
     pub bad: u64,
     /// Pairs that the engine's own arithmetic did not settle.
@@ -80,5 +80,5 @@ impl Tally {
 
     /// Names of the counts that follow those of pairs and contacts.
     pub const HEADING: [&'static str; 9] =
-        ["missed", "false", "non-finite", "normal", "direction", "depth", "position", "BAD", "unsettled"];
+        ["missed", "false", "non-finite", "normal", "direction", "depth", "position", "gross", "unsettled"];
 }

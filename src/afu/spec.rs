@@ -1,6 +1,7 @@
 //! What an accelerator is generated from: the configuration, and what only proofs and integrators change.
 
 use crate::config::{Config, INTERVALS, Multipliers};
+use crate::count::counted;
 use crate::hdl::verilog::Memories;
 use crate::hdl::{DelayModel, Reset};
 
@@ -112,8 +113,9 @@ impl Spec {
         let built = self.scpus_in_turn(interval);
         let multiple = self.full_rate().filter(|_| built < scpus)?;
         Some(format!(
-            "{scpus} SCPUs at interval {interval}: only {built} take turns and are built; use at most {multiple} SCPUs, or \
-             a multiple of {multiple}"
+            "{} at interval {interval}: {built} of them can take turns, and the rest are not built. Use at most {multiple} \
+             SCPUs, or a multiple of {multiple}",
+            counted(scpus.into(), "SCPU")
         ))
     }
 
@@ -199,7 +201,7 @@ mod tests {
         let at_five = |scpus| Spec::from(Config { scpus, interval: 5, ..Config::default() });
         assert_eq!([1, 10, 11, 19, 20, 64].map(|scpus| at_five(scpus).scpus_in_turn(5)), [1, 10, 10, 10, 20, 60]);
         assert_eq!([1, 10, 20, 60].map(|scpus| at_five(scpus).unused_scpus()), [const { None }; 4]);
-        assert!(at_five(64).unused_scpus().is_some_and(|text| text.contains("only 60")));
+        assert!(at_five(64).unused_scpus().is_some_and(|text| text.contains("60 of them")));
         assert_eq!([0.5, 0.3, 1.0, 1.1, 0.01].map(|rate| of(10, rate)), [20, 33, 10, 9, 64]);
     }
 }

@@ -10,6 +10,7 @@ use contact_afu::link::LinkModel;
 use contact_afu::query::{PairRecord, Query};
 use contact_afu::report::cosim::{Job, Run};
 use contact_afu::report::junit;
+use contact_afu::report::table::counted;
 use contact_afu::report::tally::Tally;
 use contact_afu::verify::{Bench, Command, Origin, Progress, Verdict, corpus};
 use contact_afu::{pairs, tools};
@@ -255,10 +256,19 @@ impl Cosim {
         if !failed.is_empty() {
             let path = self.replay.as_deref().unwrap_or(Path::new(CORPUS));
             let added = corpus::join(run.config.query, path, failed)?;
-            eprintln!("corpus: {} ({added} new pairs); --replay {} runs it first", path.display(), path.display());
+            eprintln!(
+                "corpus: {} ({}); --replay {} runs it first",
+                path.display(),
+                counted(added as u64, "new pair"),
+                path.display()
+            );
         }
         let bad = run.jobs.iter().filter(|job| !job.passed()).count();
-        let message = format!("{bad} of {} jobs failed, {} mismatches", run.jobs.len(), run.total().mismatches);
+        let message = format!(
+            "{bad} of {} failed, {}",
+            counted(run.jobs.len() as u64, "job"),
+            counted(run.total().mismatches, "mismatch")
+        );
         Err(Failure::new(Kind::Failed, message))
     }
 }

@@ -14,7 +14,7 @@ use super::{output, progress};
 ///
 /// Such hard pairs are tangent or coincident, very small or very large. Answers are judged against arbitrary precision.
 /// For each category the tables count false negatives and false positives, NaNs and infinities, and wrong normals,
-/// directions, depths and positions. They also count gross failures (BAD) and pairs that the hardware leaves to the
+/// directions, depths and positions. They also count gross failures and pairs that the hardware leaves to the
 /// host. docs/hard.md defines the columns. If the command is stopped, the same command resumes.
 #[derive(Args, Debug)]
 pub struct Hard {

@@ -9,7 +9,7 @@ use contact_afu::pairs::{self, FileError, LoadError, Set, SetError};
 #[cfg(feature = "cosim")]
 use contact_afu::query::PairRecord;
 use contact_afu::query::Query;
-use contact_afu::report::table::grouped;
+use contact_afu::report::table::counted;
 
 use super::failure::{Failure, Kind};
 use super::{output, usage};
@@ -67,7 +67,7 @@ pub fn run(options: &Pairs) -> Result<(), Failure> {
         Set::Diamond(_) => String::new(),
     };
     output::show(
-        &format!("{}: {} pairs of {}{seed}", options.out.display(), grouped(made.len() as u64), options.set),
+        &format!("{}: {} of {}{seed}", options.out.display(), counted(made.len() as u64, "pair"), options.set),
         false,
     )
 }

@@ -83,9 +83,9 @@ pub fn run(options: &Rtl) -> Result<(), Failure> {
     let config = &afu.spec().config;
     warn_of_unused_scpus(config);
     let text = format!(
-        "{}: {} files; {}, {}, latency of an SCPU {} cycles at {} MHz",
+        "{}: {}; {}, {}, latency of an SCPU {} cycles at {} MHz",
         options.out.display(),
-        files.len(),
+        counted(files.len() as u64, "file"),
         counted(config.scpus.into(), "SCPU"),
         config.profile,
         afu.kernel().latency,

@@ -3,6 +3,7 @@
 use super::transport::TransportError;
 use crate::afu::shell::spl2::map;
 use crate::config::RecordFormat;
+use crate::count::counted;
 use crate::record::{JobError, OtherRadius};
 
 /// Why a transaction has no results.
@@ -67,9 +68,11 @@ pub enum HostError {
     },
     /// The status never came.
     #[error(
-        "the job did not finish after {cycles} cycles: no status, waiting for {} ({reads} reads and {writes} writes without a \
+        "the job did not finish after {cycles} cycles: no status, waiting for {} ({} and {} without a \
          response); end the transaction, which resets the AFU, and send it again",
-        if (*reads, *writes) == (0, 0) { "the AFU" } else { "the link" }
+        if (*reads, *writes) == (0, 0) { "the AFU" } else { "the link" },
+        counted(*reads, "read"),
+        counted(*writes, "write")
     )]
     NoStatus {
         /// Cycles since the start word.
@@ -99,7 +102,8 @@ pub enum HostError {
     },
     /// Invalid pairs.
     #[error(
-        "{count} invalid pairs; the {field} of the first, pair {first}, is in {record} NaN, infinite or a negative radius: correct it or leave it out"
+        "{}; the {field} of the first, pair {first}, is in {record} NaN, infinite or a negative radius: correct it or leave it out",
+        counted((*count).into(), "invalid pair")
     )]
     InvalidPairs {
         /// Their number.
@@ -130,7 +134,7 @@ pub enum HitError {
     /// Numbers of pairs must ascend, and be those of pairs.
     #[error(
         "contact {index} is of pair {number}, after {}, of {pairs} pairs",
-        after.map_or_else(|| "none".to_owned(), |last| format!("pair {last}"))
+        after.map_or_else(|| "no other".to_owned(), |last| format!("pair {last}"))
     )]
     Number {
         /// The record, from 0.

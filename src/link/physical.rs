@@ -120,14 +120,20 @@ impl Physical {
                 direction;
             if let Some(slowest) = slowest_ns.as_ref().filter(|slowest| slowest.value < latency_ns.value) {
                 let (slowest, latency) = (slowest.value, latency_ns.value);
-                return Some(format!("{name}.slowest_ns is {slowest}, below {name}.latency_ns, {latency}"));
+                return Some(format!(
+                    "{name}.slowest_ns: expected at least {name}.latency_ns, which is {latency}, found {slowest}"
+                ));
             }
             if mean_wait_ns.is_some() && slowest_ns.is_none() {
-                return Some(format!("{name}.mean_wait_ns is given, but not {name}.slowest_ns, where the tail ends"));
+                return Some(format!(
+                    "{name}.mean_wait_ns needs {name}.slowest_ns too, which says where the tail ends"
+                ));
             }
             if let Some(ceiling) = ceiling_gb_s.as_ref().filter(|ceiling| ceiling.value < bandwidth_gb_s.value) {
                 let (ceiling, bandwidth) = (ceiling.value, bandwidth_gb_s.value);
-                return Some(format!("{name}.bandwidth_gb_s is {bandwidth}, above {name}.ceiling_gb_s, {ceiling}"));
+                return Some(format!(
+                    "{name}.bandwidth_gb_s: expected at most {name}.ceiling_gb_s, which is {ceiling}, found {bandwidth}"
+                ));
             }
         }
         None
@@ -311,11 +317,11 @@ mod tests {
     #[test]
     fn figures_that_contradict_each_other_are_refused() {
         let early = refused("value = 590", "value = 300");
-        assert_eq!(early, "own.toml: read.slowest_ns is 300, below read.latency_ns, 355");
+        assert_eq!(early, "own.toml: read.slowest_ns: expected at least read.latency_ns, which is 355, found 300");
         let above = refused("value = 12.8", "value = 6");
-        assert_eq!(above, "own.toml: read.bandwidth_gb_s is 7, above read.ceiling_gb_s, 6");
+        assert_eq!(above, "own.toml: read.bandwidth_gb_s: expected at most read.ceiling_gb_s, which is 6, found 7");
         let endless = refused("slowest_ns = { value = 590, source", "# slowest_ns = { value = 590, source");
-        assert!(endless.contains("read.mean_wait_ns is given, but not read.slowest_ns"), "{endless}");
+        assert!(endless.contains("read.mean_wait_ns needs read.slowest_ns too"), "{endless}");
     }
 
     #[test]

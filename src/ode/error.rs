@@ -1,6 +1,7 @@
 //! Errors of ODE, its worlds, and engines in its collider's place.
 
 use super::Collider;
+use crate::count::counted;
 use crate::kernel::EngineError;
 use crate::query::Flow;
 
@@ -63,7 +64,7 @@ pub enum Error {
     #[error("the engine that replaces ODE's collider: {0}")]
     Engine(#[source] EngineError),
     /// The engine did not answer every pair, or more than every pair.
-    #[error("expected {pairs} contacts from the engine, found {contacts}")]
+    #[error("expected {} from the engine, found {contacts}", counted(*pairs as u64, "contact"))]
     Count {
         /// Pairs it was given.
         pairs: usize,

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::npy_header::{Header, Problem};
 use super::{FileError, Rounded};
+use crate::count::counted;
 use crate::kernel::widen;
 use crate::number::Format;
 use crate::query::{PairRecord, Query};
@@ -26,14 +27,15 @@ fn parse(query: Query, bytes: &[u8]) -> Result<(Vec<PairRecord>, Option<Rounded>
         [count, 2, of] if rows == 2 && 2 * of == words as u64 => (count, 2),
         _ => {
             let split = if rows == 2 { format!(" or [n, 2, {}]", words / 2) } else { String::new() };
-            return Err(Problem("shape", format!("{:?} should be [n, {words}]{split}", header.shape)));
+            return Err(Problem("shape", format!("expected [n, {words}]{split}, found {:?}", header.shape)));
         }
     };
     let fortran_place = |word: usize| word / (words / rows) + rows * (word % (words / rows));
     // The shape is believed only where the file bears it out.
     let (size, there) = (number.size(), data.len());
     if count.checked_mul((words * size) as u64) != Some(there as u64) {
-        let problem = format!("{count} records of {} bytes, but the data has {there} bytes", words * size);
+        let problem =
+            format!("expected {} of {} bytes, found {there} bytes of data", counted(count, "record"), words * size);
         return Err(Problem("shape", problem));
     }
     let count = there / (words * size);
@@ -84,7 +86,7 @@ impl Number {
         let is_big_endian = descr.starts_with('>');
         match format {
             Some(format) if is_big_endian || descr.starts_with('<') => Ok(Self { format, is_big_endian }),
-            _ => Err(Problem("descr", format!("'{descr}' is none of f2, f4 and f8; save a.astype(\"<f4\")"))),
+            _ => Err(Problem("descr", format!("expected f2, f4 or f8, found '{descr}'; save a.astype(\"<f4\")"))),
         }
     }
 

@@ -27,7 +27,7 @@ pub fn read(file: &Path, text: &[u8]) -> Result<Vec<ContactRecord>, FileError> {
     let mut contacts = Vec::new();
     table::read(file, text, &COLUMNS, |row| {
         if row.text(PAIR).parse() != Ok(contacts.len()) {
-            return Err(row.error(PAIR, format!("`{}` should be {}", row.text(PAIR), contacts.len())));
+            return Err(row.error(PAIR, format!("expected {}, found `{}`", contacts.len(), row.text(PAIR))));
         }
         contacts.push(contact(&row)?);
         Ok(())
@@ -42,7 +42,7 @@ pub fn read_hits(file: &Path, text: &[u8]) -> Result<Vec<(u32, ContactRecord)>, 
         let least = hits.last().map_or(0, |(last, _)| u64::from(*last) + 1);
         let number = row.text(PAIR).parse::<u32>().ok().filter(|&number| u64::from(number) >= least);
         let number = number.ok_or_else(|| {
-            row.error(PAIR, format!("`{}` should be a number from {least} to {}", row.text(PAIR), u32::MAX))
+            row.error(PAIR, format!("expected a number from {least} to {}, found `{}`", u32::MAX, row.text(PAIR)))
         })?;
         hits.push((number, contact(&row)?));
         Ok(())
@@ -52,11 +52,12 @@ pub fn read_hits(file: &Path, text: &[u8]) -> Result<Vec<(u32, ContactRecord)>, 
 
 fn contact(row: &table::Row<'_>) -> Result<ContactRecord, FileError> {
     let flow = Flow::ALL.into_iter().find(|flow| flow.name() == row.text(FLOW));
-    let flow = flow
-        .ok_or_else(|| row.error(FLOW, format!("`{}` is none of fake, grazing, real and invalid", row.text(FLOW))))?;
+    let flow = flow.ok_or_else(|| {
+        row.error(FLOW, format!("expected fake, grazing, real or invalid, found `{}`", row.text(FLOW)))
+    })?;
     let expected = if flow == Flow::Invalid { "1" } else { "0" };
     if row.text(INVALID) != expected {
-        return Err(row.error(INVALID, format!("`{}` should be {expected} for flow {flow}", row.text(INVALID))));
+        return Err(row.error(INVALID, format!("expected {expected} for flow {flow}, found `{}`", row.text(INVALID))));
     }
     let mut contact = ContactRecord::of_flags(flow.flags());
     for (i, word) in contact.0[..NUMBERS].iter_mut().enumerate() {

@@ -9,7 +9,7 @@ pub fn of_header(record: &StringRecord, columns: &[&str]) -> Option<String> {
     let is_known = |name: &str| columns.contains(&name.trim());
     if first.starts_with('#') {
         return Some(format!(
-            "the header begins with `#`, and comments are not read; write {header} alone (numpy.savetxt: comments=\"\")"
+            "expected the header {header}, found one that begins with `#` (numpy.savetxt: comments=\"\")"
         ));
     }
     for (separator, name) in [(';', "`;`"), ('\t', "tabs"), ('|', "`|`"), (' ', "spaces")] {
@@ -20,11 +20,11 @@ pub fn of_header(record: &StringRecord, columns: &[&str]) -> Option<String> {
         }
     }
     if record.iter().any(|name| name.is_empty() || name == "index" || name.starts_with("Unnamed: ")) {
-        return Some("an index column stands among the pairs'; leave it out (pandas: index=False)".to_owned());
+        return Some("found an index column among the pair's columns; leave it out (pandas: index=False)".to_owned());
     }
     if record.iter().all(|name| name.split_whitespace().all(|part| part.parse::<f64>().is_ok())) {
         return Some(format!(
-            "`{first}` is no column of this file; it must begin with the header {header} (numpy.savetxt: header=\"{header}\", comments=\"\")"
+            "expected the header {header}, found `{first}` (numpy.savetxt: header=\"{header}\", comments=\"\")"
         ));
     }
     None
@@ -33,7 +33,7 @@ pub fn of_header(record: &StringRecord, columns: &[&str]) -> Option<String> {
 /// A row that holds no pair.
 pub fn of_row(record: &StringRecord) -> Option<String> {
     let first = record.get(0).unwrap_or_default();
-    first.starts_with('#').then(|| "a comment; comments are not read: leave it out".to_owned())
+    first.starts_with('#').then(|| "comments are not supported: leave this line out".to_owned())
 }
 
 /// A field that should be a number.
@@ -41,6 +41,6 @@ pub fn of_number(text: &str) -> String {
     if text.is_empty() {
         return "empty; write a number, or nan if it is unknown (pandas: na_rep=\"nan\")".to_owned();
     }
-    let comment = if text.starts_with('#') { "; comments are not read" } else { "" };
-    format!("`{text}` is not a number{comment}")
+    let comment = if text.starts_with('#') { "; comments are not supported" } else { "" };
+    format!("expected a number, found `{text}`{comment}")
 }

@@ -145,7 +145,11 @@ pub fn read_hits(file: &Path) -> Result<Vec<(u32, ContactRecord)>, FileError> {
         Kind::Npy => {
             let records: Vec<[u32; HIT_WORDS]> = npy::read(file, &bytes(file)?, CONTACT_TYPE)?;
             if let Some(wrong) = records.windows(2).position(|two| two[0][0] >= two[1][0]) {
-                let problem = format!("pair {} follows pair {}", records[wrong + 1][0], records[wrong][0]);
+                let problem = format!(
+                    "expected increasing pair numbers, found {} after {}",
+                    records[wrong + 1][0],
+                    records[wrong][0]
+                );
                 return Err(FileError::Npy { file: file.to_owned(), field: "data", problem });
             }
             let hit = |[number, contact @ ..]: [u32; HIT_WORDS]| (number, ContactRecord(contact));

@@ -2,6 +2,7 @@
 
 use super::FileError;
 use super::npy_header::{Header, Problem};
+use crate::count::counted;
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -13,14 +14,14 @@ pub fn read<const W: usize>(file: &Path, bytes: &[u8], descr: &str) -> Result<Ve
 fn parse<const W: usize>(bytes: &[u8], descr: &str) -> Result<Vec<[u32; W]>, Problem> {
     let (header, data) = Header::split(bytes)?;
     if header.descr != descr {
-        return Err(Problem("descr", format!("'{}' should be '{descr}'", header.descr)));
+        return Err(Problem("descr", format!("expected '{descr}', found '{}'", header.descr)));
     }
     let count = match *header.shape.as_slice() {
         [count, width] if width == W as u64 => count,
-        _ => return Err(Problem("shape", format!("{:?} should be [n, {W}]", header.shape))),
+        _ => return Err(Problem("shape", format!("expected [n, {W}], found {:?}", header.shape))),
     };
     if header.fortran_order && count > 1 {
-        return Err(Problem("fortran_order", "True should be False (see numpy.ascontiguousarray)".to_owned()));
+        return Err(Problem("fortran_order", "expected False, found True (see numpy.ascontiguousarray)".to_owned()));
     }
     // The shape is believed only where the file bears it out.
     let record_bytes = 4 * W as u64;
@@ -28,7 +29,7 @@ fn parse<const W: usize>(bytes: &[u8], descr: &str) -> Result<Vec<[u32; W]>, Pro
         let there = data.len();
         return Err(Problem(
             "shape",
-            format!("{count} records of {record_bytes} bytes, but the data has {there} bytes"),
+            format!("expected {} of {record_bytes} bytes, found {there} bytes of data", counted(count, "record")),
         ));
     }
     let (words, _) = data.as_chunks::<4>();

@@ -32,15 +32,19 @@ impl Header {
         let (length, rest) = match rest {
             [1, 0, a, b, rest @ ..] => (u32::from(u16::from_le_bytes([*a, *b])), rest),
             [2 | 3, 0, a, b, c, d, rest @ ..] => (u32::from_le_bytes([*a, *b, *c, *d]), rest),
-            _ => return Err(problem("neither version 1.0 nor 2.0 nor 3.0 of npy, or cut short".to_owned())),
+            _ => {
+                return Err(problem(
+                    "expected version 1.0, 2.0 or 3.0 of npy, found another version or too few bytes".to_owned(),
+                ));
+            }
         };
         let length = length as usize;
         if length > LONGEST {
-            return Err(problem(format!("{length} bytes long, where an n x 8 array needs fewer than {LONGEST}")));
+            return Err(problem(format!("expected at most {LONGEST} bytes, found {length}")));
         }
-        let cut_short = || problem(format!("{length} bytes long, of which the file has {}", rest.len()));
+        let cut_short = || problem(format!("expected {length} bytes, found {}", rest.len()));
         let (text, data) = rest.split_at_checked(length).ok_or_else(cut_short)?;
-        let text = std::str::from_utf8(text).map_err(|_| problem("not text".to_owned()))?;
+        let text = std::str::from_utf8(text).map_err(|_| problem("expected text in UTF-8".to_owned()))?;
         Ok((Self::parse(text)?, data))
     }
 
@@ -58,7 +62,7 @@ impl Header {
 
     fn parse(text: &str) -> Result<Self, Problem> {
         let (mut descr, mut fortran_order, mut shape) = (None, None, None);
-        let odd = || Problem("header", "not the dictionary that NumPy writes".to_owned());
+        let odd = || Problem("header", "expected the dictionary that NumPy writes".to_owned());
         let mut rest = Scanner(text);
         rest.expect('{').ok_or_else(odd)?;
         while !rest.take('}') {
@@ -66,15 +70,20 @@ impl Header {
             rest.expect(':').ok_or_else(odd)?;
             match key {
                 "descr" => {
-                    let records = || Problem("descr", "records with named fields; save an n x 8 array".to_owned());
+                    let records = || {
+                        Problem(
+                            "descr",
+                            "expected one type, found records with named fields; save an n x 8 array".to_owned(),
+                        )
+                    };
                     descr = Some(rest.string().ok_or_else(records)?.to_owned());
                 }
                 "fortran_order" => {
-                    let neither = || Problem("fortran_order", "neither True nor False".to_owned());
+                    let neither = || Problem("fortran_order", "expected True or False".to_owned());
                     fortran_order = Some(rest.truth().ok_or_else(neither)?);
                 }
                 "shape" => {
-                    let no_shape = || Problem("shape", "not a tuple of numbers below 2^64".to_owned());
+                    let no_shape = || Problem("shape", "expected a tuple of numbers below 2^64".to_owned());
                     shape = Some(rest.tuple().ok_or_else(no_shape)?);
                 }
                 _ => return Err(odd()),

@@ -34,7 +34,7 @@ pub fn read(
             return Err(FileError::Line { file: file.to_owned(), line: line(), problem });
         }
         if record.len() > expected {
-            let problem = format!("{} fields under a header of {expected}", record.len());
+            let problem = format!("expected {expected} fields, as in the header, found {}", record.len());
             return Err(FileError::Line { file: file.to_owned(), line: line(), problem });
         }
         let mut fields = vec![""; expected];
@@ -63,7 +63,7 @@ fn header(
     let known = |name: &str| columns.contains(&name);
     if let Some(unknown) = record.iter().find(|name| !known(name)) {
         let problem = cure::of_header(record, columns)
-            .unwrap_or_else(|| format!("`{unknown}` is no column of this file; the header is {}", columns.join(",")));
+            .unwrap_or_else(|| format!("unknown column `{unknown}`: expected the header {}", columns.join(",")));
         return Err(FileError::Line { file: file.to_owned(), line, problem });
     }
     let mut places = vec![0; columns.len()];
@@ -86,7 +86,7 @@ fn header(
 fn broken(file: &Path, text: &[u8], error: csv::Error) -> FileError {
     let line = line_at(text, error.position().map_or(0, csv::Position::byte));
     let problem = match error.kind() {
-        csv::ErrorKind::Utf8 { .. } => "not UTF-8 text".to_owned(),
+        csv::ErrorKind::Utf8 { .. } => "expected text in UTF-8".to_owned(),
         _ => format!("not CSV: {error}"),
     };
     FileError::Line { file: file.to_owned(), line, problem }

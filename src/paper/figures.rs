@@ -1,6 +1,7 @@
 //! The figures. Solid lines are measured here, dashed ones simulated, dotted ones the paper's text.
 
 use super::{Experiment, Joined};
+use crate::count::counted;
 use crate::plot::{Axis, Line, Mark, Plot, Scale, Series};
 
 const ODE_RULE: usize = 5;
@@ -58,7 +59,12 @@ fn series(results: &Experiment, points: &[&Joined], scale: impl Fn(&Joined, f64)
         let points = points.iter().map(|point| (point.collisions as f64, scale(point, total(point))));
         Series::new(&name, colour, points).line(line)
     };
-    let afu = format!("AFU, {} SCPUs: simulated, {} at {} MHz", settings.scpus, settings.link, settings.clock_mhz);
+    let afu = format!(
+        "AFU, {}: simulated, {} at {} MHz",
+        counted(settings.scpus.into(), "SCPU"),
+        settings.link,
+        settings.clock_mhz
+    );
     vec![
         of(format!("ODE, average of {}: measured here", settings.executions), ODE_RULE, Line::Solid, |p| p.ode_rule_ns),
         of("ODE, loop of calls: measured here".to_owned(), ODE_LOOP, Line::Solid, |p| p.ode_loop_ns),

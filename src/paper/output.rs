@@ -66,7 +66,7 @@ impl Summary {
             self.link_limit_ns,
             100.0 * self.link_share
         );
-        format!("{title}\n{}", table(&["who", "ns per collision", "time over the AFU's", "AFU faster from"], rows))
+        format!("{title}\n{}", table(&["engine", "ns per collision", "time over the AFU's", "AFU faster from"], rows))
     }
 }
 

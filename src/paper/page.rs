@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use super::{Claim, Experiment, Joined, Published, Settings, Summary, figure6, figure7, per_collision};
 use crate::report::page::{self, table};
-use crate::report::table::grouped;
+use crate::report::table::{counted, grouped};
 
 /// The page.
 pub fn page(results: &Experiment, claims: &[Claim], paper: &Published) -> String {
@@ -56,29 +56,29 @@ fn sums(s: &Summary, settings: &Settings, paper: &Published) -> Markup {
     let caption = format!("At {} collisions in one transaction", grouped(s.collisions as u64));
     html! {
         h2 { "Results" }
-        (table(&caption, &["who", "how known", "ns per collision", "time over the AFU’s", "AFU faster from"], 2, &rows))
-        p { "The link model allows " (format!("{:.2}", s.link_limit_ns)) " ns per collision; the AFU reaches "
-            (format!("{:.1}", 100.0 * s.link_share)) " % of that, set-up apart. “AFU faster from” is the least number of "
-            "collisions tried from which on the AFU takes less time at every point. " b { "A measured time and a simulated "
-            "one are not of the same kind" } ": the simulated clock and link are assumptions, of hardware of 2014; the "
-            "processor that was measured is another." }
-        p { "Of the " (grouped(s.collisions as u64)) " collisions the AFU calls " (grouped(s.afu_contacts)) " contacts. It gets every number rounded "
-            "to binary32, and spheres that touch with next to no depth may then be apart." }
+        (table(&caption, &["engine", "source", "ns per collision", "time over the AFU’s", "AFU faster from"], 2, &rows))
+        p { "The link limit is " (format!("{:.2}", s.link_limit_ns)) " ns per collision. Without set-up, the AFU reaches "
+            (format!("{:.1}", 100.0 * s.link_share)) " % of this limit. “AFU faster from” is the smallest "
+            "number of collisions tried from which the AFU takes less time at every point. " b { "Measured and simulated times are "
+            "not directly comparable" } ": the simulated clock and link are assumptions about hardware of 2014, and the "
+            "measured processor is a different one." }
+        p { "The AFU finds " (grouped(s.afu_contacts)) " contacts in the " (grouped(s.collisions as u64)) " collisions. It gets every number "
+            "rounded to binary32, and spheres that touch with almost no depth may then be apart." }
         @if s.speed_up_over_batch < 1.0 {
-            p { "Against the same arithmetic on this processor, in batch, the AFU loses: "
-                (format!("{:.1}", 1.0 / s.speed_up_over_batch)) " times the time. The link carries 64 bytes per collision, and "
-                "that is what it takes." }
+            p { "The same arithmetic on this processor, in batch, is faster: the AFU takes "
+                (format!("{:.1}", 1.0 / s.speed_up_over_batch)) " times as long. The AFU is link-bound, because the link carries "
+                "64 bytes per collision." }
         }
     }
 }
 
 fn legend(settings: &Settings) -> Markup {
     html! {
-        p { b { "Solid" } " lines were measured on this machine (" (settings.processor) "), " b { "dashed" } " ones simulated: "
-            "cycles of the Verilog, told in time at an assumed " (settings.clock_mhz) " MHz over the link model "
+        p { b { "Solid" } " lines were measured on this machine (" (settings.processor) "), " b { "dashed" } " ones were simulated: "
+            "cycles of the Verilog, converted to time at an assumed " (settings.clock_mhz) " MHz over the link model "
             code { (settings.link) } ", with " (format!("{:.0}", settings.set_up_ns)) " ns of set-up and tear-down. "
-            b { "Dotted" } " ones are the paper’s text, not its plots: 102 and 86 ns per collision, and the set-up that its "
-            "crossover implies." }
+            b { "Dotted" } " lines come from the paper’s text, not from its plots: 102 and 86 ns per collision, and the set-up "
+            "time that its crossover implies." }
     }
 }
 
@@ -95,15 +95,16 @@ fn method(results: &Experiment) -> Markup {
     html! {
         ul {
             li { "Collisions: the first " (grouped(s.n_col_max as u64)) " " (s.t_col) " ones of the diamond with hMax " (s.h_max)
-                " and dSph " (s.d_sph) ", from " (grouped(s.steps as u64)) " steps (every "
-                (grouped(s.steps_of_a_run as u64)) " the diamond is rebuilt: in the end its spheres fly apart). A transaction gathers "
-                "those of several steps." }
+                " and dSph " (s.d_sph) ", from " (grouped(s.steps as u64)) " steps. The diamond is "
+                "rebuilt every " (grouped(s.steps_of_a_run as u64)) " steps, because its spheres fly apart in the end. A transaction "
+                "gathers the collisions of several steps." }
             li { "ODE, the paper’s rule: each collision executed " (s.executions) " times within the simulation, and the averages "
-                "added. Reading the clock takes " (s.clock_ns) " ns here, and each average has a part of it." }
-            li { "ODE, loop of calls: dCollide on all collisions one after the other, timed as a whole; the shortest of several "
-                "passes. So is the f32 kernel in batch (" (s.level) ", one thread, in its own layout)." }
-            li { "AFU: " (s.scpus) " SCPUs, " (s.profile) " arithmetic, " (s.shell) " shell, the Verilog simulated for every point; no point is "
-                "modelled. Up to 1000 collisions the average of " (s.transactions) " transactions, above one." }
+                "are added. Reading the clock takes " (s.clock_ns) " ns here, and each average includes a part of it." }
+            li { "ODE, loop of calls: dCollide on all collisions one after the other, timed as a whole. The time is the shortest of "
+                "several passes. The f32 kernel in batch is timed in the same way (" (s.level) ", one thread, its own layout)." }
+            li { "AFU: " (counted(s.scpus.into(), "SCPU")) ", " (s.profile) " arithmetic, " (s.shell) " shell. The Verilog was simulated for "
+                "every point. Up to 1000 collisions, a point is the average of " (s.transactions) " transactions; above, one "
+                "transaction." }
         }
         pre { (s.command) }
         p.soft { "Verilog SHA-256 " code { (s.rtl_sha256) } ", seed " (s.seed) "." }

@@ -89,7 +89,7 @@ pub fn page(all: &[Figures]) -> String {
     for (interval, row) in &rows {
         if let Some(routed) = row.routed {
             let path: Vec<String> = routed.critical.iter().map(|hop| format!("`{}`", hop.signal)).collect();
-            page += &format!("\nSlowest path at interval {interval}: {}.\n", path.join(" → "));
+            page += &format!("\nCritical path at interval {interval}: {}.\n", path.join(" → "));
         }
     }
     page

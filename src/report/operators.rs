@@ -25,7 +25,7 @@ struct Core {
     dsps: u64,
     clock_mhz: f64,
     latency_ns: f64,
-    /// What ours is compared with: of those with the same abilities the best at high clocks.
+    /// True for the core that ours is compared with: the best at high clocks among those with the same abilities.
     #[serde(default)]
     best: bool,
 }
@@ -35,20 +35,20 @@ const HEADING: &str =
 |---|---|---|---|---|---|---|---|---|---|---|---|
 ";
 
-/// The page, of figures in any order.
+/// The page with the given figures, which may be in any order.
 ///
 /// # Errors
-/// Never, unless this program was built with a faulty list of public cores.
+/// Returns an error only if this program was built with a faulty list of public cores.
 pub fn page(all: &[Figures]) -> Result<String, serde_json::Error> {
     let public: PublicCores = serde_json::from_str(include_str!("public_cores.json"))?;
     let mut out = String::from("# Operators, placed and routed\n\n");
     out += "`scripts/operators` makes this page: it runs `afu synth` and passes the JSON to `afu synth --table`.\n\n\
-            - Our operators: LFE5U-85F speed 8, median clock of the seeds; the wrapper's cells are subtracted.\n\
+            - Our operators: LFE5U-85F, speed grade 8, median clock over the seeds. The wrapper's cells are subtracted.\n\
             - Public cores: ";
     out += &public.flow;
-    out += "\n- Ratios are ours to the public core marked *; below 1 is better.\n\nAbove about 200 MHz, a clock through a \
-            multiplier block with registers is the tool's model and not the device's: nextpnr does not time the path \
-            inside the block.\n";
+    out += "\n- Ratios compare our operator with the public core marked *. Below 1, ours is better.\n\nAbove about 200 MHz, a clock \
+            limited by a registered multiplier block comes from the tool's model, not from the device: nextpnr does \
+            not time the path inside the block.\n";
     let mut units: Vec<&str> = Vec::new();
     for figures in all {
         if !units.contains(&figures.unit.as_str()) {
@@ -86,7 +86,7 @@ pub fn page(all: &[Figures]) -> Result<String, serde_json::Error> {
             let mut names: Vec<&str> = figures.critical.iter().map(|hop| hop.signal.as_str()).collect();
             names.dedup();
             out += &format!(
-                "\nSlowest path of {} {}{} cut for {} MHz: `{}`.\n",
+                "\nCritical path of {} {}{} cut for {} MHz: `{}`.\n",
                 unit,
                 figures.profile,
                 by(figures),
@@ -101,7 +101,7 @@ pub fn page(all: &[Figures]) -> Result<String, serde_json::Error> {
 fn ours<'a>(figures: &Figures, best: impl Iterator<Item = &'a Core>) -> String {
     let format = figures.profile.format();
     let subnormals = format.keeps_subnormals();
-    // The one of the same abilities, else any.
+    // A core with the same abilities if there is one, otherwise any.
     let mut best: Vec<&Core> = best.collect();
     best.sort_by_key(|core| core.abilities.starts_with("IEEE") != subnormals);
     let ratio = |ours: Option<f64>, public: fn(&Core) -> f64| {
@@ -141,7 +141,7 @@ mod tests {
         for unit in ["add", "mul", "div", "sqrt", "scpu"] {
             assert!(public.cores.iter().any(|core| core.unit == unit && core.best), "{unit}");
         }
-        // What the list says of itself: latency is cycles over clock. Both are rounded to whole numbers.
+        // The list says that latency is cycles over clock. Both are rounded to whole numbers.
         for core in &public.cores {
             let ns = 1000.0 * f64::from(core.cycles) / core.clock_mhz;
             assert!((ns - core.latency_ns).abs() < 0.02 * ns + 0.6, "{}: {ns:.1}", core.core);

@@ -2,6 +2,8 @@
 
 use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
 
+pub use crate::count::{counted, grouped};
+
 const RULE: LineStyle = LineStyle::none().fill('─').junction('─');
 const STYLE: TableStyle = TableStyle::new().top_border(RULE).header_separator(RULE).bottom_border(RULE);
 
@@ -48,24 +50,6 @@ where
     table.trim_fmt()
 }
 
-/// `12354` as `12 354`.
-pub fn grouped(number: u64) -> String {
-    let digits = number.to_string();
-    let mut text = String::with_capacity(digits.len() * 4 / 3);
-    for (place, digit) in digits.chars().enumerate() {
-        if place > 0 && (digits.len() - place).is_multiple_of(3) {
-            text.push(' ');
-        }
-        text.push(digit);
-    }
-    text
-}
-
-/// A count with its noun: `1 SCPU`, `12 354 pairs`.
-pub fn counted(number: u64, noun: &str) -> String {
-    format!("{} {noun}{}", grouped(number), if number == 1 { "" } else { "s" })
-}
-
 /// A figure with `places` decimals, or a dash for `None` (a job without pairs has no cycles per pair).
 pub fn figure(value: Option<f64>, places: usize) -> String {
     value.map_or_else(|| "-".to_owned(), |value| format!("{value:.places$}"))
@@ -74,20 +58,6 @@ pub fn figure(value: Option<f64>, places: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn digits_are_grouped_in_threes() {
-        for (number, text) in [(0, "0"), (999, "999"), (1000, "1 000"), (12_354, "12 354"), (1_234_567, "1 234 567")] {
-            assert_eq!(grouped(number), text);
-        }
-    }
-
-    #[test]
-    fn one_is_singular() {
-        for (number, text) in [(0, "0 pairs"), (1, "1 pair"), (12_354, "12 354 pairs")] {
-            assert_eq!(counted(number, "pair"), text);
-        }
-    }
 
     #[test]
     fn a_table_has_its_figures_on_the_right() {

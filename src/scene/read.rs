@@ -252,8 +252,10 @@ impl Scene {
         {
             all = all.saturating_add(group.shape.count());
             if all > most {
-                let why =
-                    format!("{all} spheres by now: {most} at most{}", if moves { " where bodies move" } else { "" });
+                let why = format!(
+                    "expected at most {most} {}in total, found {all}",
+                    if moves { "moving spheres " } else { "spheres " }
+                );
                 return Err(source.wrong(group.lines.first().copied(), key, why));
             }
             if group.turning.is_some() && self.effects.spin.as_ref().is_none_or(|spin| !spin.value) {

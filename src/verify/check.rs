@@ -6,6 +6,7 @@ use super::mismatch::Mismatch;
 use super::replay::Setup;
 use crate::config::{Config, Results};
 use crate::cosim::Outcome;
+use crate::count::counted;
 use crate::host::received::{Records, by_pair};
 use crate::kernel::settle;
 use crate::query::{ContactRecord, Fields, Flow, PairRecord, Query};
@@ -78,14 +79,14 @@ impl fmt::Display for Verdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { setup, pairs, mismatches, failed_checks, .. } = self;
         if self.is_good() {
-            return write!(f, "{pairs} pairs, every bit as in the reference");
+            return write!(f, "{}, every bit as in the reference", counted(*pairs as u64, "pair"));
         }
-        let checks = if failed_checks.len() == 1 { "check" } else { "checks" };
         write!(
             f,
-            "{} of {pairs} records differ from the reference, {} other {checks} failed",
+            "{} of {} differ from the reference, {} failed",
             mismatches.len(),
-            failed_checks.len()
+            counted(*pairs as u64, "record"),
+            counted(failed_checks.len() as u64, "other check")
         )?;
         for mismatch in mismatches.iter().take(SHOWN) {
             write!(f, "\nmismatch: {mismatch}")?;
@@ -317,7 +318,7 @@ mod tests {
             seconds: 0.0,
         };
         verdict.assert_good();
-        assert_eq!(verdict.to_string(), "1000 pairs, every bit as in the reference");
+        assert_eq!(verdict.to_string(), "1 000 pairs, every bit as in the reference");
 
         verdict.mismatches = [3, 5, 8, 13, 21].map(mismatch).to_vec();
         verdict.failed_checks = vec!["status: contacts is 5, should be 6".to_owned()];
@@ -326,7 +327,7 @@ mod tests {
         // The pair's words are those of a mismatch's own text.
         let lines: Vec<_> = text.lines().filter(|line| !line.starts_with("  ") || line.contains("got")).collect();
         expect![[r#"
-            5 of 1000 records differ from the reference, 1 other check failed
+            5 of 1 000 records differ from the reference, 1 other check failed
             mismatch: pair 3, written in cycle 99
               depth     expected 00000000 (0.0), got 00000001 (1e-45)
             mismatch: pair 5, written in cycle 99

@@ -139,7 +139,7 @@ fn aborts_resets_and_faults_of_the_link_leave_nothing_to_the_next_job() {
 fn a_job_that_expects_all_results_is_refused() {
     let case = Case::random(&config(3, "e8f3z", WHOLE), 10, 1);
     let error = driver(&afu(3), "ideal", 1).run(&case.job()).unwrap_err();
-    assert_eq!(error, DriveError::Results { expected: Results::All, found: Results::Hits });
+    assert_eq!(error, DriveError::OtherResults { expected: Results::All, found: Results::Hits });
 }
 
 /// File, left-hand side of the assignment, and the expression assigned instead. The faults: a wrong number, two

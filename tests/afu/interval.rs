@@ -75,7 +75,7 @@ fn every_interval_and_size() {
 }
 
 #[test]
-#[ignore = "half a minute: the exact profile at an interval, its doubts settled by the host"]
+#[ignore = "half a minute: the exact profile at an interval, with unsettled pairs resolved by the host"]
 fn the_exact_profile() {
     for (scpus, interval) in [(3, 2), (2, 8)] {
         let config = Config { scpus, interval, profile: Profile::EXACT, ..Config::default() };

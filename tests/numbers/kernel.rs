@@ -109,7 +109,7 @@ fn hard_pairs_are_binary32_s_own() {
 }
 
 #[test]
-#[ignore = "the share above, at length"]
+#[ignore = "some minutes: the share above, of more pairs"]
 fn a_million_hard_pairs_are_binary32_s_own() {
     are_binary32_s_own(1_000_000);
 }

@@ -150,31 +150,34 @@ fn a_wrong_csv_is_named_by_line_and_field() {
         (String::new(), ", line 1: the file is empty; it must begin with the header x1,y1,z1,r1,x2,y2,z2,r2"),
         ("x1,y1,z1,r1,x2,y2,z2\n".into(), ", line 1, field r2: the header has no such column"),
         ("x1,y1,z1,r1,x2,y2,z2,r2,x1\n".into(), ", line 1, field x1: the header has this column twice"),
-        ("a,b\n".into(), ", line 1: `a` is no column of this file; the header is x1,y1,z1,r1,x2,y2,z2,r2"),
-        (format!("{HEADER}1,2,3,4,5,6,7,8\n1,2,three,4,5,6,7,8\n"), ", line 3, field z1: `three` is not a number"),
+        ("a,b\n".into(), ", line 1: unknown column `a`: expected the header x1,y1,z1,r1,x2,y2,z2,r2"),
+        (
+            format!("{HEADER}1,2,3,4,5,6,7,8\n1,2,three,4,5,6,7,8\n"),
+            ", line 3, field z1: expected a number, found `three`",
+        ),
         (
             "x1,y1,z1,r1,x2,y2,z2,r2\r\n1,2,3,4,5,6,7,8\r\n1,2,3,x,5,6,7,8".into(),
-            ", line 3, field r1: `x` is not a number",
+            ", line 3, field r1: expected a number, found `x`",
         ),
         (format!("{HEADER}1,2,3,4,5,6,7\n"), ", line 2, field r2: missing: the line has 7 of 8 fields"),
         (
             format!("{HEADER}1,2,3,4,,6,7,8\n"),
             ", line 2, field x2: empty; write a number, or nan if it is unknown (pandas: na_rep=\"nan\")",
         ),
-        (format!("{HEADER}\n\n1,2,3,4,5,6,7,8,9\n"), ", line 4: 9 fields under a header of 8"),
+        (format!("{HEADER}\n\n1,2,3,4,5,6,7,8,9\n"), ", line 4: expected 8 fields, as in the header, found 9"),
         (format!("{HEADER}1,2,3,4,5,6,7,1e39\n"), ", line 2, field r2: `1e39` is beyond the largest binary32 number"),
     ] {
         let file = put(&folder, "pairs.csv", &text);
         assert_eq!(complaint(spheres, &file), expected, "{text}");
     }
     let file = put(&folder, "pairs.csv", [HEADER.as_bytes(), b"1,2,3,4,5,6,7,8\n1,\xFF,3,4,5,6,7,8\n"].concat());
-    assert_eq!(complaint(spheres, &file), ", line 3: not UTF-8 text");
+    assert_eq!(complaint(spheres, &file), ", line 3: expected text in UTF-8");
 
     let header = "pair,flow,pos_x,pos_y,pos_z,normal_x,normal_y,normal_z,depth,invalid\n";
     for (line, expected) in [
-        ("1,fake,0,0,0,0,0,0,0,0", "field pair: `1` should be 0"),
-        ("0,none,0,0,0,0,0,0,0,0", "field flow: `none` is none of fake, grazing, real and invalid"),
-        ("0,fake,0,0,0,0,0,0,0,1", "field invalid: `1` should be 0 for flow fake"),
+        ("1,fake,0,0,0,0,0,0,0,0", "field pair: expected 0, found `1`"),
+        ("0,none,0,0,0,0,0,0,0,0", "field flow: expected fake, grazing, real or invalid, found `none`"),
+        ("0,fake,0,0,0,0,0,0,0,1", "field invalid: expected 0 for flow fake, found `1`"),
     ] {
         let file = put(&folder, "contacts.csv", format!("{header}{line}\n"));
         assert_eq!(complaint(pairs::read_contacts, &file), format!(", line 2, {expected}"));
@@ -191,12 +194,12 @@ fn a_csv_of_a_common_tool_is_refused_with_its_cure() {
     for (text, expected) in [
         (
             text(&format!(",{}", HEADER.trim()), &format!("0,{row}")),
-            "line 1: an index column stands among the pairs'; leave it out (pandas: index=False)",
+            "line 1: found an index column among the pair's columns; leave it out (pandas: index=False)",
         ),
         (text(&format!("Unnamed: 0,{}", HEADER.trim()), &format!("0,{row}")), "index=False"),
         (
             text(&format!("# {}", HEADER.trim()), row),
-            "line 1: the header begins with `#`, and comments are not read; write x1,y1,z1,r1,x2,y2,z2,r2 alone (numpy.savetxt: comments=\"\")",
+            "line 1: expected the header x1,y1,z1,r1,x2,y2,z2,r2, found one that begins with `#` (numpy.savetxt: comments=\"\")",
         ),
         (
             text(&HEADER.trim().replace(',', ";"), &row.replace(',', ";")),
@@ -204,13 +207,13 @@ fn a_csv_of_a_common_tool_is_refused_with_its_cure() {
         ),
         (text(&spaces, &row.replace(',', " ")), "separated by spaces; separate them by commas"),
         (text(&HEADER.trim().replace(',', "\t"), row), "separated by tabs"),
+        (text(row, row), "line 1: expected the header x1,y1,z1,r1,x2,y2,z2,r2, found `1` (numpy.savetxt: header="),
+        (text("1.0e+00 2.0e+00 3.0e+00", "1 2 3"), "expected the header x1,y1"),
+        (text(HEADER.trim(), "# made by hand"), "line 2: comments are not supported: leave this line out"),
         (
-            text(row, row),
-            "line 1: `1` is no column of this file; it must begin with the header x1,y1,z1,r1,x2,y2,z2,r2 (numpy.savetxt: header=",
+            text(HEADER.trim(), &format!("# {row}")),
+            "line 2, field x1: expected a number, found `# 1`; comments are not supported",
         ),
-        (text("1.0e+00 2.0e+00 3.0e+00", "1 2 3"), "it must begin with the header"),
-        (text(HEADER.trim(), "# made by hand"), "line 2: a comment; comments are not read: leave it out"),
-        (text(HEADER.trim(), &format!("# {row}")), "line 2, field x1: `# 1` is not a number; comments are not read"),
     ] {
         let file = put(&folder, "pairs.csv", &text);
         let said = complaint(spheres, &file);
@@ -308,22 +311,19 @@ fn a_wrong_npy_is_named_by_field() {
     for (bytes, expected) in [
         (Vec::new(), ", header: the file is empty"),
         (HEADER.into(), ", header: this is not an npy file"),
-        (array("<i8", "False", "(1, 8)", 64), ", descr: '<i8' is none of f2, f4 and f8; save a.astype(\"<f4\")"),
-        (array("<f16", "False", "(1, 8)", 128), ", descr: '<f16' is none of f2, f4 and f8; save a.astype(\"<f4\")"),
-        (array("<f4", "False", "(8,)", 32), ", shape: [8] should be [n, 8] or [n, 2, 4]"),
-        (array("<f4", "False", "(8, 1)", 32), ", shape: [8, 1] should be [n, 8] or [n, 2, 4]"),
-        (array("<f4", "False", "(1, 4, 2)", 32), ", shape: [1, 4, 2] should be [n, 8] or [n, 2, 4]"),
-        (array("<f8", "False", "(1, 8)", 32), ", shape: 1 records of 64 bytes, but the data has 32 bytes"),
-        (array("<f4", "False", "(3, 8)", 64), ", shape: 3 records of 32 bytes, but the data has 64 bytes"),
-        (array("<f4", "False", "(1, 8)", 33), ", shape: 1 records of 32 bytes, but the data has 33 bytes"),
+        (array("<i8", "False", "(1, 8)", 64), ", descr: expected f2, f4 or f8, found '<i8'; save a.astype(\"<f4\")"),
+        (array("<f16", "False", "(1, 8)", 128), ", descr: expected f2, f4 or f8, found '<f16'; save a.astype(\"<f4\")"),
+        (array("<f4", "False", "(8,)", 32), ", shape: expected [n, 8] or [n, 2, 4], found [8]"),
+        (array("<f4", "False", "(8, 1)", 32), ", shape: expected [n, 8] or [n, 2, 4], found [8, 1]"),
+        (array("<f4", "False", "(1, 4, 2)", 32), ", shape: expected [n, 8] or [n, 2, 4], found [1, 4, 2]"),
+        (array("<f8", "False", "(1, 8)", 32), ", shape: expected 1 record of 64 bytes, found 32 bytes of data"),
+        (array("<f4", "False", "(3, 8)", 64), ", shape: expected 3 records of 32 bytes, found 64 bytes of data"),
+        (array("<f4", "False", "(1, 8)", 33), ", shape: expected 1 record of 32 bytes, found 33 bytes of data"),
         (
             array("<f4", "False", "(576460752303423488, 8)", 0),
-            ", shape: 576460752303423488 records of 32 bytes, but the data has 0 bytes",
+            ", shape: expected 576 460 752 303 423 488 records of 32 bytes, found 0 bytes of data",
         ),
-        (
-            b"\x93NUMPY\x02\x00\xff\xff\xff\xff{".to_vec(),
-            ", header: 4294967295 bytes long, where an n x 8 array needs fewer than 1024",
-        ),
+        (b"\x93NUMPY\x02\x00\xff\xff\xff\xff{".to_vec(), ", header: expected at most 1024 bytes, found 4294967295"),
     ] {
         let file = put(&folder, "pairs.npy", &bytes);
         assert_eq!(complaint(spheres, &file), expected);
@@ -335,7 +335,7 @@ fn a_wrong_npy_is_named_by_field() {
     let expected = ", data: -1e39, z2 of pair 0, is beyond the largest binary32 number";
     assert_eq!(complaint(spheres, &file), expected);
     let file = put(&folder, "contacts.npy", array("<f4", "False", "(1, 8)", 32));
-    assert_eq!(complaint(pairs::read_contacts, &file), ", descr: '<f4' should be '<u4'");
+    assert_eq!(complaint(pairs::read_contacts, &file), ", descr: expected '<u4', found '<f4'");
 }
 
 #[test]

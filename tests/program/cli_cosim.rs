@@ -219,7 +219,7 @@ fn a_planted_fault_is_found_told_and_kept() {
     }
     assert!(told.contains("replay: afu cosim --rtl rtl --scpus 2 --pairs diamond:3"), "{told}");
     let table = String::from_utf8(failed.get_output().stdout.clone()).expect("UTF-8");
-    assert!(table.ends_with("\nFAIL: 1 of 1 jobs: diamond:3\n"), "{table}");
+    assert!(table.ends_with("\nFAIL: 1 of 1 job: diamond:3\n"), "{table}");
     let report = json(room.path(), "out.json");
     assert_eq!((&report["passed"], &report["mismatches"]), (&false.into(), &132.into()));
     let differ = "132 of 132 records differ from the reference";

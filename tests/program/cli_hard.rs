@@ -46,7 +46,7 @@ fn the_table_says_what_each_engine_is_worth() {
 
     // Every column is on the terminal and in both files.
     let shown = String::from_utf8(first.get_output().stdout.clone()).expect("UTF-8");
-    let columns = ["missed", "false", "non-finite", "normal", "direction", "depth", "position", "BAD", "unsettled"];
+    let columns = ["missed", "false", "non-finite", "normal", "direction", "depth", "position", "gross", "unsettled"];
     assert_eq!(columns, Tally::HEADING);
     let csv = read("out/hard.csv");
     let heading: Vec<&str> = csv.lines().next().expect("a heading").split(',').collect();

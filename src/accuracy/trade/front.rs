@@ -2,7 +2,7 @@
 
 use super::table::BASE;
 use super::{Point, Study};
-use crate::report::table::grouped;
+use crate::report::table::{counted, grouped};
 use std::collections::BTreeSet;
 
 /// A time that points are compared by.
@@ -110,15 +110,15 @@ pub fn step(results: &Study, time: Time, from: &Point, to: &Point) -> String {
     let [bad, bad_before] = [to, from].map(|point| point.tally().bad);
     let bad = match (bad, bad_before) {
         (0, 0) => String::new(),
-        _ => format!(" and {} gross failures instead of {}", grouped(bad), grouped(bad_before)),
+        _ => format!(" and {} instead of {}", counted(bad, "gross failure"), grouped(bad_before)),
     };
     format!(
-        "From {} to {}: {error}, {} wrong decisions instead of {}{bad} in {} pairs{ratio}{luts}.",
+        "From {} to {}: {error}, {} instead of {}{bad} in {}{ratio}{luts}.",
         from.name,
         to.name,
-        grouped(to.wrong()),
+        counted(to.wrong(), "wrong decision"),
         grouped(from.wrong()),
-        grouped(results.pairs()),
+        counted(results.pairs(), "pair"),
     )
 }
 

@@ -30,7 +30,7 @@ pub enum DriveError {
     },
     /// The AFU gives other results than the job expects.
     #[error("expected an AFU with results {expected}, found {found}")]
-    Results {
+    OtherResults {
         /// The value that the job expects.
         expected: Results,
         /// As the AFU says.

@@ -115,7 +115,7 @@ impl<'a> Driver<'a> {
         }
         let expected = if job.hits_per_line.is_some() { Results::Hits } else { Results::All };
         if expected != results {
-            return Err(DriveError::Results { expected, found: results });
+            return Err(DriveError::OtherResults { expected, found: results });
         }
         if self.ports.is_busy() {
             return Err(DriveError::Busy);

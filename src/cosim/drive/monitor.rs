@@ -1,6 +1,7 @@
 //! The line port's protocol, checked in every cycle.
 
 use super::error::DriveError;
+use crate::count::counted;
 use crate::link::{MAX_OUTSTANDING, Memory, Replies, Requests, Violation};
 
 /// Values of a tag: a 4-bit epoch above a 6-bit slot.
@@ -55,7 +56,7 @@ pub enum ProtocolError {
     #[error(transparent)]
     Memory(#[from] Violation),
     /// Done while requests were outstanding.
-    #[error("done is high with {reads} reads and {writes} writes outstanding")]
+    #[error("done is high with {} and {} outstanding", counted((*reads).into(), "read"), counted((*writes).into(), "write"))]
     DoneEarly {
         /// Reads without a response.
         reads: u32,

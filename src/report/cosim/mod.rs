@@ -85,7 +85,7 @@ impl Run {
             let pairs = counted(self.total().pairs, "pair");
             format!("PASS: {jobs}, {pairs}, every bit as in the reference")
         } else {
-            format!("FAIL: {} of {} jobs: {}", bad.len(), self.jobs.len(), bad.join(", "))
+            format!("FAIL: {} of {jobs}: {}", bad.len(), bad.join(", "))
         }
     }
 

@@ -18,11 +18,15 @@ fn each_is_one_error_with_line_and_key() {
         ("bounce = 0.5", "walls = [[1, 1, 1], [0, 2, 2]]", "s.toml:4: walls: the first corner"),
         ("count = 3", "count = 3\nmass = nan", "s.toml:8: mass: NaN is not from"),
         ("count = 3", "count = 3\nradius = 0.0", "s.toml:8: radius: 0 is not from"),
-        ("count = 3", "count = 1_000_000_000", "s.toml:5: bodies: 1000000000 spheres by now: 1000000 at most"),
+        (
+            "count = 3",
+            "count = 1_000_000_000",
+            "s.toml:5: bodies: expected at most 1000000 spheres in total, found 1000000000",
+        ),
         (
             "count = 3\n",
             "count = 3\n[[queries]]\nshape = \"lattice\"\ncount = [9_000_000_000_000_000_000, 9, 9]\n",
-            "s.toml:8: queries: 18446744073709551615 spheres by now: 1000000 at most",
+            "s.toml:8: queries: expected at most 1000000 spheres in total, found 18446744073709551615",
         ),
         ("count = 3", "count = 0", "s.toml:6: bodies: there is no body in it"),
         ("count = 3", "count = 3\nlayers = 2", "s.toml:8: layers: a stack has none"),
@@ -60,7 +64,7 @@ fn each_is_one_error_with_line_and_key() {
 fn moving_bodies_are_fewer_and_files_say_what_is_wrong_in_them() {
     let moving = GOOD.replace("count = 3", "count = 20_001\nvelocity = [1.0, 0.0, 0.0]");
     let error = Scene::parse("s.toml", &moving).expect_err("too many").to_string();
-    assert!(error.contains("20000 at most where bodies move"), "{error}");
+    assert!(error.contains("expected at most 20000 moving spheres in total"), "{error}");
 
     let folder = tempfile::tempdir().unwrap();
     let points = folder.path().join("points.csv");

@@ -44,7 +44,7 @@ fn nothing_is_lost_over_hostile_links() {
 
 /// `HOSTILE_SEEDS` jobs per profile (1000), from seed `HOSTILE_FROM` on (1000).
 #[test]
-#[ignore = "minutes: 1000 links a profile"]
+#[ignore = "minutes: 1000 links per profile"]
 fn nothing_is_lost_over_many_hostile_links() {
     let setting = |name: &str, default| match std::env::var(name) {
         Ok(text) => text.parse().unwrap_or_else(|_| panic!("{name}: a number")),
