@@ -8,7 +8,7 @@ pub(super) mod raw {
     include!(concat!(env!("OUT_DIR"), "/harness.rs"));
 }
 
-/// A model's functions. All of them are there, and of the ABI this crate was built for.
+/// A model's functions. All of them are present, and of the ABI that this crate was built for.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Api {
     pub trace: u32,
@@ -27,9 +27,9 @@ impl Api {
     /// Reads a model's table; `None` if it is of another ABI or incomplete.
     ///
     /// # Safety
-    /// `table` is null or what a model's `afu_model` returned, and that model is never unloaded.
+    /// `table` is null or was returned by a model's `afu_model`, and that model is never unloaded.
     pub(super) unsafe fn read(table: *const raw::afu_table) -> Option<Self> {
-        // SAFETY: the caller's promise; `abi` is the first field in every version of the ABI, and only it is read
+        // SAFETY: as the caller promises. `abi` is the first field in every version of the ABI, and only it is read
         // before it is compared.
         unsafe {
             if table.is_null() || (*table).abi != raw::AFU_ABI {

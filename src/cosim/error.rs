@@ -1,4 +1,4 @@
-//! What can go wrong with a model.
+//! Errors of models.
 
 use std::path::PathBuf;
 
@@ -28,13 +28,13 @@ pub enum CosimError {
         /// Why.
         why: String,
     },
-    /// A source that cannot be built.
+    /// The source cannot be built.
     #[error("{0}")]
     Source(String),
     /// There is no folder for built models.
     #[error("no folder for built models: set AFU_CACHE, XDG_CACHE_HOME or HOME")]
     NoCache,
-    /// Something the model said.
+    /// The simulation failed.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
 }
@@ -48,23 +48,23 @@ impl From<verilate::Error> for CosimError {
     }
 }
 
-/// Why an instance cannot do what was asked.
+/// Why an instance could not do something.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SimulationError {
-    /// The model ended itself: `$fatal`, `$stop`, `$finish` or a check of Verilator's.
+    /// The model stopped the simulation: `$fatal`, `$stop`, `$finish` or a check of Verilator's.
     #[error("the simulated AFU stopped: {0}")]
     Stopped(String),
-    /// A port that is not there, or not as expected.
+    /// A port is missing, or has another direction or width.
     #[error("port `{name}`: expected {expected}, found {found} in the model")]
     Port {
         /// The port.
         name: String,
-        /// Direction and width asked for.
+        /// The direction and width that were expected.
         expected: String,
-        /// What there is.
+        /// The port that was found.
         found: String,
     },
-    /// A waveform could not be begun, written or ended.
+    /// A waveform could not be opened, written or closed.
     #[error("waveform {}: {why}", path.display())]
     Waveform {
         /// The file.

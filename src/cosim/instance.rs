@@ -12,9 +12,9 @@ use super::error::SimulationError;
 use super::port::Port;
 use crate::files::Aside;
 
-/// A simulated module: its ports are memory ([`Port`]), its clock is [`Clock::tick`].
+/// A simulated module. Its ports are memory ([`Port`]), and [`Clock::tick`] is its clock.
 ///
-/// It may move between threads but is used by one at a time.
+/// It may move between threads, but only one thread may use it at a time.
 #[derive(Debug)]
 pub struct Instance {
     api: Api,
@@ -23,15 +23,15 @@ pub struct Instance {
     waveform: RefCell<Option<Waveform>>,
 }
 
-/// A waveform that is being written, aside from where it will stand.
+/// A waveform that is being written, under a temporary name.
 #[derive(Debug)]
 struct Waveform {
     path: PathBuf,
     aside: Aside,
 }
 
-// SAFETY: an instance has a VerilatedContext of its own and refers to nothing of the thread that made it; it is not
-// Sync, and its ports borrow it.
+// SAFETY: an instance has its own VerilatedContext and refers to nothing of the thread that made it. It is not Sync,
+// and its ports borrow it.
 unsafe impl Send for Instance {}
 
 /// The module's clock input.
@@ -58,13 +58,13 @@ impl Instance {
         }
     }
 
-    /// Names and widths of all ports: (name, bits, whether it is an input).
+    /// Names and widths of all ports: (name, bits, true for an input).
     pub fn port_list(&self) -> Vec<(String, u32, bool)> {
         let entry = |port: &raw::afu_port| (name_of(port), port.bits, port.direction == raw::AFU_INPUT);
         self.ports().iter().map(entry).collect()
     }
 
-    /// Whether there is a port of this name.
+    /// True if there is a port of this name.
     pub fn has_port(&self, name: &str) -> bool {
         self.ports().iter().any(|port| name_of(port) == name)
     }
@@ -86,8 +86,8 @@ impl Instance {
 
     fn port(&self, name: &str, bits: u32, direction: u32) -> Result<Port<'_>, SimulationError> {
         let (_, port) = self.find(name, bits, direction)?;
-        // SAFETY: address and width come from the harness; the memory lives as long as the instance, which the port
-        // borrows, and which is not Sync.
+        // SAFETY: address and width come from the harness. The memory lives as long as the instance, which is not Sync
+        // and which the port borrows.
         Ok(unsafe { Port::new(port.address, bits) })
     }
 
@@ -115,21 +115,22 @@ impl Instance {
         self.find(name, 1, raw::AFU_INPUT).map(|(index, _)| Clock { instance: self, index })
     }
 
-    /// Settles the outputs that depend on inputs without a clock between.
+    /// Settles the outputs that depend on inputs combinationally.
     ///
     /// # Errors
-    /// Returns an error if the module ends itself.
+    /// Returns an error if the module stops the simulation.
     pub fn evaluate(&self) -> Result<(), SimulationError> {
         // SAFETY: the handle is live.
         self.checked(unsafe { (self.api.evaluate)(self.handle.as_ptr()) })
     }
 
-    /// Writes a waveform of all that follows to `path`, with the time axis of a clock of this half period. The model
-    /// must have been built with a [`Trace`](super::Trace). The file is there once [`Instance::trace_close`] has ended
-    /// it, and not before; then another may follow.
+    /// Writes a waveform to `path` from now on, with the time axis of a clock of this half period. The model must have
+    /// been built with a [`Trace`](super::Trace). The file exists only after [`Instance::trace_close`]. Another
+    /// waveform may follow.
     ///
     /// # Errors
-    /// Returns an error if the model was built without, one is open already, or the file cannot be written.
+    /// Returns an error if the model was built without a trace, a waveform is already open, or the file cannot be
+    /// written.
     pub fn trace_open(&self, path: &Path, half_period_ps: u64) -> Result<(), SimulationError> {
         let fail = |why: String| SimulationError::Waveform { path: path.to_owned(), why };
         let aside = Aside::new(path).map_err(|e| fail(e.to_string()))?;
@@ -144,10 +145,11 @@ impl Instance {
         }
     }
 
-    /// Ends the waveform and puts its file in its place.
+    /// Closes the waveform and moves its file to its place.
     ///
     /// # Errors
-    /// Returns an error if none is open, or the file could not be written: then there is none.
+    /// Returns an error if no waveform is open, or if the file could not be written. In the second case there is no
+    /// file.
     pub fn trace_close(&self) -> Result<(), SimulationError> {
         // SAFETY: the handle is live.
         self.checked(unsafe { (self.api.trace_close)(self.handle.as_ptr()) })?;
@@ -160,7 +162,7 @@ impl Instance {
             return Ok(());
         }
         let why = message(self.api, self.handle.as_ptr());
-        // Taken, its file goes too.
+        // Dropping the waveform also removes its file.
         match self.waveform.borrow_mut().take_if(|_| result == raw::AFU_WAVEFORM) {
             Some(Waveform { path, .. }) => Err(SimulationError::Waveform { path, why }),
             None => Err(SimulationError::Stopped(why)),
@@ -169,22 +171,21 @@ impl Instance {
 }
 
 impl Clock<'_> {
-    /// `cycles` full cycles: each a rising edge, at which registers take what their inputs were set to, and a falling
-    /// one.
+    /// Runs `cycles` full cycles. Each has a rising edge, at which registers take their inputs, and a falling edge.
     ///
     /// # Errors
-    /// Returns an error if the module ends itself.
+    /// Returns an error if the module stops the simulation.
     #[inline]
     pub fn tick(self, cycles: u64) -> Result<(), SimulationError> {
         let Instance { api, handle, .. } = self.instance;
-        // SAFETY: the handle is live and the index is that of one of its ports.
+        // SAFETY: the handle is live, and the index belongs to one of its ports.
         self.instance.checked(unsafe { (api.clock)(handle.as_ptr(), self.index, cycles) })
     }
 }
 
 impl Drop for Instance {
     fn drop(&mut self) {
-        // SAFETY: the handle is live and nothing uses it after this.
+        // SAFETY: the handle is live, and nothing uses it after this.
         unsafe { (self.api.destroy)(self.handle.as_ptr()) }
     }
 }
@@ -195,6 +196,6 @@ fn name_of(port: &raw::afu_port) -> String {
 }
 
 fn message(api: Api, handle: *mut raw::afu_instance) -> String {
-    // SAFETY: the handle is live or null, which asks for this thread's creation error; the text is never null.
+    // SAFETY: the handle is live, or null to get this thread's creation error. The text is never null.
     unsafe { CStr::from_ptr((api.error)(handle)) }.to_string_lossy().into_owned()
 }

@@ -1,8 +1,8 @@
-//! Verilated models in Rust: built, loaded, driven.
+//! Builds, loads and drives Verilated models.
 //!
-//! A [`Model`] is compiled code, built in by `build.rs` or made at run time by the same code ([`verilate`]) and cached;
-//! an [`Instance`] is one module with its state, whose ports are memory. [`drive`] gives an AFU a job over a simulated
-//! link and checks every cycle of it.
+//! A [`Model`] is compiled code. `build.rs` builds one in, and the same code ([`verilate`]) makes and caches others at
+//! run time. An [`Instance`] is one module with its state, whose ports are memory. [`drive`] runs a job on an AFU over
+//! a simulated link and checks every cycle.
 
 mod abi;
 pub mod drive;

@@ -1,4 +1,4 @@
-//! Compiled models: the built-in one, and those built and loaded at run time.
+//! Compiled models: the built-in one, and others that are built and loaded at run time.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -18,8 +18,8 @@ const HARNESS: Harness<'static> = Harness {
     fst: include_str!("../../tb/fst.cpp"),
 };
 
-/// The code of one module, of which any number of [`Instance`]s can be made. It stays loaded until the process ends:
-/// Verilator's code has thread-local and static state which unloading would pull from under it.
+/// The code of one module, from which any number of [`Instance`]s can be made. It stays loaded until the process ends,
+/// because Verilator's code has thread-local and static state that must not be unloaded.
 #[derive(Clone, Debug)]
 pub struct Model {
     api: Api,
@@ -27,8 +27,8 @@ pub struct Model {
 }
 
 impl Model {
-    /// The model of the committed `rtl/` with its default parameters, linked into this program; nothing when its build
-    /// had no Verilator (a warning said so then).
+    /// The model of the committed `rtl/` with its default parameters, linked into this program. `None` if the build had
+    /// no Verilator (a warning said so).
     pub fn built_in() -> Option<Self> {
         #[cfg(afu_built_in)]
         // SAFETY: the model is part of this program.
@@ -38,18 +38,19 @@ impl Model {
         api.map(|api| Self { api, shared_object: None })
     }
 
-    /// Builds (or finds in the cache) and loads a model of `source`.
+    /// Builds a model of `source`, or finds it in the cache, and loads it.
     ///
     /// # Errors
-    /// [`CosimError::MissingTool`] without Verilator or a C++ compiler; [`CosimError::Build`] when one of them refuses.
+    /// Returns [`CosimError::MissingTool`] without Verilator or a C++ compiler, and [`CosimError::Build`] if one of
+    /// them fails.
     pub fn build(source: &Source, trace: Trace) -> Result<Self, CosimError> {
         Self::build_in(source, trace, &user_folder().ok_or(CosimError::NoCache)?)
     }
 
-    /// [`Model::build`] with a folder for built models instead of the user's.
+    /// As [`Model::build`], but keeps built models in the folder `cache` instead of the user's.
     ///
     /// # Errors
-    /// As `build`.
+    /// Returns the errors of `build`.
     pub fn build_in(source: &Source, trace: Trace, cache: &Path) -> Result<Self, CosimError> {
         source.check()?;
         let design = Design {
@@ -64,33 +65,33 @@ impl Model {
 
     fn load(path: PathBuf) -> Result<Self, CosimError> {
         let fail = |why: String| CosimError::Load { path: path.clone(), why };
-        // SAFETY: the library is one that `verilate` made; its only initialisers are those of Verilator's statics.
+        // SAFETY: `verilate` made the library, whose only initialisers are those of Verilator's statics.
         let library = unsafe { Library::open(Some(&path), RTLD_NOW | RTLD_LOCAL) }.map_err(|e| fail(cause(&e)))?;
-        // SAFETY: the symbol is declared so in harness.h, which the library was compiled with.
+        // SAFETY: harness.h, with which the library was compiled, declares the symbol with this type.
         let symbol = unsafe { library.get::<unsafe extern "C" fn() -> *const raw::afu_table>(b"afu_model\0") };
         let function = *symbol.map_err(|e| fail(cause(&e)))?;
         std::mem::forget(library);
-        // SAFETY: as above, and the library is never unloaded now.
+        // SAFETY: as above. From now on the library is never unloaded.
         let api = unsafe { Api::read(function()) };
         let api = api.ok_or_else(|| fail("it is of another version of the ABI".to_owned()))?;
         Ok(Self { api, shared_object: Some(path) })
     }
 
-    /// Makes an instance. With seed 0 every bit that no reset reaches begins as zero, otherwise at random: a design
-    /// that is right only after a lucky start shows itself.
+    /// Makes an instance. With seed 0, every bit that no reset reaches begins as zero, otherwise at random. A design
+    /// that only works from a lucky start is found this way.
     ///
     /// # Errors
-    /// Returns an error if the module ends itself at once.
+    /// Returns an error if the module stops the simulation at once.
     pub fn instance(&self, seed: u64) -> Result<Instance, CosimError> {
         Ok(Instance::new(self.api, seed)?)
     }
 
-    /// SHA-256 of the Verilog it was made from, as [`Source::sha256`] gives it.
+    /// SHA-256 of the Verilog that the model was made from, as [`Source::sha256`] gives it.
     pub fn rtl_sha256(&self) -> &str {
         self.api.rtl_sha256
     }
 
-    /// The waveform its instances can write.
+    /// The kind of waveform that its instances can write.
     pub fn trace(&self) -> Trace {
         match self.api.trace {
             raw::AFU_TRACE_VCD => Trace::Vcd,

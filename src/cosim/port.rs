@@ -1,4 +1,4 @@
-//! Ports as memory: an address fetched once, then plain reads and writes.
+//! Ports as memory: an address is fetched once, and then read and written directly.
 
 use std::cell::Cell;
 use std::slice;
@@ -10,23 +10,23 @@ pub struct Port<'a> {
     mask: u64,
 }
 
-/// Verilator keeps a port in the smallest unsigned integer that holds it; one of more than 64 bits in words of 32, the
-/// least significant first.
+/// Verilator keeps a port in the smallest unsigned integer that holds it. A port of more than 64 bits is in words of 32
+/// bits, the least significant first.
 #[derive(Clone, Copy, Debug)]
 enum Memory<'a> {
     U8(&'a Cell<u8>),
     U16(&'a Cell<u16>),
     U32(&'a Cell<u32>),
     U64(&'a Cell<u64>),
-    /// And the bits of the last word.
+    /// The words, and the number of bits in the last one.
     Words(&'a [Cell<u32>], u32),
 }
 
 impl<'a> Port<'a> {
     /// # Safety
-    /// `address` is that of a Verilated port of `bits` bits, valid for 'a and used by one thread.
+    /// `address` belongs to a Verilated port of `bits` bits, is valid for 'a and is used by one thread.
     pub(super) unsafe fn new(address: *mut std::ffi::c_void, bits: u32) -> Self {
-        // SAFETY: the caller's promise, and Verilator's types of ports (CData, SData, IData, QData, VlWide).
+        // SAFETY: as the caller promises, with Verilator's types of ports (CData, SData, IData, QData, VlWide).
         let memory = unsafe {
             match bits {
                 0..=8 => Memory::U8(&*address.cast()),
@@ -42,7 +42,7 @@ impl<'a> Port<'a> {
         Self { memory, mask: u64::MAX >> (64 - bits.clamp(1, 64)) }
     }
 
-    /// The port's value, of more than 64 bits the low ones.
+    /// The port's value. Of a port with more than 64 bits, the low 64.
     #[inline]
     pub fn get(self) -> u64 {
         match self.memory {
@@ -57,7 +57,7 @@ impl<'a> Port<'a> {
         }
     }
 
-    /// Whether any bit is set.
+    /// True if any bit is set.
     #[inline]
     pub fn is_high(self) -> bool {
         self.get() != 0
@@ -90,7 +90,8 @@ impl<'a> Port<'a> {
         words
     }
 
-    /// Sets the port, for the next evaluation, to words of 32 bits, the least significant first. The others are zero.
+    /// Sets the port, for the next evaluation, to words of 32 bits, the least significant first. Missing words are
+    /// zero.
     #[inline]
     pub fn set_words(self, words: &[u32]) {
         let word = |index: usize| words.get(index).copied().unwrap_or(0);

@@ -1,4 +1,4 @@
-//! Verilog to build a model of.
+//! The Verilog from which a model is built.
 
 use std::path::Path;
 
@@ -30,7 +30,7 @@ impl Source {
     /// The module `top` in the files that the file `list` lists, relative to its folder.
     ///
     /// # Errors
-    /// As `from_folder`.
+    /// Returns the errors of `from_folder`.
     pub fn from_list(list: &Path, top: &str) -> Result<Self, CosimError> {
         Ok(Self::new(top, verilate::read_file_list(list)?))
     }
@@ -58,7 +58,7 @@ impl Source {
         &self.parameters
     }
 
-    /// SHA-256 of the files, in lower-case hex; parameters don't count.
+    /// SHA-256 of the files, in lower-case hex. Parameters do not count.
     pub fn sha256(&self) -> String {
         verilate::rtl_sha256(&self.files)
     }

@@ -7,10 +7,11 @@ use crate::kernel::{Engine, EngineError};
 use crate::query::{ContactRecord, PairRecord};
 
 impl<T: Transport> Session<T> {
-    /// The contacts of `pairs`: in one transaction, or in several where the buffers hold fewer. None without pairs.
+    /// The contacts of `pairs`, from one transaction, or from several if the buffers hold fewer pairs. Empty without
+    /// pairs.
     ///
     /// # Errors
-    /// As the steps of [`Transaction`](super::Transaction).
+    /// Returns the errors of the steps of [`Transaction`](super::Transaction).
     pub fn run(&mut self, pairs: &[PairRecord]) -> Result<Vec<ContactRecord>, HostError> {
         let capacity = usize::try_from(self.workspace().capacity()).unwrap_or(usize::MAX);
         let mut contacts = Vec::with_capacity(pairs.len());

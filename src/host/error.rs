@@ -9,38 +9,38 @@ use crate::record::{JobError, OtherRadius};
 /// Why a transaction has no results.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum HostError {
-    /// No workspace is like that.
+    /// The workspace cannot have this number of pages.
     #[error("a workspace of {0} pages of 2 MB: expected 1 to 1024 pages")]
     Pages(u64),
-    /// Source and destination cannot lie there.
+    /// Source and destination cannot be there.
     #[error("the buffers: {0}")]
     Buffers(&'static str),
-    /// An address that is not the workspace's.
+    /// The address is not in the workspace.
     #[error("virtual address {0:#x} is not in the workspace: give it more pages")]
     Outside(u64),
-    /// More pairs than the buffers hold.
+    /// There are more pairs than the buffers hold.
     #[error(
         "nCol {pairs} is beyond the buffers, which hold {capacity}: give the workspace {pages} pages (1024 at most), or send the \
          pairs in several transactions, as the session as an engine does"
     )]
     TooManyPairs {
-        /// Pairs that were to be sent.
+        /// The number of pairs to be sent.
         pairs: u64,
         /// The number of pairs that fit.
         capacity: u64,
-        /// Pages that would hold them.
+        /// The number of pages that would hold them.
         pages: u64,
     },
-    /// A pair with another radius than the AFU's.
+    /// The pair has a radius that differs from the AFU's.
     #[error(transparent)]
     Radius(#[from] OtherRadius),
-    /// The device never said who it is.
+    /// The device never identified itself.
     #[error(
         "AFU_ID not in the DSM after {0} cycles: check that the FPGA holds this AFU and that its clock runs, then begin a new \
          transaction"
     )]
     NoIdentity(u64),
-    /// The device is something else.
+    /// The device is not this AFU.
     #[error(
         "expected AFU_ID {:032x} version {}, found {afu_id:032x} version {version}: load the AFU that this version of the \
          program generates",
@@ -48,12 +48,12 @@ pub enum HostError {
         map::VERSION
     )]
     Identity {
-        /// Who it is.
+        /// The AFU_ID that was found.
         afu_id: u128,
         /// The version of its register map.
         version: u32,
     },
-    /// The device is another AFU of ours.
+    /// The device is an AFU of another configuration.
     #[error(
         "the FPGA's AFU differs in {what}: expected {expected}, found {found}; load the AFU of this configuration, or create the \
          session for the one that is loaded"
@@ -61,12 +61,12 @@ pub enum HostError {
     Capability {
         /// The property that differs.
         what: &'static str,
-        /// As asked for.
+        /// The expected value.
         expected: u64,
-        /// As the device says.
+        /// The value that the device reports.
         found: u64,
     },
-    /// The status never came.
+    /// The status never arrived.
     #[error(
         "the job did not finish after {cycles} cycles: no status, waiting for {} ({} and {} without a \
          response); end the transaction, which resets the AFU, and send it again",
@@ -77,17 +77,17 @@ pub enum HostError {
     NoStatus {
         /// Cycles since the start word.
         cycles: u64,
-        /// Reads that were asked for and not answered.
+        /// Read requests without a response.
         reads: u64,
-        /// Writes likewise.
+        /// Write requests without a response.
         writes: u64,
     },
-    /// A line of the results that was never written.
+    /// A line of the results was never written.
     #[error(
         "line {0} of the destination was never written, although the job succeeded: the link lost a write; send the job again"
     )]
     Unwritten(u64),
-    /// Records that cannot be those of the pairs that touch.
+    /// The records cannot be those of the pairs that touch.
     #[error("{0}, although the job succeeded: send it again, or load the AFU of this version of the program")]
     Hit(#[from] HitError),
     /// The device ended the job with an error.
@@ -100,56 +100,56 @@ pub enum HostError {
         /// What to do.
         advice: &'static str,
     },
-    /// Invalid pairs.
+    /// The job had invalid pairs.
     #[error(
         "{}; the {field} of the first, pair {first}, is in {record} NaN, infinite or a negative radius: correct it or leave it out",
         counted((*count).into(), "invalid pair")
     )]
     InvalidPairs {
-        /// Their number.
+        /// The number of invalid pairs.
         count: u32,
-        /// The number of the first.
+        /// The number of the first invalid pair.
         first: u32,
-        /// The field.
+        /// The first invalid field of that pair.
         field: &'static str,
-        /// The numbers of the AFU's records.
+        /// The format of the AFU's records.
         record: RecordFormat,
     },
-    /// The transport.
+    /// The transport failed.
     #[error(transparent)]
     Transport(#[from] TransportError),
 }
 
-/// Why the hits of an AFU cannot be trusted from here on.
+/// Why the remaining hits of an AFU cannot be trusted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum HitError {
-    /// A record's line was never written.
+    /// The line of a record was never written.
     #[error("contact {index} of {count} was never written")]
     Unwritten {
-        /// The record, from 0.
+        /// The index of the record, from 0.
         index: usize,
-        /// Records that the AFU counted.
+        /// The number of records that the AFU counted.
         count: u32,
     },
-    /// Numbers of pairs must ascend, and be those of pairs.
+    /// Pair numbers must ascend and be below the number of pairs.
     #[error(
         "contact {index} is of pair {number}, after {}, of {pairs} pairs",
         after.map_or_else(|| "no other".to_owned(), |last| format!("pair {last}"))
     )]
     Number {
-        /// The record, from 0.
+        /// The index of the record, from 0.
         index: usize,
         /// The number of its pair.
         number: u32,
-        /// The number before it.
+        /// The pair number before it.
         after: Option<u32>,
-        /// Pairs of the job.
+        /// The number of pairs in the job.
         pairs: usize,
     },
 }
 
 impl HostError {
-    /// The error of a status's code, if it is one.
+    /// The error of a status code; `None` if the code is not an error.
     pub(super) fn of_status(code: u8) -> Option<Self> {
         if code == 0 {
             return None;

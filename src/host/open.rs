@@ -1,4 +1,4 @@
-//! A transaction's hold on its session: what was begun and must be undone, by the last step or by dropping.
+//! The resources that a transaction takes from its session. The last step, or a drop, undoes what was begun.
 
 use super::error::HostError;
 use super::received::{Begin, Records, Status, outcome};
@@ -16,7 +16,7 @@ use crate::query::PairRecord;
 pub(super) struct Open<'s, T: Transport> {
     pub(super) session: &'s mut Session<T>,
     is_spl_started: bool,
-    /// The pairs in the source, which the host needs again where the AFU leaves some unsettled.
+    /// The pairs in the source. The host needs them again if the AFU leaves some unsettled.
     pairs: Vec<PairRecord>,
     report: Report,
 }
@@ -34,7 +34,7 @@ impl<'s, T: Transport> Open<'s, T> {
         self.pairs.len() as u32
     }
 
-    /// Puts pairs into the source in the place of those that were there, and clears what their results take.
+    /// Replaces the pairs in the source, and clears the memory for their results.
     pub(super) fn load(&mut self, pairs: &[PairRecord]) -> Result<(), HostError> {
         self.session.workspace.layout().check(pairs)?;
         let (layout, capacity) = (*self.session.workspace.layout(), self.session.workspace.capacity());
@@ -70,12 +70,13 @@ impl<'s, T: Transport> Open<'s, T> {
         outcome(self.session, begin, self.count(), end)
     }
 
-    /// The records of a job that ended well, and what it took.
+    /// The records of a job that ended well, and what the job took.
     pub(super) fn results(&mut self, outcome: &Outcome) -> Result<JobResults, HostError> {
         HostError::of_status(outcome.error).map_or(Ok(()), Err)?;
         let layout = self.session.workspace.layout();
         let Records { numbers, mut contacts } = Records::read(layout, self.count(), outcome)?;
-        // Before anyone reads them. The profile `exact`, which leaves pairs unsettled, has a record for each.
+        // Before anyone reads the records. Only the profile `exact` leaves pairs unsettled, and it has a record for
+        // each pair.
         let unsettled = if layout.number_bits() > 0 { 0 } else { settle(&self.pairs, &mut contacts, layout.fields()) };
         let report = &mut self.report;
         report.run = outcome.cycles_busy;
@@ -94,7 +95,7 @@ impl<'s, T: Transport> Open<'s, T> {
         })
     }
 
-    /// Forgets what the transaction put, or let be put, into the buffers.
+    /// Forgets everything that was written into the buffers for the transaction.
     fn free(&mut self) {
         let Session { transport, workspace, .. } = &mut *self.session;
         let (layout, pairs) = (*workspace.layout(), self.pairs.len() as u64);
@@ -109,7 +110,7 @@ impl<'s, T: Transport> Open<'s, T> {
         }
     }
 
-    /// Stops SPL and frees what the transaction used of the workspace; what it took.
+    /// Stops SPL and frees the part of the workspace that the transaction used. Returns the cycles that it took.
     pub(super) fn finish(&mut self) -> Result<Report, HostError> {
         if std::mem::take(&mut self.is_spl_started) {
             let begun = self.session.transport.cycle();

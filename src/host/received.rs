@@ -9,7 +9,8 @@ use crate::outcome::Outcome;
 use crate::query::{ContactRecord, Flow};
 use crate::record::{Contacts, Layout};
 
-/// The beginning of a job: the cycle of its start word, the link's traffic and the device's writes before it.
+/// The state at the start of a job: the cycle of its start word, and the link's traffic and the device's writes until
+/// then.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Begin {
     pub(super) cycle: u64,
@@ -25,7 +26,7 @@ pub(super) struct Status {
     pub(super) cycle: u64,
 }
 
-/// The outcome of the job that began and ended so. Bytes count all that went over the link since the start word.
+/// The outcome of the job with this beginning and end. Bytes count all traffic over the link since the start word.
 pub(super) fn outcome<T: Transport>(session: &Session<T>, begin: &Begin, pairs: u32, end: &Status) -> Outcome {
     let (transport, workspace) = (&session.transport, &session.workspace);
     let (latencies, figures) = (session.dsm(map::LATENCY_LINE), session.dsm(map::PERFORMANCE_LINE));
@@ -56,10 +57,10 @@ pub(super) fn outcome<T: Transport>(session: &Session<T>, begin: &Begin, pairs: 
     }
 }
 
-/// The records of a job: for each pair in turn, or only for those that touch.
+/// The records of a job: one per pair in order, or only those of the pairs that touch.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Records {
-    /// For each record its pair's number.
+    /// For each record, the number of its pair.
     pub(crate) numbers: Vec<u32>,
     pub(crate) contacts: Vec<ContactRecord>,
 }
@@ -78,7 +79,8 @@ impl Records {
         Ok(Self { contacts: (0..pairs as usize).map(contact).collect::<Result<_, _>>()?, numbers })
     }
 
-    /// The `count` records of pairs that touch, in the order of their numbers. If one is wrong, those before it.
+    /// The `count` records of the pairs that touch, in the order of their numbers. If one is wrong, the records before
+    /// it.
     pub(crate) fn hits(memory: &Contacts<'_>, pairs: usize, count: u32) -> (Self, Option<HitError>) {
         let mut records = Self::default();
         for index in 0..count as usize {

@@ -6,35 +6,36 @@ use super::report::Report;
 use crate::query::{ContactRecord, PairRecord};
 use crate::record::Layout;
 
-/// The contacts of a transaction, with what the AFU said at its end.
+/// The contacts of a transaction, with what the AFU reported at its end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JobResults {
-    /// A record for each pair, or only for each pair that touches, as the AFU's results are, in the pairs' order. Words
-    /// that the AFU does not compute are zero.
+    /// A record for each pair, or only for each pair that touches, as the AFU writes them, in the order of the pairs.
+    /// Words that the AFU does not compute are zero.
     pub contacts: Vec<ContactRecord>,
-    /// For each of `contacts` its pair's number in the job, from 0.
+    /// For each record in `contacts`, the number of its pair in the job, from 0.
     pub numbers: Vec<u32>,
-    /// Contacts, as the AFU counted.
+    /// The number of contacts that the AFU counted.
     pub hits: u32,
-    /// Invalid pairs, as the AFU counted.
+    /// The number of invalid pairs that the AFU counted.
     pub invalid: u32,
-    /// The number of the first.
+    /// The number of the first invalid pair.
     pub first_invalid: Option<u32>,
-    /// Pairs that the AFU left to the host (profile exact), which settled them: their contacts are the host's.
+    /// The number of pairs that the AFU left to the host (profile exact). The host resolved them, so these contacts are
+    /// the host's.
     pub unsettled: u64,
-    /// The AFU's records: what is invalid is so in their numbers.
+    /// The format of the AFU's records: a pair is invalid if it is invalid in that format.
     pub layout: Layout,
-    /// The cycles of its phases.
+    /// The cycles of the transaction's phases.
     pub report: Report,
 }
 
 impl JobResults {
-    /// A contact for each pair, in their order; where only contacts come back, the others read as pairs without one.
+    /// A contact for each pair, in their order. If the AFU returns only contacts, the other pairs read as no contact.
     pub fn by_pair(&self) -> Vec<ContactRecord> {
         by_pair(usize::try_from(self.report.pairs).unwrap_or(usize::MAX), &self.numbers, &self.contacts)
     }
 
-    /// Nothing, if every pair was one.
+    /// Succeeds if every pair was valid.
     ///
     /// # Errors
     /// Returns [`HostError::InvalidPairs`], which names the first invalid pair of `pairs` and its field.

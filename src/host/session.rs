@@ -1,4 +1,4 @@
-//! A device with its workspace, and what transactions do with both.
+//! A device with its workspace, and the operations that transactions use.
 
 use super::error::HostError;
 use super::received::{Begin, Status};
@@ -15,7 +15,7 @@ use crate::patience::{self, Patience, Work};
 use crate::query::PairRecord;
 use crate::record::{Capability, LINE_BITS, Layout, Part, pack};
 
-/// Cycles between two calls for progress.
+/// Cycles between two calls of `progress`.
 pub(super) const PROGRESS_CYCLES: u64 = 4096;
 
 /// The AFU that a session expects.
@@ -23,7 +23,7 @@ pub(super) const PROGRESS_CYCLES: u64 = 4096;
 pub struct Expected {
     /// The capability word.
     pub capability: u64,
-    /// The bits of that word in which the AFU must agree.
+    /// The bits of that word that the AFU must match.
     pub compared: u64,
     /// The layout of records in its lines.
     pub layout: Layout,
@@ -33,14 +33,14 @@ impl Expected {
     /// The AFU of a configuration.
     ///
     /// # Errors
-    /// Returns an error if it cannot be generated.
+    /// Returns an error if the AFU cannot be generated.
     pub fn new(config: &Config) -> Result<Self, BuildError> {
         let afu = Afu::generate(Spec::from(config.clone()))?;
         Ok(Self { capability: afu.capability(), compared: u64::MAX, layout: afu.layout() })
     }
 
-    /// An AFU of a configuration whose Verilog may have been edited: of its capability word only the number of SCPUs is
-    /// compared.
+    /// The AFU of a configuration whose Verilog may have been edited. Of its capability word, only the number of SCPUs
+    /// is compared.
     pub fn edited(config: &Config) -> Self {
         Self { capability: config.scpus.into(), compared: Part::SCPUS.mask(), layout: Layout::of(LINE_BITS, config) }
     }
@@ -57,31 +57,32 @@ impl Expected {
     }
 }
 
-/// A device and a workspace: one transaction after another. The workspace's pages are pinned once, for all of them.
+/// A device and a workspace, which run one transaction after another. The workspace's pages are pinned once for all of
+/// them.
 #[derive(Debug)]
 pub struct Session<T: Transport> {
     pub(super) transport: T,
     pub(super) workspace: Workspace,
     expected: Expected,
-    /// The AFU as it says itself, once it did.
+    /// The capability that the AFU reported; `None` before it did.
     afu: Capability,
-    /// The last transaction's number.
+    /// The number of the last transaction.
     pub(super) sequence: u32,
-    /// Cycles without a response, with one owed, after which the AFU gives a job up; 0: never.
+    /// Cycles without a response, while one is outstanding, after which the AFU aborts a job. With 0 it never does.
     pub watchdog: u32,
-    /// Cycles that a status may take; without it, what [`patience`](crate::patience) says.
+    /// The most cycles to wait for a status. `None` leaves it to [`patience`](crate::patience).
     pub max_cycles: Option<u64>,
     pub(super) reports: Vec<Report>,
 }
 
 impl<T: Transport> Session<T> {
-    /// A session with the device behind `transport`, over `workspace`, which is to be of the expected AFU's layout.
+    /// A session with the device behind `transport`, over `workspace`, which must have the expected AFU's layout.
     pub fn new(transport: T, workspace: Workspace, expected: Expected) -> Self {
         let afu = Capability::from_bits(expected.capability);
         Self { transport, workspace, expected, afu, sequence: 0, watchdog: 0, max_cycles: None, reports: Vec::new() }
     }
 
-    /// A transaction: the paper's step 1, in which the host gets its pointers.
+    /// Begins a transaction. This is the paper's step 1, in which the host gets its pointers.
     pub fn transaction(&mut self) -> Transaction<'_, T, Pointed> {
         Transaction::new(self)
     }
@@ -91,8 +92,8 @@ impl<T: Transport> Session<T> {
         &self.workspace
     }
 
-    /// From the next transaction on, `workspace` takes the place of the one before: writes that a reset left on their
-    /// way may still arrive there.
+    /// Replaces the workspace from the next transaction on. Writes that were in flight during a reset may still arrive
+    /// in the old one.
     pub fn set_workspace(&mut self, workspace: Workspace) {
         self.workspace = workspace;
     }
@@ -123,7 +124,7 @@ impl<T: Transport> Session<T> {
         (first..first + lines).for_each(|line| self.transport.memory_mut().set(line, &[0; 16]));
     }
 
-    /// The cycles that this number of pairs may take.
+    /// The most cycles that this number of pairs may take.
     fn patience(&self, pairs: u64) -> Patience {
         let layout = self.workspace.layout();
         let (reads, writes) = (layout.source_lines(pairs), layout.destination_lines(pairs));
@@ -131,7 +132,7 @@ impl<T: Transport> Session<T> {
         patience::spl2(&self.afu, self.transport.link(), &self.transport.spl2(), &work)
     }
 
-    /// Puts pairs into the source as the next job, whose start word is still to come.
+    /// Puts pairs into the source as the next job. Its start word is not written yet.
     pub(super) fn load(&mut self, pairs: &[PairRecord]) -> Result<(), HostError> {
         let (layout, count) = (*self.workspace.layout(), pairs.len() as u64);
         self.put(self.workspace.source(), map::CONTROL_LINE.into(), &[0; 16])?;
@@ -152,7 +153,7 @@ impl<T: Transport> Session<T> {
         Ok(())
     }
 
-    /// Resets SPL and AFU, gives them their memory, waits for the AFU to say who it is, enables it.
+    /// Resets SPL and the AFU, gives them their memory, waits for the AFU to identify itself, and enables it.
     pub(super) fn start_spl(&mut self) -> Result<(), HostError> {
         let pair = |high: Csr, low: Csr| (high.offset, low.offset);
         self.transport.limit(None);
@@ -226,7 +227,7 @@ impl<T: Transport> Session<T> {
         self.put(self.workspace.source(), map::CONTROL_LINE.into(), &line)
     }
 
-    /// Begins the job that is loaded: from now on the device may touch its lines only.
+    /// Begins the job that is loaded. From now on the device may access only the lines of this job.
     pub(super) fn start(&mut self, pairs: u32) -> Result<Begin, HostError> {
         let Self { transport, workspace, .. } = self;
         transport.limit(Some(workspace.limits(pairs.into())));
@@ -235,7 +236,7 @@ impl<T: Transport> Session<T> {
         Ok(Begin { cycle, traffic, logged })
     }
 
-    /// The status of the job that began so, once it is there.
+    /// The status of the job with this beginning; `None` until it has arrived.
     pub(super) fn status(&self, begin: &Begin) -> Option<Status> {
         let status_line = u64::from(map::STATUS_LINE) * LINE_BYTES;
         let at = self.workspace.physical(self.workspace.context() + status_line)?;
@@ -245,7 +246,8 @@ impl<T: Transport> Session<T> {
         Some(Status { line: write.data, cycle: write.cycle })
     }
 
-    /// Waits for the status of a job of `pairs` pairs; `progress` hears now and then what went over the link so far.
+    /// Waits for the status of a job of `pairs` pairs, and calls `progress` now and then with the traffic over the link
+    /// so far.
     pub(super) fn wait_for_status(
         &mut self,
         begin: &Begin,

@@ -1,5 +1,5 @@
-//! How a job reaches a simulated AFU and its results come back: through a host if the shell has registers, at the line
-//! port without one.
+//! Runs a job on a simulated AFU and gets its results: through a host if the shell has registers, otherwise at the line
+//! port.
 
 use super::session::PROGRESS_CYCLES;
 use super::{Expected, HostError, Session, Transport, Workspace};
@@ -12,7 +12,7 @@ use crate::link::{Link, Traffic};
 use crate::query::PairRecord;
 use crate::record::pack;
 
-/// A job that is to run.
+/// A job to be run.
 pub(crate) struct Run<'a> {
     pub(crate) config: &'a Config,
     pub(crate) expected: Expected,
@@ -25,7 +25,7 @@ impl Run<'_> {
     /// Runs the job on `afu` over `link`.
     ///
     /// # Errors
-    /// The error of the host or, without a host, of the driver.
+    /// Returns the error of the host or, if the shell has no registers, of the driver.
     pub(crate) fn on<E>(self, afu: &Instance, link: Link) -> Result<Outcome, E>
     where
         E: From<HostError> + From<DriveError>,

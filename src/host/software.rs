@@ -1,7 +1,7 @@
-//! The AFU in software: the same registers, the same lines in memory, the reference kernel between them.
+//! The AFU in software: the same registers and the same lines in memory, with the reference kernel between them.
 //!
-//! A job takes no time of its own: cycle counters and latencies in the DSM are zero. Everything else is written as the
-//! hardware writes it, and in its order.
+//! A job takes no time, so cycle counters and latencies in the DSM are zero. Everything else is written as the hardware
+//! writes it, in the same order.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -19,7 +19,7 @@ use crate::record::{Layout, pack_contacts, unpack_pairs};
 /// The content of lines that were never written, as in the simulated link.
 const UNWRITTEN: Line = [0xDEAD_BEEF; 16];
 const DSM_LINES: u64 = map::DSM_BYTES / LINE_BYTES;
-/// The status of a job that found no invalid pair.
+/// The status field of a job without invalid pairs.
 const NONE: u128 = u32::MAX as u128;
 
 /// SPL2 and an AFU below it, in software.
@@ -31,13 +31,13 @@ pub struct Software {
     link: LinkModel,
     memory: Memory,
     cycle: u64,
-    /// CSRs as written last.
+    /// The last value written to each CSR.
     csrs: HashMap<u32, u32>,
-    /// Line addresses that the AFU was given since the last reset: its DSM's first, its context's.
+    /// Line addresses that the AFU was given since the last reset: first the DSM's, then the context's.
     dsm: Option<u64>,
     context: Option<u64>,
     pages: Option<Pages>,
-    /// The last job's number since SPL was enabled.
+    /// The number of the last job since SPL was enabled.
     job: Option<u32>,
     watched: Vec<Range<u64>>,
     log: Vec<DeviceWrite>,
@@ -45,7 +45,7 @@ pub struct Software {
 }
 
 impl Software {
-    /// The AFU of a configuration; of the link only what its description states counts.
+    /// The AFU of a configuration. The link only contributes the costs that its description states.
     ///
     /// # Errors
     /// Returns an error if there is no such AFU.
@@ -122,7 +122,7 @@ impl Software {
         Ok(())
     }
 
-    /// Looks for a job, and does it.
+    /// Looks for a job, and runs it.
     fn poll(&mut self) -> Result<(), TransportError> {
         let Some(context) = self.context.filter(|_| self.pages.is_some()) else { return Ok(()) };
         let pointers = self.read(context + u64::from(map::POINTERS_LINE))?;
@@ -168,7 +168,7 @@ impl Software {
         self.write(context + u64::from(map::STATUS_LINE), &line)
     }
 
-    /// Reads pairs, writes contacts; contacts, invalid pairs and the first of these.
+    /// Reads pairs and writes contacts. Returns the numbers of contacts and invalid pairs, and the first invalid pair.
     fn compute(&mut self, source: u64, destination: u64, count: u64) -> Result<[u128; 3], TransportError> {
         let lines: Vec<Line> =
             (0..self.layout.source_lines(count)).map(|line| self.read(source + line)).collect::<Result<_, _>>()?;

@@ -13,7 +13,7 @@ use crate::query::PairRecord;
 /// After step 1: the pointers are known.
 #[derive(Debug)]
 pub struct Pointed(());
-/// After step 2: the pairs lie in the source, SPL is started.
+/// After step 2: the pairs are in the source, and SPL is started.
 #[derive(Debug)]
 pub struct Loaded(());
 /// After step 3: the start word is in the control memory.
@@ -21,7 +21,7 @@ pub struct Loaded(());
 pub struct Started {
     begin: Begin,
 }
-/// After step 4: the AFU said who it is.
+/// After step 4: the AFU has identified itself.
 #[derive(Debug)]
 pub struct Running {
     begin: Begin,
@@ -32,15 +32,15 @@ pub struct Done {
     begin: Begin,
     status: Status,
 }
-/// After step 6: the results are the host's.
+/// After step 6: the host has the results.
 #[derive(Debug)]
 pub struct Retrieved {
     results: JobResults,
 }
 
-/// A transaction at the step that `S` names. Each step takes the transaction and gives the next, so none can be left
-/// out, done twice or done early. One that fails, or is dropped, ends properly all the same: the stop sequence is sent
-/// and the workspace freed.
+/// A transaction at the step that `S` names. Each step takes the transaction and returns the next, so no step can be
+/// left out, done twice or done early. If a step fails or a transaction is dropped, it still ends properly: the stop
+/// sequence is sent and the workspace is freed.
 ///
 /// ```
 /// use contact_afu::{config::Config, host::*, query::PairRecord, link::LinkModel};
@@ -142,7 +142,8 @@ impl<'s, T: Transport> Transaction<'s, T, Pointed> {
     /// Step 2: puts the pairs into the source and starts SPL.
     ///
     /// # Errors
-    /// More pairs than the buffers hold; no AFU_ID, or not that of the AFU expected; what the device did wrong.
+    /// Returns an error if there are more pairs than the buffers hold, if no AFU_ID arrives or another one than
+    /// expected, or if the device breaks its protocol.
     pub fn send(mut self, pairs: &[PairRecord]) -> Result<Transaction<'s, T, Loaded>, HostError> {
         self.open.load(pairs)?;
         self.open.start_spl()?;
@@ -154,7 +155,7 @@ impl<'s, T: Transport> Transaction<'s, T, Loaded> {
     /// Step 3: writes nCol and the start word into the control memory.
     ///
     /// # Errors
-    /// [`HostError::Outside`], which a workspace cannot give.
+    /// Returns [`HostError::Outside`], which cannot happen with a workspace.
     pub fn start(mut self) -> Result<Transaction<'s, T, Started>, HostError> {
         let begin = self.open.start()?;
         Ok(self.to(|_| Started { begin }))
@@ -162,11 +163,11 @@ impl<'s, T: Transport> Transaction<'s, T, Loaded> {
 }
 
 impl<'s, T: Transport> Transaction<'s, T, Started> {
-    /// Step 4: the AFU_ID in the DSM says that the AFU is there, and that it is the one expected. (It is written while
-    /// SPL starts, and was waited for then.)
+    /// Step 4: checks by the AFU_ID in the DSM that the AFU is there and is the expected one. (It is written while SPL
+    /// starts, and step 2 waited for it.)
     ///
     /// # Errors
-    /// Returns an error if it is another by now.
+    /// Returns an error if it is a different AFU by now.
     pub fn confirm(self) -> Result<Transaction<'s, T, Running>, HostError> {
         self.open.session.check_identity()?;
         Ok(self.to(|Started { begin }| Running { begin }))
@@ -177,12 +178,12 @@ impl<'s, T: Transport> Transaction<'s, T, Running> {
     /// Asks the AFU to abort the job; its status then says so.
     ///
     /// # Errors
-    /// [`HostError::Outside`], which a workspace cannot give.
+    /// Returns [`HostError::Outside`], which cannot happen with a workspace.
     pub fn abort(&mut self) -> Result<(), HostError> {
         self.open.abort()
     }
 
-    /// Lets time pass without looking.
+    /// Lets time pass without reading the status.
     ///
     /// # Errors
     /// Returns the device's protocol errors since then.
@@ -198,16 +199,17 @@ impl<'s, T: Transport> Transaction<'s, T, Running> {
     /// Step 5: waits for the status.
     ///
     /// # Errors
-    /// [`HostError::NoStatus`] when the AFU takes, or is silent for, longer than a right one at most
-    /// ([`patience`](crate::patience)), or takes longer than [`Session::max_cycles`]; what the device did wrong.
+    /// Returns [`HostError::NoStatus`] if the AFU takes, or is silent for, longer than a correct one could
+    /// ([`patience`](crate::patience)), or takes longer than [`Session::max_cycles`]. Returns the device's protocol
+    /// errors.
     pub fn wait(self) -> Result<Transaction<'s, T, Done>, HostError> {
         self.wait_with(|_| {})
     }
 
-    /// [`wait`](Self::wait) that calls `progress`, now and then, with what went over the link so far.
+    /// As [`wait`](Self::wait), but calls `progress` now and then with the traffic over the link so far.
     ///
     /// # Errors
-    /// As `wait`.
+    /// Returns the errors of `wait`.
     pub(crate) fn wait_with(self, mut progress: impl FnMut(Traffic)) -> Result<Transaction<'s, T, Done>, HostError> {
         let status = self.open.session.wait_for_status(&self.state.begin, self.open.count(), &mut progress)?;
         Ok(self.to(|Running { begin }| Done { begin, status }))
@@ -215,8 +217,8 @@ impl<'s, T: Transport> Transaction<'s, T, Running> {
 }
 
 impl<'s, T: Transport> Transaction<'s, T, Done> {
-    /// The outcome as it stands in memory, also of a job that ended with an error: the AFU's counts, each destination
-    /// line, and the cycle in which it was written.
+    /// The outcome as it is in memory, even if the job ended with an error: the AFU's counts, each destination line,
+    /// and the cycle in which it was written.
     pub fn outcome(&self) -> Outcome {
         self.open.outcome(&self.state.begin, &self.state.status)
     }
@@ -224,17 +226,17 @@ impl<'s, T: Transport> Transaction<'s, T, Done> {
     /// Step 6: takes the results from the destination.
     ///
     /// # Errors
-    /// [`HostError::Job`] when the AFU ended the job with an error; [`HostError::Unwritten`], [`HostError::Hit`] when
-    /// memory does not hold what the status promises.
+    /// Returns [`HostError::Job`] if the AFU ended the job with an error. Returns [`HostError::Unwritten`] or
+    /// [`HostError::Hit`] if memory does not hold what the status promises.
     pub fn retrieve(mut self) -> Result<Transaction<'s, T, Retrieved>, HostError> {
         let results = self.open.results(&self.outcome())?;
         Ok(self.to(|_| Retrieved { results }))
     }
 
-    /// Step 2 again, for another job: puts these pairs in the place of the last ones, while SPL and AFU go on.
+    /// Step 2 again, for another job: replaces the pairs of the last one, while SPL and the AFU stay enabled.
     ///
     /// # Errors
-    /// More pairs than the buffers hold.
+    /// Returns an error if there are more pairs than the buffers hold.
     pub fn send_next(mut self, pairs: &[PairRecord]) -> Result<Transaction<'s, T, Loaded>, HostError> {
         self.open.load(pairs)?;
         Ok(self.to(|_| Loaded(())))
@@ -247,10 +249,10 @@ impl<'s, T: Transport> Transaction<'s, T, Retrieved> {
         &self.state.results
     }
 
-    /// Step 2 again, for another job: puts these pairs in the place of the last ones, while SPL and AFU go on.
+    /// Step 2 again, for another job: replaces the pairs of the last one, while SPL and the AFU stay enabled.
     ///
     /// # Errors
-    /// More pairs than the buffers hold.
+    /// Returns an error if there are more pairs than the buffers hold.
     pub fn send_next(mut self, pairs: &[PairRecord]) -> Result<Transaction<'s, T, Loaded>, HostError> {
         self.open.load(pairs)?;
         Ok(self.to(|_| Loaded(())))

@@ -7,7 +7,7 @@ use crate::link::{LinkModel, Memory, Traffic};
 
 /// A device below SPL2, with the memory that it shares with the host.
 pub trait Transport {
-    /// Writes a 32-bit CSR, SPL's or the AFU's; it has arrived when this returns.
+    /// Writes a 32-bit CSR of SPL or the AFU. The write has arrived when this returns.
     ///
     /// # Errors
     /// Returns the device's protocol errors since then.
@@ -16,7 +16,7 @@ pub trait Transport {
     /// Physical memory, in lines.
     fn memory(&self) -> &Memory;
 
-    /// Physical memory, for the host's hand.
+    /// Physical memory, writable by the host.
     fn memory_mut(&mut self) -> &mut Memory;
 
     /// Advances the device by this number of clock cycles.
@@ -34,11 +34,11 @@ pub trait Transport {
     /// The device's writes to watched lines, in the order in which they arrived.
     fn device_writes(&self) -> &[DeviceWrite];
 
-    /// From now on the device may touch only the lines of a job, or again all. A simulated device fails when it touches
-    /// another; a device that nobody can observe ignores this.
+    /// Restricts the device to the lines of a job, or lifts the restriction. A simulated device fails if it accesses
+    /// another line. A device that nobody can observe ignores this.
     fn limit(&mut self, _limits: Option<Limits>) {}
 
-    /// The cycle in which the device sent a line of the limited job's results. `None` if it did not, or cannot be
+    /// The cycle in which the device sent a result line of the limited job. `None` if it did not, or cannot be
     /// observed.
     fn sent(&self, _virtual_line: u64) -> Option<u64> {
         None
@@ -52,7 +52,7 @@ pub trait Transport {
     /// The link between device and memory.
     fn link(&self) -> &LinkModel;
 
-    /// What SPL2 is like, which lies between device and link.
+    /// The model of SPL2, which is between device and link.
     fn spl2(&self) -> Spl2Model {
         Spl2Model::default()
     }
@@ -64,7 +64,7 @@ pub trait Transport {
 /// A protocol error of a device, or of the host that drives it.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TransportError {
-    /// An address that the page table has no page for.
+    /// The page table has no page for the address.
     #[error(
         "page fault: a {what} of virtual line {line:#x}, which no page of the workspace holds; end the transaction: the next one begins with a new page table"
     )]
@@ -77,12 +77,12 @@ pub enum TransportError {
     /// The device broke the protocol of its port.
     #[error("protocol broken in cycle {cycle}: {what}")]
     Protocol {
-        /// The cycle, counted from the device's first.
+        /// The cycle, counted from the start of the device.
         cycle: u64,
         /// The error.
         what: Spl2Error,
     },
-    /// Anything else.
+    /// Another error.
     #[error("the device: {0}")]
     Device(String),
 }

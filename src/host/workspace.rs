@@ -1,7 +1,7 @@
-//! The workspace: pinned memory in pages of 2 MB, one behind the other for the device, anywhere in physical memory.
+//! The workspace: pinned memory in pages of 2 MB. They are contiguous for the device, and anywhere in physical memory.
 //!
-//! At its beginning the AFU's context (two lines: pointers, status), then two halves: source, whose first line is the
-//! control memory, and destination. DSMs, SPL's context and the page table lie in pages of their own.
+//! It begins with the AFU's context (two lines: pointers, status). Two halves follow: the source, whose first line is
+//! the control memory, and the destination. DSMs, SPL's context and the page table are in pages of their own.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -19,10 +19,10 @@ use crate::record::Layout;
 const BASE: u64 = 0x0000_7F12_3460_0000;
 /// Lines of the AFU's context.
 const CONTEXT_LINES: u64 = 2;
-/// Physical pages that a workspace's may be among: the second terabyte.
+/// The range of physical pages from which a workspace's pages are taken: the second terabyte.
 const PHYSICAL: Range<u64> = (1 << 40) / PAGE_BYTES..(1 << 41) / PAGE_BYTES;
 
-/// Physical byte addresses of what is not in the workspace.
+/// Physical byte addresses of the structures that are not in the workspace.
 pub(super) const SPL_DSM: u64 = 0x1000;
 pub(super) const SPL_CONTEXT: u64 = 0x3000;
 pub(super) const AFU_DSM: u64 = 0x0012_0000_2000;
@@ -33,7 +33,7 @@ const PAGE_TABLE: u64 = 0x4000;
 pub struct Workspace {
     pages: Pages,
     layout: Layout,
-    /// Lines from the beginning to the source, and to the destination.
+    /// Lines from the beginning of the workspace to the source, and to the destination.
     source: u64,
     destination: u64,
     /// Lines of each.
@@ -44,7 +44,7 @@ impl Workspace {
     /// A workspace of 1 to 1024 pages for records of `layout`; `seed` scatters the pages over physical memory.
     ///
     /// # Errors
-    /// [`HostError::Pages`].
+    /// Returns [`HostError::Pages`] if the number of pages is out of range.
     pub fn new(layout: Layout, pages: u64, seed: u64) -> Result<Self, HostError> {
         if !(1..=MAX_PAGES).contains(&pages) {
             return Err(HostError::Pages(pages));
@@ -62,10 +62,10 @@ impl Workspace {
         Ok(Self { pages, layout, source: CONTEXT_LINES, destination: CONTEXT_LINES + lines, lines })
     }
 
-    /// The same pages with source and destination elsewhere: in lines from the beginning, each `lines` long.
+    /// The same pages with another source and destination, as offsets in lines from the beginning, each `lines` long.
     ///
     /// # Errors
-    /// [`HostError::Buffers`] if they overlap, or do not fit behind the context.
+    /// Returns [`HostError::Buffers`] if they overlap, or do not fit behind the context.
     pub fn with_buffers(self, source: u64, destination: u64, lines: u32) -> Result<Self, HostError> {
         let (lines, all) = (u64::from(lines), self.pages() * PAGE_LINES);
         let ends_inside = source.max(destination).checked_add(lines).is_some_and(|end| end <= all);
@@ -78,10 +78,10 @@ impl Workspace {
         Ok(Self { source, destination, lines, ..self })
     }
 
-    /// The least workspace that holds `pairs` pairs and their contacts.
+    /// The smallest workspace that holds `pairs` pairs and their contacts.
     ///
     /// # Errors
-    /// [`HostError::Pages`] when 2 GB do not.
+    /// Returns [`HostError::Pages`] if 2 GB are not enough.
     pub fn for_pairs(layout: Layout, pairs: u64, seed: u64) -> Result<Self, HostError> {
         Self::new(layout, pages_for(&layout, pairs), seed)
     }
@@ -101,7 +101,7 @@ impl Workspace {
         &self.layout
     }
 
-    /// Pairs that a transaction may have: as many as source and destination hold, and a count can say.
+    /// The most pairs that a transaction may have: what source and destination hold, and what a count can represent.
     pub fn capacity(&self) -> u64 {
         let pairs = self.lines.saturating_sub(map::DATA_LINE.into()) * u64::from(self.layout.pairs_per_line());
         pairs.min(self.lines * u64::from(self.layout.contacts_per_line())).min(u32::MAX.into())
@@ -127,7 +127,7 @@ impl Workspace {
         self.lines
     }
 
-    /// The physical line of a virtual byte address; `None` outside of the workspace.
+    /// The physical line of a virtual byte address; `None` if the address is outside the workspace.
     pub fn physical(&self, address: u64) -> Option<u64> {
         self.pages.translate(address / LINE_BYTES)
     }
@@ -170,7 +170,7 @@ fn half_lines(pages: u64) -> u64 {
     (pages * PAGE_LINES - CONTEXT_LINES) / 2
 }
 
-/// The number of pages that this number of pairs needs; it may be more than the maximum.
+/// The number of pages that this number of pairs needs, which may be more than the maximum.
 pub(super) fn pages_for(layout: &Layout, pairs: u64) -> u64 {
     let half = (layout.source_lines(pairs) + u64::from(map::DATA_LINE)).max(layout.destination_lines(pairs));
     (2 * half + CONTEXT_LINES).div_ceil(PAGE_LINES)

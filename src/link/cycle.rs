@@ -1,4 +1,4 @@
-//! The link at work: one call a clock cycle.
+//! The link in operation: one call per clock cycle.
 
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -41,7 +41,7 @@ pub struct Requests {
 /// The response to a read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReadResponse {
-    /// The request's.
+    /// The tag of the request.
     pub tag: u16,
     /// The line.
     pub data: Line,
@@ -52,7 +52,7 @@ pub struct ReadResponse {
 /// The response to a write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WriteResponse {
-    /// The request's.
+    /// The tag of the request.
     pub tag: u16,
     /// True if the write failed.
     pub error: bool,
@@ -89,7 +89,7 @@ struct Read {
     address: u64,
     tag: u16,
     error: bool,
-    /// Waits for the next read, to swap data with it.
+    /// The read waits for the next read, to swap data with it.
     held: bool,
     flipped: Option<u16>,
 }
@@ -98,11 +98,11 @@ struct Read {
 struct Write {
     request: WriteRequest,
     error: bool,
-    /// The job that it belongs to; `None` if it must not write.
+    /// The job that the write belongs to; `None` if it must not be done.
     job: Option<u64>,
 }
 
-/// A link with its memory. It lives as long as the host: requests that an AFU forgot in a reset are still answered.
+/// A link with its memory. It lives as long as the host, so requests that an AFU forgot in a reset are still answered.
 #[derive(Clone, Debug)]
 pub struct Link {
     model: LinkModel,
@@ -118,13 +118,13 @@ pub struct Link {
     write_bucket: Bucket,
     joint_bucket: Bucket,
     faults: Vec<Fault>,
-    /// Traffic when the faults were planned: they count from here.
+    /// The traffic at the time when the faults were planned, because they count from there.
     planned_at: Traffic,
     traffic: Traffic,
 }
 
 impl Link {
-    /// A link like `model`, to empty memory; the same for the same `seed`.
+    /// A link that follows `model`, to empty memory. The same `seed` gives the same link.
     ///
     /// # Errors
     /// Returns an error if the model holds a value outside its range.
@@ -158,7 +158,7 @@ impl Link {
         self.traffic
     }
 
-    /// Requests that are yet to be answered: reads, writes. Those whose response is lost are not among them.
+    /// The numbers of outstanding reads and writes. Requests whose response is lost do not count.
     pub fn in_flight(&self) -> (usize, usize) {
         (self.reads.len(), self.writes.len())
     }
@@ -169,14 +169,14 @@ impl Link {
         self.planned_at = self.traffic;
     }
 
-    /// One clock cycle: takes what the AFU's outputs say in it, and gives what its inputs are to be in it. A request
-    /// accepted in this cycle is answered in a later one.
+    /// Advances one clock cycle: takes the AFU's outputs in this cycle and returns its inputs in the same cycle. A
+    /// request accepted in this cycle is answered in a later one.
     pub fn cycle(&mut self, requests: &Requests) -> Replies {
         self.now += 1;
         self.read_bucket.drip();
         self.joint_bucket.drip();
-        // Of the bandwidth they share, each direction has the first word every other cycle. A read uses it when its
-        // data comes, a write when its data goes.
+        // The directions share a bandwidth, and each has priority in every other cycle. A read takes its share when its
+        // data arrives, a write when its data leaves.
         let (read, write_ready) = if self.now.is_multiple_of(2) {
             let read = self.answer_read();
             (read, self.offer_write(requests))
@@ -224,7 +224,7 @@ impl Link {
         ready
     }
 
-    /// A line is in memory once its write is acknowledged and not before: who is done too early is found out.
+    /// A line is in memory only once its write is acknowledged, so an AFU that is done too early is detected.
     fn answer_write(&mut self) -> Option<WriteResponse> {
         let Write { request, error, job } = self.writes.pop(self.now, &mut self.random, |_| true)?;
         self.traffic.write_responses += 1;

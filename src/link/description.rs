@@ -5,15 +5,15 @@ use std::str::FromStr;
 use super::model::{LinkError, LinkModel};
 use super::physical::Physical;
 
-/// The links that have a name: first those of [`LinkModel::PRESETS`], then real ones.
+/// The links that have a name: first [`LinkModel::PRESETS`], then real ones.
 pub const NAMES: [&str; 7] = ["ideal", "late", "shuffled", "hostile", "harp1", "harp2", "pcie3x8"];
 
-/// A link, whatever the clock of the AFU is.
+/// A link, independent of the AFU's clock.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Description {
-    /// In cycles and lines: what it is at one clock it is at any.
+    /// A link in cycles and lines, which is the same at every clock.
     Cycles(Box<LinkModel>),
-    /// In nanoseconds and bytes.
+    /// A link in nanoseconds and bytes.
     Physical(Box<Physical>),
 }
 
@@ -21,7 +21,7 @@ impl Description {
     /// The link of a file: JSON is a [`LinkModel`] in cycles, anything else a [`Physical`] in TOML.
     ///
     /// # Errors
-    /// Returns an error if `text` is not what its name says, with `file` and the line.
+    /// Returns an error, with `file` and the line, if `text` is not what the name of the file says.
     pub fn parse(file: &str, text: &str) -> Result<Self, LinkError> {
         if !file.ends_with(".json") {
             return Ok(Self::Physical(Box::new(Physical::parse(file, text)?)));

@@ -10,7 +10,7 @@ use super::model::MAX_OUTSTANDING;
 pub struct Direction {
     /// Cycles from the acceptance of a request to its response, at least 1.
     pub latency: u32,
-    /// Additional cycles at most, distributed by `shape`.
+    /// The most additional cycles, distributed by `shape`.
     #[serde(default)]
     pub tail: u32,
     /// The distribution of the tail.
@@ -22,10 +22,10 @@ pub struct Direction {
     /// Spans of cycles in which no request is accepted.
     #[serde(default)]
     pub stalls: Stalls,
-    /// Lines a cycle, above 0 and up to 1.
+    /// Lines per cycle, above 0 and up to 1.
     #[serde(default = "one")]
     pub lines_per_cycle: f64,
-    /// Requests without a response beyond which no more is accepted, at least 1. What is lost no longer counts.
+    /// The most requests without a response, at least 1. A request whose response is lost no longer counts.
     #[serde(default = "most_outstanding")]
     pub in_flight: u32,
 }
@@ -34,11 +34,11 @@ pub struct Direction {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Shape {
-    /// Each number of cycles as likely as any other.
+    /// Every number of cycles is equally likely.
     #[default]
     Even,
-    /// Each further cycle a response still has not come with the same chance, so that short waits are the most likely:
-    /// the mean, in cycles, of the distribution before it is cut off at the tail's end.
+    /// The chance that a response arrives is the same in each further cycle, so short waits are the most likely. The
+    /// value is the mean in cycles, before the distribution is cut off at the end of the tail.
     Geometric(f64),
 }
 
@@ -48,7 +48,7 @@ pub enum Shape {
 pub struct Stragglers {
     /// The share of responses, 0 to 1.
     pub share: f64,
-    /// The cycles they take beyond the others.
+    /// The additional cycles that they take.
     pub cycles: u32,
 }
 
@@ -56,9 +56,9 @@ pub struct Stragglers {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Stalls {
-    /// The chance that one begins in a cycle outside of one: at least 0, below 1.
+    /// The chance that a stall begins in a cycle outside a stall: at least 0, below 1.
     pub chance: f64,
-    /// The longest, in cycles; lengths from 1 to this are equally likely.
+    /// The longest stall in cycles. Lengths from 1 to this are equally likely.
     pub longest: u32,
 }
 
@@ -66,9 +66,9 @@ pub struct Stalls {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Order {
-    /// That of the requests: a late response delays those behind it, as in a reorder buffer.
+    /// The order of the requests: a late response delays those behind it, as in a reorder buffer.
     InOrder,
-    /// Any: of those that are due, one at random.
+    /// Any order: a random one of the responses that are due.
     Shuffled,
 }
 
@@ -81,7 +81,8 @@ fn most_outstanding() -> u32 {
 }
 
 impl Direction {
-    /// Without stalls, stragglers or a bandwidth limit, an even tail, [`MAX_OUTSTANDING`] in flight.
+    /// A direction without stalls, stragglers or a bandwidth limit, with an even tail and [`MAX_OUTSTANDING`] in
+    /// flight.
     pub fn steady(latency: u32, tail: u32) -> Self {
         Self {
             latency,
@@ -94,7 +95,7 @@ impl Direction {
         }
     }
 
-    /// The first value outside its range, if one is: field, value, range.
+    /// The first field outside its range, with its value and range.
     pub(super) fn fault(&self) -> Option<(&'static str, f64, &'static str)> {
         let lines_per_cycle = self.lines_per_cycle > 0.0 && self.lines_per_cycle <= 1.0;
         let share = (0.0..=1.0).contains(&self.stragglers.share);
@@ -117,14 +118,14 @@ impl Direction {
     fn mean_latency(&self) -> f64 {
         let tail = match self.shape {
             Shape::Even => f64::from(self.tail) / 2.0,
-            // The mean of a geometric distribution cut off at `tail`.
+            // The mean of a geometric distribution that is cut off at `tail`.
             Shape::Geometric(mean) => mean * (1.0 - self.shape.chance_of_another().powf(self.tail.into())),
         };
         f64::from(self.latency) + tail + self.stragglers.share * f64::from(self.stragglers.cycles)
     }
 
-    /// The share of cycles in which requests are accepted: runs of (1 − c) / c cycles on average between stalls of half
-    /// the longest.
+    /// The share of cycles in which requests are accepted: runs of (1 − c) / c cycles on average, between stalls of
+    /// half the longest.
     fn ready_share(&self) -> f64 {
         let Stalls { chance, longest } = self.stalls;
         if longest == 0 {
@@ -133,25 +134,25 @@ impl Direction {
         (1.0 - chance) / (1.0 - chance + chance * (1.0 + f64::from(longest)) / 2.0)
     }
 
-    /// Stalls refuse requests while the data of earlier ones still comes: the tighter of the two counts.
+    /// Stalls refuse requests while the data of earlier ones still arrives, so the tighter of the two limits counts.
     pub(super) fn cycles_per_read(&self) -> f64 {
         self.in_flight_limit().max(1.0 / self.lines_per_cycle).max(1.0 / self.ready_share())
     }
 
-    /// A write carries its data, so a stall stops the data too: the two multiply.
+    /// A write carries its data, so a stall also stops the data: the two factors multiply.
     pub(super) fn cycles_per_write(&self) -> f64 {
         self.in_flight_limit().max(1.0 / (self.lines_per_cycle * self.ready_share()))
     }
 
-    /// Little's law: cycles a line that the latency leaves.
+    /// The cycles per line that the latency allows, by Little's law.
     fn in_flight_limit(&self) -> f64 {
         self.mean_latency() / f64::from(self.in_flight)
     }
 }
 
 impl Shape {
-    /// The chance that a response that has not come yet does not come in the next cycle either; 0 where that is not how
-    /// it is distributed.
+    /// The chance that a response that has not come yet does not come in the next cycle either; 0 for any other
+    /// distribution.
     pub(super) fn chance_of_another(self) -> f64 {
         match self {
             Self::Even => 0.0,

@@ -1,9 +1,9 @@
-//! Faults a test plants, to see them found.
+//! Faults that a test plants, to check that they are detected.
 
 use serde::{Deserialize, Serialize};
 
-/// Something a link must not do, done once. Requests are counted from 0 in each direction, from the start of the link
-/// or the last [`Link::plan`](super::Link::plan).
+/// A fault that happens once. Requests are counted from 0 in each direction, from the start of the link or the last
+/// [`Link::plan`](super::Link::plan).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Fault {
@@ -11,10 +11,10 @@ pub enum Fault {
     ReadError(u64),
     /// The response to this read never comes.
     ReadLost(u64),
-    /// The response to this read comes twice. (The second is the AFU's error to find only while its tag is free: with a
-    /// link that holds it back long enough, the tag belongs to another request.)
+    /// The response to this read comes twice. (The AFU can detect the second only while its tag is free. If the link
+    /// holds it back long enough, the tag belongs to another request.)
     ReadTwice(u64),
-    /// This read and the next get each other's data. (If no next read comes, neither does this one's response.)
+    /// This read and the next one get each other's data. (Without a next read, this one gets no response.)
     ReadSwapped(u64),
     /// One bit (0 to 511) of this read's data is flipped.
     ReadFlipped {

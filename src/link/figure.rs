@@ -2,26 +2,26 @@
 
 use serde::{Deserialize, Deserializer, de::Error};
 
-/// A value and where it is from.
+/// A value and its source.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
     /// The value, in the unit that its key ends with.
     pub value: f64,
-    /// Who says so.
+    /// The source of the value.
     pub source: String,
 }
 
-/// A time in nanoseconds, up to a second.
+/// Reads a time in nanoseconds, of at most a second.
 pub(super) fn time<'de, D: Deserializer<'de>>(from: D) -> Result<Figure, D::Error> {
     figure(from, |value| (0.0..=1e9).contains(&value), "from 0 to 1e9")
 }
 
-/// 10⁹ bytes a second.
+/// Reads a rate in 10⁹ bytes per second.
 pub(super) fn rate<'de, D: Deserializer<'de>>(from: D) -> Result<Figure, D::Error> {
     figure(from, |value| value > 0.0 && value <= 1e6, "above 0 and at most 1e6")
 }
 
-/// A number of lines.
+/// Reads a number of lines.
 pub(super) fn count<'de, D: Deserializer<'de>>(from: D) -> Result<Figure, D::Error> {
     figure(from, |value| (1.0..=65536.0).contains(&value) && value.fract() == 0.0, "a whole number from 1 to 65536")
 }

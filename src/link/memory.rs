@@ -7,19 +7,19 @@ use std::ops::Range;
 /// Bytes of a line.
 pub const LINE_BYTES: u64 = 64;
 
-/// A line: word i is bits 32·i to 32·i + 31 of the line port's data.
+/// A line. Word i is bits 32·i to 32·i + 31 of the line port's data.
 pub type Line = [u32; 16];
 
-/// Lines of a page, a power of two: one bit each in a u64.
+/// Lines of a page, a power of two. Each has one bit in a u64.
 const PAGE_LINES: u64 = 64;
 
-/// The content of lines that were never written; no field of a record looks like it.
+/// The content of lines that were never written. No field of a record looks like it.
 const UNWRITTEN: Line = [0xDEAD_BEEF; 16];
 
-/// Violations kept; the rest is counted.
+/// The number of violations that are kept. The others are only counted.
 const KEPT: usize = 16;
 
-/// An access that a job has no business making. Addresses are in lines.
+/// An access that a job must not make. Addresses are in lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Violation {
     /// A read outside the source lines.
@@ -44,7 +44,7 @@ struct Page {
 pub struct Memory {
     pages: HashMap<u64, Box<Page>, BuildHasherDefault<PageHasher>>,
     guard: Option<Guard>,
-    /// Counts the guards: a late write of an earlier job is none of this one's.
+    /// The number of guards so far, which tells a late write of an earlier job from one of this job.
     job: u64,
 }
 
@@ -52,9 +52,9 @@ pub struct Memory {
 struct Guard {
     source: Range<u64>,
     destination: Range<u64>,
-    /// One bit a destination line: a write to it was accepted.
+    /// One bit per destination line: set once a write to it was accepted.
     claimed: Vec<u64>,
-    /// One bit a destination line: it has arrived.
+    /// One bit per destination line: set once the write has arrived.
     written: Vec<u64>,
     violations: Vec<Violation>,
     violation_count: u64,
@@ -72,7 +72,7 @@ impl Memory {
         (page.written >> index & 1 == 1).then(|| &page.lines[index as usize])
     }
 
-    /// Puts a line at `address`: the host's hand, which no guard watches.
+    /// Puts a line at `address` for the host. No guard checks this.
     pub fn set(&mut self, address: u64, line: &Line) {
         let fresh = || Box::new(Page { lines: [[0; 16]; PAGE_LINES as usize], written: 0 });
         let page = self.pages.entry(address / PAGE_LINES).or_insert_with(fresh);
@@ -113,8 +113,8 @@ impl Memory {
         self.get(address).copied().unwrap_or(UNWRITTEN)
     }
 
-    /// A write by the AFU is accepted: its job, or nothing where it must not write. (What lies there may be the source
-    /// or another job's result, so it is not done.)
+    /// A write by the AFU is accepted. Returns its job, or `None` if it must not write there. (The address may belong
+    /// to the source or to another job's result, so the write is not done.)
     pub(super) fn accept_write(&mut self, address: u64) -> Option<u64> {
         let Some(guard) = &mut self.guard else { return Some(self.job) };
         let Some(index) = guard.index(address) else {
@@ -127,7 +127,7 @@ impl Memory {
         Some(self.job)
     }
 
-    /// A write by the AFU arrives, in the job that [`Memory::accept_write`] gave.
+    /// A write by the AFU arrives, for the job that [`Memory::accept_write`] returned.
     pub(super) fn write(&mut self, address: u64, line: &Line, job: u64) {
         self.set(address, line);
         if let Some(guard) = self.guard.as_mut().filter(|_| job == self.job)
@@ -156,7 +156,7 @@ impl Memory {
     }
 }
 
-/// Sets a bit; whether it was set already.
+/// Sets a bit. Returns true if it was set before.
 fn mark(bits: &mut [u64], index: u64) -> bool {
     let (word, bit) = (&mut bits[(index / 64) as usize], 1u64 << (index % 64));
     let before = *word & bit != 0;
@@ -177,7 +177,7 @@ impl Guard {
     }
 }
 
-/// Page numbers are the AFU's own addresses, twice a cycle: one multiplication spreads them enough.
+/// Page numbers are the AFU's own addresses and are hashed twice per cycle. One multiplication spreads them enough.
 #[derive(Clone, Copy, Debug, Default)]
 struct PageHasher(u64);
 

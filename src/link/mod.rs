@@ -1,8 +1,9 @@
-//! A simulated link between an AFU's line port and memory: how late, in what order, how fast, with which faults.
+//! A simulated link between an AFU's line port and memory: its latency, order, bandwidth and faults.
 //!
-//! [`LinkModel`] is data, in cycles; [`Physical`] is data in nanoseconds, each figure with its source, which a clock
-//! turns into the former. [`Link`] is a model at work on a [`Memory`], one function call a clock cycle, the same for
-//! the same seed. Nothing here knows Verilator: a test can drive a link by hand. Imports nothing of ours.
+//! [`LinkModel`] describes a link in cycles. [`Physical`] describes one in nanoseconds, each figure with its source,
+//! and becomes a [`LinkModel`] at a clock. [`Link`] runs a model on a [`Memory`], one function call per clock cycle,
+//! and gives the same result for the same seed. Nothing here depends on Verilator, so a test can drive a link by hand.
+//! This module imports nothing of ours.
 
 mod cycle;
 mod description;

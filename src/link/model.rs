@@ -8,11 +8,11 @@ use serde::{Deserialize, Serialize};
 use super::direction::{Direction, Order, Stalls, Stragglers};
 use super::fault::Fault;
 
-/// Reads, and likewise writes, that an AFU may have outstanding.
+/// The most reads that an AFU may have outstanding, and also the most writes.
 pub const MAX_OUTSTANDING: u32 = 64;
 
-/// A link at a clock: two directions, an order, a bandwidth both share, and what a session costs. In cycles and lines;
-/// [`Physical`](super::Physical) has nanoseconds and bytes.
+/// A link at a clock, in cycles and lines: two directions, an order, a bandwidth that both share, and the cost of a
+/// session. [`Physical`](super::Physical) describes a link in nanoseconds and bytes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LinkModel {
@@ -22,12 +22,12 @@ pub struct LinkModel {
     pub read: Direction,
     /// From a write request to its acknowledgement.
     pub write: Direction,
-    /// True if responses of one direction may overtake each other.
+    /// The order of the responses to reads, and to writes unless `write_order` differs.
     pub order: Order,
-    /// The same for writes, where it is another.
+    /// The order of the acknowledgements of writes, if it differs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub write_order: Option<Order>,
-    /// Lines a cycle in both directions together, above 0 and up to 2.
+    /// Lines per cycle in both directions together, above 0 and up to 2.
     #[serde(default = "both")]
     pub lines_per_cycle: f64,
     /// The host's waiting times before and after a job.
@@ -48,7 +48,7 @@ pub struct SessionCost {
     /// After each transaction.
     #[serde(default)]
     pub tear_down: u64,
-    /// From the host's write of a control register to the AFU.
+    /// From the host's write of a control register to its arrival at the AFU.
     #[serde(default)]
     pub csr_write: u64,
 }
@@ -57,13 +57,13 @@ fn both() -> f64 {
     2.0
 }
 
-/// A link that does not exist or cannot be.
+/// An error in the name or description of a link.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LinkError {
-    /// Not the name of a preset.
+    /// There is no preset of this name.
     #[error("unknown link `{0}`: use {names}", names = super::NAMES.join(", "))]
     Unknown(String),
-    /// A file that does not describe a link.
+    /// The file does not describe a link.
     #[error("{file}: {message}")]
     File {
         /// The file.
@@ -71,7 +71,7 @@ pub enum LinkError {
         /// The line, and what is wrong with it.
         message: String,
     },
-    /// A value outside its range.
+    /// A value is outside its range.
     #[error("link `{link}`: {field} is {value}, but must be {range}")]
     Range {
         /// The link.
@@ -80,22 +80,22 @@ pub enum LinkError {
         field: &'static str,
         /// The value found.
         value: f64,
-        /// The values allowed.
+        /// The allowed values.
         range: &'static str,
     },
 }
 
 impl LinkModel {
-    /// The names [`FromStr`] knows. [`Description`](super::Description) knows more, which need a clock.
+    /// The names that [`FromStr`] accepts. [`Description`](super::Description) accepts more, which need a clock.
     pub const PRESETS: [&'static str; 4] = ["ideal", "late", "shuffled", "hostile"];
 
-    /// One line a cycle each way, answered in the next cycle: what the AFU alone can do.
+    /// One line per cycle each way, answered in the next cycle. Only the AFU limits the throughput.
     pub fn ideal() -> Self {
         Self::new("ideal", Direction::steady(1, 0), Order::InOrder)
     }
 
-    /// Reads of 71 to 118 cycles, the latency and tail recalled for HARP v1 at 200 MHz (Choi et al., DAC 2016), in
-    /// order and without a bandwidth limit; writes alike.
+    /// Reads take 71 to 118 cycles, the latency and tail of HARP v1 at 200 MHz recalled from Choi et al., DAC 2016.
+    /// They return in order and without a bandwidth limit. Writes take the same.
     pub fn late() -> Self {
         Self::new("late", Direction::steady(71, 47), Order::InOrder)
     }
@@ -105,7 +105,7 @@ impl LinkModel {
         Self::new("shuffled", Direction::steady(20, 40), Order::Shuffled)
     }
 
-    /// Everything a link may do to an AFU short of a fault: any order, stragglers, refusals, little bandwidth.
+    /// Everything that a link may do to an AFU short of a fault: any order, stragglers, stalls, low bandwidth.
     pub fn hostile() -> Self {
         let stalls = Stalls { chance: 0.04, longest: 30 };
         let stragglers = Stragglers { share: 0.005, cycles: 600 };
@@ -130,7 +130,7 @@ impl LinkModel {
     /// Checks that every value is in its range.
     ///
     /// # Errors
-    /// [`LinkError::Range`] with the first that is not.
+    /// Returns [`LinkError::Range`] with the first value that is outside its range.
     pub fn check(&self) -> Result<(), LinkError> {
         let fail = |field, value, range| Err(LinkError::Range { link: self.name.clone(), field, value, range });
         for direction in [&self.read, &self.write] {
@@ -144,9 +144,9 @@ impl LinkModel {
         Ok(())
     }
 
-    /// The cycles that so many lines read and written take at least over this link, on average over its randomness:
-    /// what its bandwidths, its stalls and (by Little's law) its latency under its requests in flight allow. An AFU
-    /// that has fewer in flight than the link takes reaches less.
+    /// The minimum number of cycles, on average over the link's randomness, to read and write this many lines. The
+    /// limits are its bandwidths, its stalls and, by Little's law, its latency with its requests in flight. An AFU with
+    /// fewer requests in flight than the link accepts reaches less.
     pub fn limit_cycles(&self, lines_read: u64, lines_written: u64) -> f64 {
         let (read, written) = (lines_read as f64, lines_written as f64);
         let alone = (read * self.read.cycles_per_read()).max(written * self.write.cycles_per_write());
@@ -201,7 +201,7 @@ mod tests {
         assert_eq!(LinkModel::ideal().limit_cycles(10, 1000), 1000.0);
         let late = LinkModel::late().limit_cycles(1000, 0); // 94.5 cycles with 64 in flight
         assert!((late - 1000.0 * 94.5 / 64.0).abs() < 1e-9, "{late}");
-        let hostile = LinkModel::hostile().limit_cycles(900, 900); // 1800 lines at 0.9 a cycle
+        let hostile = LinkModel::hostile().limit_cycles(900, 900); // 1800 lines at 0.9 per cycle
         assert!((hostile - 2000.0).abs() < 1e-9, "{hostile}");
     }
 

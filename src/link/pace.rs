@@ -1,18 +1,18 @@
-//! The cycles in which ready lines leave: bandwidth only, without latency.
+//! The cycles in which lines leave that are limited by bandwidth only, without latency.
 
 use super::direction::Direction;
 use super::model::LinkModel;
 use super::regulator::Bucket;
 
 impl LinkModel {
-    /// The cycles in which reads' data comes that would come in the cycles `ready` (rising) over a link of unlimited
-    /// bandwidth, if the link was idle before and nothing is written meanwhile.
+    /// The cycles in which data of reads arrives. `ready` are the cycles (rising) in which it would arrive with
+    /// unlimited bandwidth. The link was idle before, and nothing is written meanwhile.
     pub fn pace_of_reads(&self, ready: &[u64]) -> Vec<u64> {
         self.pace(&self.read, ready)
     }
 
-    /// The cycles in which writes are accepted that are asked for from the cycles `ready` (rising) on, if the link was
-    /// idle before and nothing is read meanwhile.
+    /// The cycles in which writes are accepted. `ready` are the cycles (rising) in which they are requested. The link
+    /// was idle before, and nothing is read meanwhile.
     pub fn pace_of_writes(&self, ready: &[u64]) -> Vec<u64> {
         self.pace(&self.write, ready)
     }

@@ -1,4 +1,4 @@
-//! A link in nanoseconds and bytes a second, each figure with its source, and what that is at a clock.
+//! A link in nanoseconds and bytes per second, each figure with its source, and its conversion to a clock.
 
 use serde::Deserialize;
 
@@ -8,8 +8,8 @@ use super::figure::{Figure, count, rate, time};
 use super::memory::LINE_BYTES;
 use super::model::{LinkError, LinkModel, SessionCost};
 
-/// A link as its makers and those who measured it describe it: a TOML file. `src/link/presets` has those by name,
-/// `examples/links` one with every key.
+/// A link as its makers and those who measured it describe it, in a TOML file. `src/link/presets` has the named ones.
+/// `examples/links` has one with every key.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Physical {
@@ -48,20 +48,20 @@ pub enum OrderName {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PhysicalDirection {
-    /// Nanoseconds from a request to its response at least.
+    /// The minimum time from a request to its response, in nanoseconds.
     #[serde(deserialize_with = "time")]
     pub latency_ns: Figure,
-    /// Maximum in nanoseconds; without it there is no tail.
+    /// The maximum time in nanoseconds. Without it there is no tail.
     #[serde(default, deserialize_with = "Figure::optional_time")]
     pub slowest_ns: Option<Figure>,
-    /// The mean of the nanoseconds beyond `latency_ns`, of a geometric distribution cut off at `slowest_ns`; without it
-    /// each time between the two is as likely as any other.
+    /// The mean number of nanoseconds beyond `latency_ns`, for a geometric distribution cut off at `slowest_ns`.
+    /// Without it, every time between the two is equally likely.
     #[serde(default, deserialize_with = "Figure::optional_time")]
     pub mean_wait_ns: Option<Figure>,
-    /// 10⁹ bytes a second.
+    /// 10⁹ bytes per second.
     #[serde(deserialize_with = "rate")]
     pub bandwidth_gb_s: Figure,
-    /// 10⁹ bytes a second that the port could carry: no bandwidth may be above it.
+    /// 10⁹ bytes per second that the port could carry. The bandwidth may not exceed it.
     #[serde(default, deserialize_with = "Figure::optional_rate")]
     pub ceiling_gb_s: Option<Figure>,
     /// Lines that may be in flight.
@@ -73,7 +73,7 @@ pub struct PhysicalDirection {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Joint {
-    /// 10⁹ bytes a second in both directions together.
+    /// 10⁹ bytes per second in both directions together.
     #[serde(deserialize_with = "rate")]
     pub bandwidth_gb_s: Figure,
 }
@@ -94,11 +94,11 @@ pub struct PhysicalSession {
 }
 
 impl Physical {
-    /// The description in the TOML text `text`; errors call it `file`.
+    /// Reads the description in the TOML text `text`. Errors call it `file`.
     ///
     /// # Errors
-    /// [`LinkError::File`], with the line, for what is no TOML, an unknown key, a missing one, a value out of range, a
-    /// figure without its source; figures that contradict each other.
+    /// Returns [`LinkError::File`], with the line, for text that is not TOML, an unknown or missing key, a value out of
+    /// range, or a figure without its source. Also for figures that contradict each other.
     pub fn parse(file: &str, text: &str) -> Result<Self, LinkError> {
         let physical: Self = toml::from_str(text).map_err(|error| {
             let place = error.span().map(|span| {
@@ -139,11 +139,11 @@ impl Physical {
         None
     }
 
-    /// The link at a clock of `mhz`. Times are rounded to the nearest cycle; a direction carries at most a line a
-    /// cycle, which is what the AFU's port has.
+    /// The link at a clock of `mhz`. Times are rounded to the nearest cycle. A direction carries at most one line per
+    /// cycle, like the AFU's port.
     ///
     /// # Errors
-    /// Returns an error if at that clock a value is outside what a model can hold.
+    /// Returns an error if, at that clock, a value is outside the range of a model.
     pub fn at(&self, mhz: f64) -> Result<LinkModel, LinkError> {
         let cycles = |ns: f64| (ns * mhz / 1000.0).round();
         let lines_per_cycle = |gb_s: &Figure| gb_s.value * 1000.0 / (LINE_BYTES as f64 * mhz);
@@ -230,7 +230,7 @@ mod tests {
         }
     }
 
-    /// The first preset with one piece of text replaced: what reading it says.
+    /// The error for the first preset with one piece of text replaced.
     #[track_caller]
     fn refused(from: &str, to: &str) -> String {
         assert!(HARP1.contains(from), "{from}");
@@ -271,7 +271,7 @@ mod tests {
             let gb_s = |figure: &Figure, most: f64| figure.value.min(most);
             for (reads, writes) in [(1000, 1000), (1000, 0), (0, 1000), (900, 400), (100, 1000)] {
                 let (read, written) = (64.0 * reads as f64, 64.0 * writes as f64);
-                let port = 12.8; // a line a cycle of 5 ns
+                let port = 12.8; // a line per cycle of 5 ns
                 let alone = (read / gb_s(&physical.read.bandwidth_gb_s, port))
                     .max(written / gb_s(&physical.write.bandwidth_gb_s, port));
                 let ns = alone.max((read + written) / gb_s(&physical.joint.bandwidth_gb_s, 2.0 * port));
@@ -285,7 +285,7 @@ mod tests {
     fn a_fast_clock_rounds_times_and_a_slow_one_is_the_limit_itself() {
         let harp1 = named("harp1");
         assert_eq!(harp1.at(250.0).unwrap().read.latency, 89); // 88.75
-        let slow = harp1.at(50.0).unwrap(); // a line a cycle is 3.2 GB/s
+        let slow = harp1.at(50.0).unwrap(); // a line per cycle is 3.2 GB/s
         assert_eq!((slow.read.lines_per_cycle, slow.write.lines_per_cycle, slow.lines_per_cycle), (1.0, 1.0, 2.0));
         assert_eq!(harp1.at(0.001).unwrap().read.latency, 1);
     }
@@ -331,7 +331,7 @@ mod tests {
         assert_eq!(lossy.at(200.0).unwrap().faults, [Fault::ReadLost(7)]);
     }
 
-    /// docs/link.md shows every figure of the presets and its source as they are.
+    /// docs/link.md shows every figure of the presets with its source.
     #[test]
     fn the_page_shows_the_figures() {
         let page = include_str!("../../docs/link.md");

@@ -1,4 +1,4 @@
-//! Requests in flight: when each is due, and which comes next.
+//! Requests in flight: when each is due, and which one is answered next.
 
 use std::collections::VecDeque;
 
@@ -13,7 +13,7 @@ pub(super) struct Queue<T> {
     direction: Direction,
     order: Order,
     waiting: VecDeque<(u64, T)>,
-    /// Scratch: positions of those that are due.
+    /// Scratch: positions of the requests that are due.
     due: Vec<usize>,
 }
 
@@ -22,7 +22,7 @@ impl<T> Queue<T> {
         Self { direction, order, waiting: VecDeque::new(), due: Vec::new() }
     }
 
-    /// A request accepted in cycle `now`.
+    /// Adds a request that was accepted in cycle `now`.
     pub(super) fn push(&mut self, now: u64, item: T, random: &mut Xoshiro256PlusPlus) {
         let Direction { latency, tail, shape, stragglers, .. } = self.direction;
         let late = if chance(random, stragglers.share) { stragglers.cycles } else { 0 };
@@ -37,7 +37,7 @@ impl<T> Queue<T> {
         self.waiting.push_back((due, item));
     }
 
-    /// Takes the request whose response comes in cycle `now`, if one is due and `may_leave`.
+    /// Takes the request that is answered in cycle `now`, if one is due and `may_leave`.
     pub(super) fn pop(
         &mut self,
         now: u64,

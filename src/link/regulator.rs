@@ -11,12 +11,12 @@ pub(super) fn chance(random: &mut Xoshiro256PlusPlus, share: f64) -> bool {
     share > 0.0 && ((random.next_u64() >> 11) as f64) < share * (1u64 << 53) as f64
 }
 
-/// A number from 0 to `most`, evenly distributed (to within 2^-32).
+/// A random number from 0 to `most`, evenly distributed (to within 2^-32).
 pub(super) fn up_to(random: &mut Xoshiro256PlusPlus, most: u32) -> u32 {
     if most == 0 { 0 } else { (((random.next_u64() >> 32) * (u64::from(most) + 1)) >> 32) as u32 }
 }
 
-/// Lines a cycle, on average: a bucket into which a share of a line drips each cycle.
+/// Limits the average lines per cycle: a bucket into which a share of a line drips in each cycle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bucket {
     lines_per_cycle: f64,
@@ -25,7 +25,7 @@ pub(super) struct Bucket {
 }
 
 impl Bucket {
-    /// A bucket that holds no more than is needed to lose nothing at `lines_per_cycle`: bursts are not saved up.
+    /// A bucket that holds only what `lines_per_cycle` needs to lose nothing, so that bursts are not saved up.
     pub(super) fn new(lines_per_cycle: f64) -> Self {
         let full = 1.0 + lines_per_cycle;
         Self { lines_per_cycle, full, level: 0.0 }
@@ -50,7 +50,7 @@ impl Bucket {
     }
 }
 
-/// True if a direction accepts requests in this cycle.
+/// Decides in each cycle whether a direction accepts requests.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Gate {
     stalls: Stalls,

@@ -1,4 +1,4 @@
-//! Errors of a job without outcome.
+//! Errors of a job that has no outcome.
 
 use std::fmt;
 
@@ -9,15 +9,15 @@ use crate::cosim::error::SimulationError;
 /// Why a job has no outcome.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DriveError {
-    /// The model's ports do not fit, or it ended itself.
+    /// The model's ports do not fit, or the model stopped the simulation.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
     /// The AFU broke the line port's protocol.
     #[error("protocol broken in cycle {cycle}: {what}")]
     Protocol {
-        /// The cycle, counted from the driver's first.
+        /// The cycle, counted from the start of the driver.
         cycle: u64,
-        /// How.
+        /// The violation.
         what: ProtocolError,
     },
     /// The AFU has another number of SCPUs.
@@ -25,7 +25,7 @@ pub enum DriveError {
     Scpus {
         /// The value that the job expects.
         expected: u32,
-        /// As the AFU says.
+        /// The number that the AFU reports.
         found: u32,
     },
     /// The AFU gives other results than the job expects.
@@ -33,7 +33,7 @@ pub enum DriveError {
     OtherResults {
         /// The value that the job expects.
         expected: Results,
-        /// As the AFU says.
+        /// The results that the AFU reports.
         found: Results,
     },
     /// The job does not fit in memory.
@@ -45,19 +45,19 @@ pub enum DriveError {
     /// The outcome was requested of a job that is not finished.
     #[error("no job has finished")]
     NotDone,
-    /// The job does not end.
+    /// The job does not finish.
     #[error(
         "the job did not finish after {cycles} cycles: waiting for {waiting} ({} of {} requested lines read, {} of {} lines written)",
         reads.1, reads.0, writes.1, writes.0
     )]
     TimedOut {
-        /// Cycles since its start.
+        /// Cycles since the start of the job.
         cycles: u64,
-        /// For what.
+        /// What the job waits for.
         waiting: Waiting,
-        /// Lines it asked for, and got.
+        /// Read requests accepted, and answered.
         reads: (u64, u64),
-        /// Lines it sent, and those acknowledged.
+        /// Write requests accepted, and acknowledged.
         writes: (u64, u64),
     },
 }
@@ -74,9 +74,9 @@ pub enum Waiting {
         /// Cycles since it was accepted.
         cycles: u64,
     },
-    /// The link, to accept a request.
+    /// The link accepts a request.
     Ready,
-    /// The AFU: the link owes it nothing.
+    /// The AFU makes a request. No response is outstanding.
     Afu,
 }
 

@@ -18,12 +18,12 @@ const DESTINATION: u64 = 1 << 40;
 pub struct Job<'a> {
     /// The source lines.
     pub source: &'a [Line],
-    /// Pairs in them.
+    /// The number of pairs in them.
     pub pairs: u32,
-    /// Lines that the results take; where only contacts come back, lines there is room for.
+    /// Lines that the results take. If only contacts come back, the number of lines that there is room for.
     pub destination_lines: u64,
-    /// Contacts a destination line, where only contacts come back: the AFU must then write as many lines as its
-    /// contacts take. Without it, it must write every destination line.
+    /// Contacts per destination line, if only contacts come back. The AFU must then write as many lines as its contacts
+    /// take. With `None`, it must write every destination line.
     pub hits_per_line: Option<u32>,
     /// Line address of the first source line.
     pub source_address: u64,
@@ -31,12 +31,12 @@ pub struct Job<'a> {
     pub destination_address: u64,
     /// The AFU's mode: 0.
     pub mode: u8,
-    /// Cycles without a response after which the AFU gives up; 0: never.
+    /// Cycles without a response after which the AFU gives up. With 0 it never does.
     pub watchdog: u32,
-    /// SCPUs that the AFU must have.
+    /// The number of SCPUs that the AFU must have.
     pub scpus: Option<u32>,
-    /// Cycles after which the job has failed even if something still moves; without it, what
-    /// [`patience`](crate::patience) says.
+    /// Cycles after which the job has failed even if requests are still answered. `None` leaves it to
+    /// [`patience`](crate::patience).
     pub max_cycles: Option<u64>,
 }
 
@@ -98,7 +98,7 @@ impl<'a> Job<'a> {
     }
 }
 
-/// A job on its way.
+/// A job that is running.
 #[derive(Clone, Debug)]
 pub(super) struct Running {
     destination: Range<u64>,

@@ -1,7 +1,7 @@
-//! Gives an AFU jobs over a simulated link, and watches every cycle of the protocol between them.
+//! Runs jobs on an AFU over a simulated link, and checks the protocol between them in every cycle.
 //!
-//! All outputs of the AFU are registered, so none depends on an input of the same cycle, and one evaluation an edge
-//! suffices: read the outputs, let the link decide, set the inputs, clock.
+//! All outputs of the AFU are registered, so none depends on an input of the same cycle. One evaluation per edge is
+//! enough: read the outputs, let the link decide, set the inputs, clock.
 
 mod error;
 mod job;
@@ -22,7 +22,7 @@ use job::Running;
 use monitor::Monitor;
 use ports::Ports;
 
-/// Cycles that reset is held.
+/// Cycles for which reset is held.
 const RESET_CYCLES: u64 = 4;
 
 /// A host with one AFU at the other end of a link.
@@ -34,16 +34,16 @@ pub struct Driver<'a> {
     monitor: Monitor,
     /// Cycles since the driver was made.
     cycle: u64,
-    /// The last job's; the next has another.
+    /// The epoch of the last job. The next job has another one.
     epoch: u8,
     running: Option<Running>,
 }
 
 impl<'a> Driver<'a> {
-    /// Takes hold of the ports of `afu`, a module with the `line` shell's ports, and resets it.
+    /// Takes the ports of `afu`, a module with the `line` shell's ports, and resets it.
     ///
     /// # Errors
-    /// Returns an error if a port is missing, or the module ends itself.
+    /// Returns an error if a port is missing, or if the module stops the simulation.
     pub fn new(afu: &'a Instance, link: Link) -> Result<Self, DriveError> {
         let (clock, ports) = (afu.clock("clk")?, Ports::new(afu)?);
         let monitor = Monitor::default();
@@ -52,10 +52,10 @@ impl<'a> Driver<'a> {
         Ok(driver)
     }
 
-    /// Resets the AFU, whatever it is doing. The link goes on: what was asked before is still answered.
+    /// Resets the AFU at any time. The link goes on, and still answers earlier requests.
     ///
     /// # Errors
-    /// Returns an error if the module ends itself.
+    /// Returns an error if the module stops the simulation.
     pub fn reset(&mut self) -> Result<(), DriveError> {
         self.running = None;
         self.monitor.forget();
@@ -95,8 +95,8 @@ impl<'a> Driver<'a> {
     /// Runs a job to its end.
     ///
     /// # Errors
-    /// Returns an error if the AFU breaks the protocol, gives no sign of life, or ends itself. A job that ends with an
-    /// error code is an [`Outcome`].
+    /// Returns an error if the AFU breaks the protocol, does not respond, or stops the simulation. A job that ends with
+    /// an error code is an [`Outcome`].
     pub fn run(&mut self, job: &Job) -> Result<Outcome, DriveError> {
         self.start(job)?;
         while !self.step()? {}
@@ -106,7 +106,7 @@ impl<'a> Driver<'a> {
     /// Puts a job's source into memory and starts the AFU on it.
     ///
     /// # Errors
-    /// Returns an error if the AFU is not the one that was expected or is busy, or as in [`Driver::step`].
+    /// Returns an error if the AFU is busy or is not the expected one. Also returns the errors of [`Driver::step`].
     pub fn start(&mut self, job: &Job) -> Result<(), DriveError> {
         let afu = self.capability();
         let Capability { scpus: found, results, .. } = afu;
@@ -132,11 +132,11 @@ impl<'a> Driver<'a> {
         Ok(())
     }
 
-    /// One cycle; whether the job is done.
+    /// Advances one cycle. Returns true if the job is done.
     ///
     /// # Errors
-    /// Returns an error if the AFU breaks the protocol, takes longer than a right one would ([`patience`]), or ends
-    /// itself.
+    /// Returns an error if the AFU breaks the protocol, takes longer than a correct one would ([`patience`]), or stops
+    /// the simulation.
     pub fn step(&mut self) -> Result<bool, DriveError> {
         if self.ports.is_done() {
             let (error, contacts) = (self.ports.error(), self.ports.counters().contacts);
@@ -155,7 +155,7 @@ impl<'a> Driver<'a> {
     /// The outcome of a job that is done.
     ///
     /// # Errors
-    /// Returns an error if none was started, or it is not done.
+    /// Returns an error if no job was started, or if it is not done.
     pub fn finish(&mut self) -> Result<Outcome, DriveError> {
         if !self.ports.is_done() {
             return Err(DriveError::NotDone);

@@ -1,4 +1,4 @@
-//! The line port's protocol, checked in every cycle.
+//! Checks the line port's protocol in every cycle.
 
 use super::error::DriveError;
 use crate::count::counted;
@@ -8,7 +8,7 @@ use crate::link::{MAX_OUTSTANDING, Memory, Replies, Requests, Violation};
 const TAGS: usize = 1 << 10;
 const SLOT_BITS: u32 = 6;
 
-/// The error code with which an AFU ends that will not wait for a lost response.
+/// The error code of an AFU that gave up waiting for a lost response.
 const WATCHDOG: u8 = 4;
 /// The error code of an AFU that found more contacts than there is room for.
 const OVERFLOW: u8 = 6;
@@ -30,7 +30,7 @@ pub enum ProtocolError {
         /// The tag.
         tag: u16,
     },
-    /// A tag of another job.
+    /// A tag with the epoch of another job.
     #[error("a {} used tag {tag:#05x}, but the job's epoch is {epoch}", direction(*is_read))]
     WrongEpoch {
         /// True for a read.
@@ -46,13 +46,13 @@ pub enum ProtocolError {
         /// True for reads.
         is_read: bool,
     },
-    /// A request without a job. (One that a job gave up while it stood on the port stays there.)
+    /// A request without a job. (A request that a job gave up while it was on the port may stay there.)
     #[error("a {} request while no job runs", direction(*is_read))]
     Idle {
         /// True for a read.
         is_read: bool,
     },
-    /// An access to a line that is not the job's.
+    /// An access to a line that does not belong to the job.
     #[error(transparent)]
     Memory(#[from] Violation),
     /// Done while requests were outstanding.
@@ -66,7 +66,7 @@ pub enum ProtocolError {
     /// Done and still busy.
     #[error("done and busy are high in the same cycle")]
     DoneAndBusy,
-    /// Done, without an error code, but not all was written.
+    /// Done without an error code before everything was written.
     #[error("done is high, but line {0:#x} of the destination was never written")]
     Unwritten(u64),
 }
@@ -79,9 +79,9 @@ fn direction(is_read: bool) -> &'static str {
 #[derive(Debug)]
 struct Half {
     is_read: bool,
-    /// The cycle in which each outstanding tag was accepted, and whether that was before the last reset.
+    /// For each outstanding tag, the cycle in which it was accepted and the number of resets before it.
     since: Box<[Option<(u64, u32)>; TAGS]>,
-    /// Outstanding, but for what a reset forgot.
+    /// Outstanding requests, without those that a reset forgot.
     outstanding: u32,
     /// Resets so far.
     resets: u32,
@@ -137,7 +137,7 @@ pub(super) struct Monitor {
     pending: Requests,
     /// True if the last job gave up its outstanding requests.
     gave_up: bool,
-    /// Whether the read, or the write, on the port is one that a job gave up.
+    /// True for the read, and the write, on the port if a job gave it up.
     leftover: [bool; 2],
     violations: u64,
 }
@@ -157,7 +157,7 @@ impl Default for Monitor {
 }
 
 impl Monitor {
-    /// The AFU is reset: it owes nothing, but what the link owes it still comes.
+    /// The AFU was reset. It owes nothing, but the link's outstanding responses still arrive.
     pub(super) fn forget(&mut self) {
         self.reads.forget();
         self.writes.forget();
@@ -165,16 +165,16 @@ impl Monitor {
         self.leftover = [false; 2];
     }
 
-    /// A job of this epoch begins; memory counts violations anew.
+    /// A job of this epoch begins, and memory counts violations from zero.
     pub(super) fn begin(&mut self, epoch: u8) {
-        // What a job that gave up still waits for is no longer this one's, a request on the port included.
+        // Outstanding requests of a job that gave up no longer count, nor does its request on the port.
         self.reads.forget();
         self.writes.forget();
         self.epoch = epoch;
         self.violations = 0;
     }
 
-    /// Responses.
+    /// Takes note of the link's responses.
     pub(super) fn answered(&mut self, replies: &Replies) {
         if let Some(read) = &replies.read {
             self.reads.answered(read.tag);
@@ -204,7 +204,7 @@ impl Monitor {
         busy: bool,
         memory: &Memory,
     ) -> Result<(), ProtocolError> {
-        // A tag is free from the cycle after its response on.
+        // A tag is free from the cycle after its response.
         let is_kept = [
             self.pending.read.is_some() && self.pending.read == requests.read,
             self.pending.write.is_some() && self.pending.write == requests.write,
@@ -229,7 +229,7 @@ impl Monitor {
         }
         self.check_stable(requests, replies)?;
         self.answered(replies);
-        // A request that was given up goes where its own job's went.
+        // A request that was given up counts for the job that made it.
         let is_late = left_read && replies.read_ready || left_write && replies.write_ready;
         if memory.violation_count() > self.violations {
             self.violations = memory.violation_count();
@@ -249,7 +249,7 @@ impl Monitor {
             return Err(ProtocolError::Unstable { is_read: false });
         }
         self.pending.read = requests.read.filter(|_| !replies.read_ready);
-        // A write carries a line; in most cycles there is no write.
+        // Comparing a line takes time, and in most cycles there is no write.
         if requests.write.is_some() && !replies.write_ready {
             self.pending.write = requests.write;
         } else if self.pending.write.is_some() {
@@ -282,7 +282,7 @@ impl Monitor {
         }
     }
 
-    /// The request that waits longest: whether it is a read, its tag, and the cycle in which it was accepted.
+    /// The oldest outstanding request: true for a read, its tag, and the cycle in which it was accepted.
     pub(super) fn oldest(&self) -> Option<(bool, u16, u64)> {
         self.reads.oldest().into_iter().chain(self.writes.oldest()).min_by_key(|(_, _, cycle)| *cycle)
     }

@@ -77,7 +77,7 @@ impl<'a> Ports<'a> {
         ports.start.set(1);
     }
 
-    /// Takes `start` back, and everything that needs to be right only with it.
+    /// Clears `start`, and every input that needs to be valid only with it.
     pub(super) fn started(&self) {
         let JobInputs { start, source, destination, destination_lines, count, mode, epoch, watchdog, abort_job: _ } =
             self.job;

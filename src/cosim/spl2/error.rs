@@ -1,20 +1,20 @@
-//! What ends a simulation below SPL2.
+//! Errors that end a simulation below SPL2.
 
 use crate::cosim::error::SimulationError;
 use crate::link::spl2::Spl2Error;
 
-/// What ends a simulation below SPL2.
+/// Why a simulation below SPL2 ended.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MachineError {
-    /// The model's ports do not fit, or it ended itself.
+    /// The model's ports do not fit, or the model stopped the simulation.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
     /// The AFU broke the port's protocol.
     #[error("protocol broken in cycle {cycle}: {what}")]
     Protocol {
-        /// The cycle, counted from the machine's first.
+        /// The cycle, counted from the start of the machine.
         cycle: u64,
-        /// How.
+        /// The violation.
         what: Spl2Error,
     },
 }

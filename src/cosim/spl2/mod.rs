@@ -1,6 +1,6 @@
 //! The simulated HARP v1: a Verilated `afu_top` below SPL2 over a link to memory.
 //!
-//! [`Machine`] is what a host has of it: CSR writes, memory, time. To the host, in [`host`](crate::host), it is a
+//! A host sees a [`Machine`]: CSR writes, memory and time. The module [`host`](crate::host) uses it as a
 //! [`Transport`](crate::host::Transport).
 
 mod error;
@@ -12,7 +12,7 @@ use super::instance::{Clock, Instance};
 use crate::link::spl2::{Header, Spl2, Transmit};
 use ports::Ports;
 
-/// Cycles that the system's reset is held.
+/// Cycles for which the system's reset is held.
 const RESET_CYCLES: u64 = 4;
 
 /// A host's view of the AFU below SPL2.
@@ -22,17 +22,17 @@ pub struct Machine<'a> {
     ports: Ports<'a>,
     spl: Spl2,
     cycle: u64,
-    /// The line that the AFU asked for last.
+    /// The line that the AFU read last.
     last_read: Option<u64>,
-    /// The cycle of its last request that was no poll.
+    /// The cycle of its last request that was not a poll.
     last_work: u64,
 }
 
 impl<'a> Machine<'a> {
-    /// Takes hold of the ports of `afu`, a module with the `spl2` shell's ports, and resets the system.
+    /// Takes the ports of `afu`, a module with the `spl2` shell's ports, and resets the system.
     ///
     /// # Errors
-    /// Returns an error if a port is missing, or the module ends itself.
+    /// Returns an error if a port is missing, or if the module stops the simulation.
     pub fn new(afu: &'a Instance, spl: Spl2) -> Result<Self, MachineError> {
         let (clock, ports) = (afu.clock("clk")?, Ports::new(afu)?);
         let mut machine = Self { clock, ports, spl, cycle: 0, last_read: None, last_work: 0 };
@@ -40,10 +40,10 @@ impl<'a> Machine<'a> {
         Ok(machine)
     }
 
-    /// The system's reset: AFU and SPL forget everything, memory stays.
+    /// The system's reset: the AFU and SPL lose their state, and memory keeps its content.
     ///
     /// # Errors
-    /// Returns an error if the module ends itself.
+    /// Returns an error if the module stops the simulation.
     pub fn system_reset(&mut self) -> Result<(), MachineError> {
         self.ports.system_reset(true);
         for _ in 0..RESET_CYCLES {
@@ -54,8 +54,7 @@ impl<'a> Machine<'a> {
         Ok(())
     }
 
-    /// The host writes a 32-bit CSR, which takes as long as [`Spl2Model::csr_cycles`](crate::link::spl2::Spl2Model)
-    /// say.
+    /// The host writes a 32-bit CSR. This takes [`Spl2Model::csr_cycles`](crate::link::spl2::Spl2Model).
     ///
     /// # Errors
     /// Returns the errors of [`Machine::advance`].
@@ -67,7 +66,7 @@ impl<'a> Machine<'a> {
     /// Runs the clock.
     ///
     /// # Errors
-    /// Returns an error if the AFU breaks the port's protocol, or ends itself.
+    /// Returns an error if the AFU breaks the port's protocol, or stops the simulation.
     pub fn advance(&mut self, cycles: u64) -> Result<(), MachineError> {
         for _ in 0..cycles {
             let transmit = self.ports.transmit();
@@ -86,7 +85,7 @@ impl<'a> Machine<'a> {
         Ok(())
     }
 
-    /// A poll asks for the line that was asked for before it.
+    /// Takes note of a request. A poll is a read of the same line as the read before it.
     fn note(&mut self, transmit: &Transmit) {
         let line = transmit.read.map(|header| Header::from_bits(header).line);
         if transmit.write.is_some() || line.is_some_and(|line| self.last_read.replace(line) != Some(line)) {
@@ -94,7 +93,7 @@ impl<'a> Machine<'a> {
         }
     }
 
-    /// The cycle of the AFU's last request that was no poll: a write, or a read of another line than the one before.
+    /// The cycle of the AFU's last request that was not a poll: a write, or a read of another line than the last.
     pub(crate) fn last_work(&self) -> u64 {
         self.last_work
     }

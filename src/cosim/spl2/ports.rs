@@ -22,7 +22,7 @@ fn bits(words: [u32; 4]) -> u128 {
 
 impl<'a> Ports<'a> {
     pub(super) fn new(afu: &'a Instance) -> Result<Self, SimulationError> {
-        // Widths are those of any AFU's.
+        // The widths are the same for every AFU.
         let spec = Spec::from(Config::default());
         Ok(Self {
             inputs: SplInputs::of(&spec).try_map(|port| afu.input(port.name, port.bits))?,
@@ -38,7 +38,7 @@ impl<'a> Ports<'a> {
         }
     }
 
-    /// What the AFU transmits in this cycle.
+    /// The AFU's outputs in this cycle.
     #[inline]
     pub(super) fn transmit(&self) -> Transmit {
         let afu = &self.outputs;
@@ -49,7 +49,8 @@ impl<'a> Ports<'a> {
         }
     }
 
-    /// What the AFU receives in this cycle. Without a valid, headers and data keep what they had: nobody may look.
+    /// Sets the AFU's inputs in this cycle. Without a valid, headers and data keep their old values, which the AFU must
+    /// ignore.
     #[inline]
     pub(super) fn receive(&self, receive: &Receive) {
         let spl = &self.inputs;

@@ -1,9 +1,9 @@
 //! Violations at SPL2's port.
 
-/// What the AFU, or the host, must not do.
+/// An access or request that the AFU or the host must not make.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Spl2Error {
-    /// More requests than are accepted after almost-full.
+    /// More requests than SPL accepts after almost-full.
     #[error("a {what} as request {after} after almost-full: SPL accepts at most 4")]
     Overshoot {
         /// Read or write.
@@ -34,13 +34,13 @@ pub enum Spl2Error {
     Disabled {
         /// Read or write.
         what: &'static str,
-        /// For how long.
+        /// Cycles since SPL was disabled or reset.
         cycles: u64,
     },
-    /// An interrupt: this AFU raises none.
+    /// An interrupt. This AFU raises none.
     #[error("an interrupt, which this AFU never raises")]
     Interrupt,
-    /// An address outside of the page table.
+    /// An address outside the page table.
     #[error("page fault: a {what} of virtual line {line:#x}")]
     PageFault {
         /// Read or write.

@@ -1,21 +1,21 @@
-//! Headers, and what goes over the port in a cycle.
+//! Headers, and the signals of the port in a cycle.
 
 use crate::link::Line;
 
-/// A transmit header, taken apart.
+/// The fields of a transmit header.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Header {
-    /// Lines, 98:93.
+    /// Lines, bits 98:93.
     pub lines: u32,
-    /// Line address, 92:67 above 45:14.
+    /// Line address, bits 92:67 above bits 45:14.
     pub line: u64,
     /// Bit 66: virtual or physical.
     pub is_virtual: bool,
-    /// Type, 55:52.
+    /// Type, bits 55:52.
     pub kind: u32,
-    /// Mdata, 13:0.
+    /// Mdata, bits 13:0.
     pub mdata: u16,
-    /// Unused bits.
+    /// True if an unused bit is set.
     pub rest: bool,
 }
 
@@ -29,7 +29,7 @@ impl Header {
     /// WrFence.
     pub(crate) const WRITE_FENCE: u32 = 5;
 
-    /// From the low 99 bits.
+    /// The header in the low 99 bits.
     pub fn from_bits(bits: u128) -> Self {
         let part = |low: u32, width: u32| (bits >> low) as u64 & ((1 << width) - 1);
         Self {
@@ -78,12 +78,12 @@ pub enum Receive0 {
     },
 }
 
-/// A receive header of a write's acknowledgement.
+/// The receive header that acknowledges a write.
 pub(super) fn write_response(mdata: u16) -> u32 {
     1 << 14 | u32::from(mdata)
 }
 
-/// A receive header of a read's data.
+/// The receive header that comes with a read's data.
 pub(super) fn read_response(mdata: u16) -> u32 {
     4 << 14 | u32::from(mdata)
 }

@@ -1,9 +1,9 @@
-//! SPL2 of Intel HARP v1, as the AFU below it and the host above it see it, over a [`Link`](super::Link) to memory.
+//! SPL2 of Intel HARP v1 over a [`Link`](super::Link) to memory, as seen by the AFU below it and the host above it.
 //!
-//! [`Spl2`] is one call a clock cycle: what the AFU transmits in it goes in, what it receives comes out. The host
-//! writes CSRs; SPL keeps its own and forwards the others. Whatever the AFU must not do is an error of that call. Facts
-//! are from public source of the platform (SPL2's RTL, its driver); what was not found there is a parameter of
-//! [`Spl2Model`].
+//! [`Spl2`] advances by one call per clock cycle, which takes the AFU's outputs and returns its inputs. The host writes
+//! CSRs; SPL keeps its own and forwards the others. If the AFU breaks a rule, the call returns an error. The behaviour
+//! follows the platform's public source (SPL2's RTL, its driver). Where the source does not define it, [`Spl2Model`]
+//! has a parameter.
 
 mod error;
 mod header;

@@ -1,4 +1,4 @@
-//! SPL2 at work: one call a clock cycle.
+//! SPL2 in operation: one call per clock cycle.
 
 use std::collections::VecDeque;
 use std::ops::Range;
@@ -15,10 +15,10 @@ use super::writes::Writes;
 use crate::link::regulator::Gate;
 use crate::link::{LINE_BYTES, Line, Link, Requests, Stalls};
 
-/// What stands in dword 0 of the SPL DSM's line 0 once SPL knows that DSM: any number but 0 serves a host that polls.
+/// Dword 0 of the SPL DSM's line 0 once SPL has that DSM. Any number but 0 serves a host that polls.
 pub const SPL_ID: u32 = 0x5350_4C32;
 
-/// Byte offsets of SPL's own CSRs. Of two halves the high one comes first, and the low one commits.
+/// Byte offsets of SPL's own CSRs. Of two halves, the high one is written first, and the low one commits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CsrOffset {
     /// Physical address of the SPL DSM, high half.
@@ -33,23 +33,25 @@ pub enum CsrOffset {
     Control = 0x1010,
 }
 
-/// The first offset that is not SPL's.
+/// The first offset that belongs to the AFU.
 const SPL_END: u32 = 0x2000;
 
 /// Parameters of SPL2 beyond its [`LinkModel`](crate::link::LinkModel).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spl2Model {
-    /// Cycles of a CSR write: about 145 (730 ns), as the driver's platform file says.
+    /// Cycles of a CSR write: about 145 (730 ns) according to the driver's platform file.
     pub csr_cycles: u32,
-    /// Reads come back in the order of requests, from a window of 64, as SPL2's do. Otherwise the AFU sees any order.
+    /// True if reads return in the order of requests, from a window of 64, as with SPL2. Otherwise the AFU sees any
+    /// order.
     pub reads_in_order: bool,
-    /// Cycles of `spl_reset` after a 1 to the control's bit 0; 0: as long as the bit is set. (Not known; both occur.)
+    /// Cycles of `spl_reset` after a 1 to the control's bit 0. With 0, as long as the bit is set. (Which one is real is
+    /// not known.)
     pub reset_cycles: u32,
-    /// The share of cycles in which acknowledgements are held back, so that two can come at once.
+    /// The share of cycles in which acknowledgements are held back, so that two can arrive at once.
     pub held: f64,
     /// True if a fence is acknowledged. (The real behaviour is not known.)
     pub fence_answers: bool,
-    /// Spans in which almost-full is high for no reason the AFU could know.
+    /// Spans in which almost-full is high for a reason unknown to the AFU.
     pub almostfull: Stalls,
 }
 
@@ -66,7 +68,7 @@ impl Default for Spl2Model {
     }
 }
 
-/// A write by the AFU that arrived in one of the watched lines.
+/// A write by the AFU to one of the watched lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DeviceWrite {
     /// Physical line address.

@@ -1,4 +1,4 @@
-//! The port's protocol, checked in every cycle.
+//! Checks the port's protocol in every cycle.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -10,17 +10,17 @@ use super::header::Header;
 const OVERSHOOT: u32 = 4;
 /// Cycles after the end of `spl_enable` in which a request is still on its way.
 const GRACE_CYCLES: u64 = 4;
-/// Values of mdata, whose uppermost bit SPL keeps for itself.
+/// The number of values of mdata. SPL keeps the uppermost bit for itself.
 const MDATA: usize = 1 << 13;
 
-/// Virtual lines that a job may touch.
+/// The virtual lines that a job may access.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Limits {
-    /// Lines it may read.
+    /// Lines that it may read.
     pub reads: Vec<Range<u64>>,
-    /// Lines it may write any number of times: the status.
+    /// Lines that it may write any number of times: the status.
     pub status: Range<u64>,
-    /// Lines it may write once.
+    /// Lines that it may write once.
     pub results: Range<u64>,
 }
 
@@ -37,7 +37,7 @@ impl Direction {
         Self { what, overshoot: 0, in_flight: vec![false; MDATA] }
     }
 
-    /// A cycle without a request, or one with: requests since almost-full rose.
+    /// Counts the requests since almost-full rose, in a cycle with or without one.
     pub(super) fn count(&mut self, almostfull: bool, requests: bool) -> Result<u32, Spl2Error> {
         self.overshoot = if almostfull { self.overshoot + u32::from(requests) } else { 0 };
         match self.overshoot > OVERSHOOT {
@@ -46,7 +46,7 @@ impl Direction {
         }
     }
 
-    /// The request's header, if it is one.
+    /// Checks the request's header and returns its fields.
     pub(super) fn header(&self, bits: u128, disabled_for: Option<u64>) -> Result<Header, Spl2Error> {
         let header = Header::from_bits(bits);
         let is_read = self.what == "read";
@@ -65,7 +65,7 @@ impl Direction {
         if usize::from(header.mdata) >= MDATA {
             return fail("mdata[13] is SPL's own");
         }
-        // A physical write is how an AFU says who it is, before it is enabled.
+        // An AFU identifies itself by a physical write, before it is enabled.
         match disabled_for.filter(|&cycles| cycles > GRACE_CYCLES && header.is_virtual) {
             Some(cycles) => Err(Spl2Error::Disabled { what: self.what, cycles }),
             None => Ok(header),
@@ -89,11 +89,11 @@ impl Direction {
     }
 }
 
-/// The memory that a job may access, if it is restricted.
+/// Restricts the memory that a job may access.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Guard {
     limits: Option<Limits>,
-    /// Results by line, with the cycle in which they were sent.
+    /// The result lines that were sent, each with its cycle.
     written: HashMap<u64, u64>,
 }
 

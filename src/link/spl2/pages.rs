@@ -1,4 +1,4 @@
-//! Virtual to physical: SPL2's table of 2 MB pages.
+//! Translates virtual to physical addresses: SPL2's table of 2 MB pages.
 
 use super::error::Spl2Error;
 use crate::link::{LINE_BYTES, Line, Memory};
@@ -7,12 +7,12 @@ use crate::link::{LINE_BYTES, Line, Memory};
 pub const PAGE_BYTES: u64 = 2 << 20;
 /// Pages of a table: 2 GB.
 pub const MAX_PAGES: u64 = 1024;
-/// Lines of a page.
+/// Lines in a page.
 pub const PAGE_LINES: u64 = PAGE_BYTES / LINE_BYTES;
-/// Entries of a line of the table: 64-bit physical byte addresses.
+/// Entries in a line of the table: 64-bit physical byte addresses.
 const LINE_ENTRIES: u64 = 8;
 
-/// The table, as SPL reads it from memory when it is enabled.
+/// The table that SPL reads from memory when it is enabled.
 #[derive(Clone, Debug)]
 pub struct Pages {
     /// The number of the first virtual page.
@@ -31,7 +31,7 @@ fn set_qword(line: &mut Line, index: usize, value: u64) {
 }
 
 impl Pages {
-    /// Pages at these physical byte addresses, one behind the other from a virtual one on.
+    /// Pages at these physical byte addresses, contiguous from a virtual page on.
     pub fn new(first: u64, pages: impl IntoIterator<Item = u64>) -> Self {
         let lines = pages.into_iter().map(|page| page / LINE_BYTES).collect();
         Self { first: first / PAGE_BYTES, lines }
@@ -42,7 +42,7 @@ impl Pages {
         self.lines.len() as u64
     }
 
-    /// Writes what [`Pages::read`] finds: the context and the table, each at a physical byte address.
+    /// Writes the context and the table, each at a physical byte address, so that [`Pages::read`] finds them.
     pub fn write(&self, memory: &mut Memory, context: u64, table: u64) {
         let mut line = [0; 16];
         set_qword(&mut line, 0, table);
@@ -58,11 +58,12 @@ impl Pages {
         }
     }
 
-    /// Reads SPL2's context at a physical byte address, and the table it names. Context: qword 0 the table's physical
-    /// address, qword 1 the virtual address of the first page, dword 4 the page size (1: 2 MB), dword 5 the entries.
+    /// Reads SPL2's context at a physical byte address, and the table that it points to. In the context, qword 0 is the
+    /// table's physical address, qword 1 the virtual address of the first page, dword 4 the page size (1: 2 MB), and
+    /// dword 5 the number of entries.
     ///
     /// # Errors
-    /// [`Spl2Error::Context`] when one of the two is none.
+    /// Returns [`Spl2Error::Context`] if one of the two is invalid.
     pub fn read(memory: &Memory, context: u64) -> Result<Self, Spl2Error> {
         let fail = |why| Err(Spl2Error::Context(why));
         let Some(line) = memory.get(context / LINE_BYTES) else { return fail("nothing was written there") };

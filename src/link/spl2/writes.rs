@@ -1,4 +1,4 @@
-//! SPL2's writes: a queue towards the link, fences in it, and acknowledgements on two channels.
+//! SPL2's writes: the queue to the link, fences in it, and acknowledgements on two channels.
 
 use std::collections::VecDeque;
 
@@ -16,7 +16,7 @@ const QUEUED: usize = 8;
 /// Acknowledgements that may be held back.
 const FEW: usize = 3;
 
-/// A write on its way, by its physical line.
+/// A write in flight, with its physical line.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Write {
     id: u16,
@@ -47,25 +47,25 @@ impl Writes {
         self.queue.push_back((header, data));
     }
 
-    /// Fences at the head of the queue are done once everything before them is: their mdata.
+    /// Removes a fence from the head of the queue once every write before it is done, and returns its mdata.
     pub(super) fn pass_fence(&mut self) -> Option<u16> {
         let (header, _) = self.queue.front()?;
         let passes = header.kind == Header::WRITE_FENCE && self.current() == 0;
         passes.then(|| self.queue.pop_front().map(|(header, _)| header.mdata))?
     }
 
-    /// The request to be sent next, unless a fence holds it back.
+    /// The request to send next, unless a fence holds it back.
     pub(super) fn head(&self) -> Option<&Header> {
         self.queue.front().map(|(header, _)| header).filter(|header| header.kind != Header::WRITE_FENCE)
     }
 
-    /// The link's request for it.
+    /// The request on the link for this write.
     pub(super) fn request(&self, address: u64) -> Option<WriteRequest> {
         let (_, data) = self.queue.front()?;
         Some(WriteRequest { address, tag: self.next_id, data: *data })
     }
 
-    /// The link has accepted it.
+    /// Marks the head as accepted by the link.
     pub(super) fn sent(&mut self, address: u64) {
         if let Some((header, data)) = self.queue.pop_front() {
             self.sent.push(Write { id: self.next_id, header, address, data, stale: false });
@@ -73,7 +73,7 @@ impl Writes {
         }
     }
 
-    /// The link's answer: the write, which is in memory now.
+    /// The link answered: the write is in memory now.
     pub(super) fn answered(&mut self, response: &WriteResponse) -> Option<Write> {
         let index = self.sent.iter().position(|write| write.id == response.tag)?;
         let write = self.sent.swap_remove(index);
@@ -81,7 +81,7 @@ impl Writes {
         Some(write)
     }
 
-    /// A fence that answers.
+    /// Acknowledges a fence.
     pub(super) fn acknowledge(&mut self, mdata: u16) {
         self.acknowledged.push_back(mdata);
     }
@@ -93,7 +93,7 @@ impl Writes {
         held: f64,
         random: &mut Xoshiro256PlusPlus,
     ) -> (Option<u16>, Option<u16>) {
-        let few = self.acknowledged.len() < FEW; // more are never held, so that no bandwidth is lost
+        let few = self.acknowledged.len() < FEW; // no more are held back, so that no bandwidth is lost
         if self.acknowledged.is_empty() || (few && chance(random, held)) {
             return (None, None);
         }
@@ -104,8 +104,8 @@ impl Writes {
         (on0, on1)
     }
 
-    /// SPL is reset or disabled: what is queued is gone (its mdata are given), what is on its way is still written and
-    /// acknowledged.
+    /// SPL is reset or disabled. Queued writes are dropped, and their mdata returned. Writes in flight are still done
+    /// and acknowledged.
     pub(super) fn reset(&mut self) -> Vec<u16> {
         self.sent.iter_mut().for_each(|write| write.stale = true);
         self.queue.drain(..).map(|(header, _)| header.mdata).collect()
@@ -118,7 +118,7 @@ impl Writes {
         self.acknowledged.clear();
     }
 
-    /// Writes of before the last reset that are still to be acknowledged.
+    /// The number of writes from before the last reset that are not acknowledged yet.
     pub(super) fn stale(&self) -> usize {
         self.sent.len() - self.current()
     }
