@@ -4,7 +4,7 @@ use super::spread::Gathered;
 use super::{Answer, Contender, ErrorStatistics, Row, Standard, StudyError, Tally, judge};
 use crate::kernel::EngineError;
 use crate::query::{PairRecord, Query};
-use crate::store::{Key, Store, sha256};
+use crate::store::{Key, Store, StoreError, sha256};
 use serde::{Deserialize, Serialize};
 use std::thread;
 
@@ -38,47 +38,85 @@ pub fn measure(
     let mut rows = Vec::new();
     let mut open = Vec::new();
     for (index, contender) in contenders.iter().enumerate() {
-        let name = contender.name();
-        let mut row = Row::new(set, &name, hash(query, &name, pairs));
-        let key = Key::new("errors/1", &(&name, &row.key))?;
+        let (mut row, key) = unjudged(query, set, &contender.name(), pairs)?;
         match store.get(&key)? {
-            Some(Judged { tally, errors }) => {
-                (row.tally, row.errors) = (tally, errors);
+            Some(judged) => {
+                row = row.with(judged);
                 progress(pairs.len() as u64);
             }
-            None => open.push((index, key, Gathered::default())),
+            None => open.push((index, key)),
         }
         rows.push(row);
     }
     let resumed = rows.len() - open.len();
-    // No contender is left to answer: no need of the truth either.
-    let anyone = !open.is_empty();
-    for batch in pairs.chunks(BATCH).take_while(|_| anyone) {
-        let standards = standards(query, batch);
-        for (index, _, errors) in &mut open {
-            let contender = &mut contenders[*index];
-            let answers =
-                contender.answers(batch).map_err(|error| ContenderError { contender: contender.name(), error })?;
-            let (tally, found) = count_up(&standards, &answers);
-            rows[*index].tally = rows[*index].tally.plus(&tally);
-            errors.extend(found);
-            progress(batch.len() as u64);
+    let mut those: Vec<&mut Box<dyn Contender>> = Vec::new();
+    for (index, contender) in contenders.iter_mut().enumerate() {
+        if open.iter().any(|(of, _)| *of == index) {
+            those.push(contender);
         }
     }
-    for (index, key, errors) in open {
+    let judged = judge_all(query, pairs, &mut those, progress)?;
+    for ((index, key), judged) in open.into_iter().zip(judged) {
+        store.put(&key, &judged)?;
         let row = &mut rows[index];
-        row.errors = errors.errors();
-        store.put(&key, &Judged { tally: row.tally, errors: row.errors })?;
+        *row = row.clone().with(judged);
     }
     Ok((rows, resumed))
 }
 
+/// The row of a contender before its answers are judged, and the key that they are kept under.
+pub(super) fn unjudged(
+    query: Query,
+    set: &str,
+    contender: &str,
+    pairs: &[PairRecord],
+) -> Result<(Row, Key), StoreError> {
+    let row = Row::new(set, contender, hash(query, contender, pairs));
+    let key = Key::new("errors/1", &(contender, &row.key))?;
+    Ok((row, key))
+}
+
+/// The answers of contenders to `pairs`, judged. The truth about a pair is found once for all of them. `progress` is
+/// called with the pairs done.
+///
+/// # Errors
+/// Returns an error if a contender fails.
+pub(super) fn judge_all(
+    query: Query,
+    pairs: &[PairRecord],
+    contenders: &mut [&mut Box<dyn Contender>],
+    mut progress: impl FnMut(u64),
+) -> Result<Vec<Judged>, ContenderError> {
+    let mut all: Vec<(Tally, Gathered)> = contenders.iter().map(|_| Default::default()).collect();
+    // Without contenders nobody asks for the truth either.
+    let anyone = !contenders.is_empty();
+    for batch in pairs.chunks(BATCH).take_while(|_| anyone) {
+        let standards = standards(query, batch);
+        for (contender, (tally, errors)) in contenders.iter_mut().zip(&mut all) {
+            let answers =
+                contender.answers(batch).map_err(|error| ContenderError { contender: contender.name(), error })?;
+            let (counted, found) = count_up(&standards, &answers);
+            *tally = tally.plus(&counted);
+            errors.extend(found);
+            progress(batch.len() as u64);
+        }
+    }
+    Ok(all.into_iter().map(|(tally, errors)| Judged { tally, errors: errors.errors() }).collect())
+}
+
 /// The stored part of a row; the rest is known from the request.
-#[derive(Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Judged {
+pub(super) struct Judged {
     tally: Tally,
     errors: ErrorStatistics,
+}
+
+impl Row {
+    /// The row with what was judged.
+    pub(super) fn with(self, judged: Judged) -> Self {
+        Self { tally: judged.tally, errors: judged.errors, ..self }
+    }
 }
 
 /// The truth about each pair, found on all processors.

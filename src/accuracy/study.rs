@@ -66,7 +66,7 @@ pub fn fill(
 
 /// The store in a folder for results of this schema, which is taken even if it is not ours with `true`; without a
 /// folder one that does not last.
-pub(super) fn open(folder: Option<(&Path, bool)>, schema: &str) -> Result<Store, StudyError> {
+fn open(folder: Option<(&Path, bool)>, schema: &str) -> Result<Store, StudyError> {
     let Some((folder, force)) = folder else { return Ok(Store::temporary()?) };
     folder::check_study(folder, schema, force)?;
     Ok(Store::open(&folder.join(store::FOLDER)))

@@ -13,6 +13,9 @@ pub enum Kind {
     Tool = 3,
     /// Anything else.
     Other = 4,
+    /// The rest of a study needs points of other shards.
+    #[cfg(feature = "cosim")]
+    Waiting = 5,
 }
 
 /// An error and what kind of end it makes.

@@ -12,12 +12,21 @@ pub fn read(text: &str, clock_mhz: f64) -> Result<LinkModel, Failure> {
 }
 
 /// The link of that name or file, before its clock is known.
-pub fn describe(text: &str) -> Result<Description, Failure> {
+pub fn describe(name: &str) -> Result<Description, Failure> {
     let usage = |why: &dyn std::fmt::Display| Failure::new(Kind::Usage, why);
-    if ![".toml", ".json"].iter().any(|ending| text.ends_with(ending)) {
-        let named = text.parse::<Description>();
-        return named.map_err(|error| usage(&format!("{error}, or a .toml or .json file of a link")));
+    match text(name)? {
+        Some(text) => Description::parse(name, &text).map_err(|error| usage(&error)),
+        None => {
+            name.parse::<Description>().map_err(|error| usage(&format!("{error}, or a .toml or .json file of a link")))
+        }
     }
-    let content = fs::read_to_string(text).map_err(|error| usage(&format!("{text}: {error}")))?;
-    Description::parse(text, &content).map_err(|error| usage(&error))
+}
+
+/// The text of a link's file; `None` if the link has a name.
+pub fn text(name: &str) -> Result<Option<String>, Failure> {
+    if ![".toml", ".json"].iter().any(|ending| name.ends_with(ending)) {
+        return Ok(None);
+    }
+    let usage = |error| Failure::new(Kind::Usage, format!("{name}: {error}"));
+    fs::read_to_string(name).map(Some).map_err(usage)
 }

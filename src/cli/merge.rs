@@ -3,6 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
+#[cfg(feature = "cosim")]
+use contact_afu::accuracy::trade;
 use contact_afu::report::folder::check_study;
 use contact_afu::report::synth_study::{SCHEMA, SynthStudy};
 use contact_afu::report::table::counted;
@@ -91,6 +93,18 @@ impl Merge {
                 }
                 Ok(super::sweep::passed(&results))
             }
+            #[cfg(feature = "cosim")]
+            "accuracy" => {
+                let request: trade::Request = self.request(record)?;
+                let plan = request.plan().ends(Kind::Usage)?;
+                let mut results = trade::run(&plan, store, reader, |_| ())?.results;
+                results.command = request.command;
+                if let Some(folder) = &self.out {
+                    trade::prepare(folder, self.force)?;
+                    super::accuracy::show(&results, Some(folder), self.json.as_deref())?;
+                }
+                Ok(super::accuracy::passed(&results))
+            }
             "synth" => {
                 let request: contact_afu::synth::Request = self.request(record)?;
                 let results = SynthStudy::new(request.read(store, reader)?, reader);
@@ -115,6 +129,7 @@ impl Merge {
         })
     }
 
+    #[cfg(feature = "cosim")]
     fn show(&self, table: &str, results: &impl serde::Serialize) -> Result<(), Failure> {
         output::show(table, self.json.as_deref().is_some_and(output::is_stdout))?;
         self.json.as_deref().map_or(Ok(()), |path| output::json(path, results))

@@ -1,16 +1,19 @@
 //! Where results come from: the command, the processor, the day.
 
+#[cfg(feature = "cosim")]
 use std::fs;
+#[cfg(feature = "cosim")]
 use std::time::{SystemTime, UNIX_EPOCH};
 
 /// The command line.
+#[cfg(all(feature = "cosim", feature = "ode"))]
 pub fn command() -> String {
     std::iter::once("afu".to_owned()).chain(std::env::args().skip(1)).collect::<Vec<_>>().join(" ")
 }
 
 /// Options with a value, and flags, that decide no result of a study: where results go, and who measures.
 const ELSEWHERE: [&str; 8] = ["--out", "--store", "--shard", "--lease", "--limit", "--study", "--json", "--jobs"];
-const FLAGS: [&str; 1] = ["--force"];
+const FLAGS: [&str; 2] = ["--force", "--no-software"];
 
 /// The command line of a study without options that decide no result: the same for all processes that work on it.
 pub fn study() -> String {
@@ -48,6 +51,7 @@ pub fn quoted<T: AsRef<str>>(words: &[T]) -> String {
 }
 
 /// What the processor calls itself.
+#[cfg(feature = "cosim")]
 pub fn processor() -> String {
     let info = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let name = info.lines().find(|line| line.starts_with("model name")).and_then(|line| line.split_once(':'));
@@ -55,12 +59,14 @@ pub fn processor() -> String {
 }
 
 /// Today in UTC, year first.
+#[cfg(feature = "cosim")]
 pub fn today() -> String {
     let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
     day(seconds / 86_400)
 }
 
 /// The day so many days after 1 January 1970, in the Gregorian calendar.
+#[cfg(feature = "cosim")]
 fn day(mut days: u64) -> String {
     let is_leap = |year: u64| year.is_multiple_of(4) && (!year.is_multiple_of(100) || year.is_multiple_of(400));
     let mut year = 1970;
@@ -82,7 +88,9 @@ fn day(mut days: u64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{day, study_of};
+    #[cfg(feature = "cosim")]
+    use super::day;
+    use super::study_of;
 
     #[test]
     fn a_study_s_command_says_what_decides_its_results() {
@@ -91,6 +99,7 @@ mod tests {
         assert_eq!(study_of(words.into_iter()), "afu sweep --scpus 1..4 --pairs 'my pairs.csv' --synth");
     }
 
+    #[cfg(feature = "cosim")]
     #[test]
     fn days_are_those_of_the_calendar() {
         for (days, text) in [

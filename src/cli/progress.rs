@@ -33,23 +33,20 @@ pub fn line(what: &str) {
     }
 }
 
-/// A bar over work whose length is guessed, and so is told only as a share.
-#[cfg(feature = "cosim")]
-pub fn share(title: &str) -> ProgressBar {
-    let bar = ProgressBar::new(0);
-    if let Ok(style) = ProgressStyle::with_template("{prefix} [{bar:30}] {percent} %, {elapsed}, about {eta} left") {
-        bar.set_style(style.progress_chars("=> "));
-    }
-    bar.set_prefix(title.to_owned());
-    bar.enable_steady_tick(TICK);
-    bar
-}
-
 const TICK: Duration = Duration::from_millis(200);
 
 /// A spinner with a message and the time since it began.
 fn working() -> ProgressStyle {
     ProgressStyle::with_template("{spinner} {msg}, {elapsed}").unwrap_or_else(|_| ProgressStyle::default_spinner())
+}
+
+/// A spinner for a study: how far it is, and what is being done.
+pub fn study() -> ProgressBar {
+    let study = spinner("");
+    if let Ok(style) = ProgressStyle::with_template("{spinner} {prefix}{msg}, {elapsed}") {
+        study.set_style(style);
+    }
+    study
 }
 
 /// A spinner for work whose length nobody knows.

@@ -20,7 +20,7 @@ pub struct Shared {
     ///
     /// A point that another process is working on is left to it. A point that fails is recorded with its error and does
     /// not stop the others; the same command tries it again. `afu merge` makes the results.
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", group = "place")]
     pub store: Option<PathBuf>,
     /// Measure only part K of M of the points, 1/4 to 4/4 for example; their content decides the part
     #[arg(long, value_name = "K/M", requires = "store", conflicts_with = "out")]
@@ -54,14 +54,30 @@ impl Shared {
         record.keep(&Store::open(folder)).ends(Kind::Other)
     }
 
-    /// Shows the news of a worker: a line that changes on a terminal, or a line for each point of a shared study.
+    /// True if the process measures all points of its part.
+    #[cfg(feature = "cosim")]
+    pub fn is_limitless(&self) -> bool {
+        self.limit.is_none()
+    }
+
+    /// Shows the news of a worker: a line that changes on a terminal, or a line per point of a shared study.
     pub fn show(&self, bar: &ProgressBar, news: &News<'_>) {
+        self.tell(bar, news, self.store.is_some());
+    }
+
+    /// The same with a line per point of any study.
+    #[cfg(feature = "cosim")]
+    pub fn show_all(&self, bar: &ProgressBar, news: &News<'_>) {
+        self.tell(bar, news, true);
+    }
+
+    fn tell(&self, bar: &ProgressBar, news: &News<'_>, has_lines: bool) {
         match news {
             News::Begun(what) => bar.set_message((*what).to_owned()),
             News::Ended(point, failed, now) => {
                 let line = self.line(*now);
-                bar.set_prefix(line.clone());
-                if self.store.is_some() {
+                bar.set_prefix(format!("{line}; "));
+                if has_lines {
                     progress::line(&line);
                 }
                 if let Some(failed) = failed {

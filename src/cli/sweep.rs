@@ -72,7 +72,7 @@ pub fn run(options: &Sweep) -> Result<(), Failure> {
     let store = study::store(options.shared.store.as_deref(), out)?;
     let resumed = request.known(&store);
     let mut worker = options.shared.worker();
-    let bar = progress::spinner("");
+    let bar = progress::study();
     let results = request.run(&configs, &task, &store, &mut worker, out, |news| options.shared.show(&bar, &news));
     bar.finish_and_clear();
     let results = results?;

@@ -101,7 +101,7 @@ pub fn run(options: &Synth) -> Result<(), Failure> {
         // From the first measurement on the folder is known as ours.
         SynthStudy::new(Vec::new(), &worker).save(folder)?;
     }
-    let bar = progress::spinner("");
+    let bar = progress::study();
     let step = |what: &str| bar.set_message(what.to_owned());
     let all = request.run(&units, &how, &store, &mut worker, step, |news| options.shared.show(&bar, &news));
     bar.finish_and_clear();

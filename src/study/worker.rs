@@ -11,7 +11,7 @@ use serde::de::DeserializeOwned;
 use super::claim;
 use super::pass::{Busy, CLAIM, Message, Pass};
 use super::{Failed, Point, PointError, Shard, State};
-use crate::store::{Store, StoreError};
+use crate::store::{Key, Store, StoreError};
 
 /// Which points a process measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,9 +91,14 @@ impl Worker {
         self.ledger.iter().filter(|(point, _)| self.is_own(point))
     }
 
-    /// True if every point that it met is measured.
-    pub fn has_all(&self) -> bool {
-        self.ledger.iter().all(|(_, state)| *state == State::Made)
+    /// What became of the point with this key; `None` if it was not met.
+    pub fn state(&self, key: &Key) -> Option<&State> {
+        self.ledger.iter().find(|(point, _)| point.key == *key).map(|(_, state)| state)
+    }
+
+    /// True if nobody has measured, or failed to measure, a point that it met.
+    pub fn is_missing_any(&self) -> bool {
+        self.ledger.iter().any(|(_, state)| *state == State::Missing)
     }
 
     fn is_own(&self, point: &Point) -> bool {
@@ -154,6 +159,7 @@ impl Worker {
             open =
                 if self.limit == Some(0) { VecDeque::new() } else { self.taken_up(store, points, busy, &mut found)? };
         }
+        self.ledger.retain(|(known, _)| points.iter().all(|point| point.key != known.key));
         for ((point, found), failed) in points.iter().zip(&found).zip(failed) {
             let state = match (found, failed) {
                 (Some(_), _) => State::Made,
@@ -213,22 +219,22 @@ impl Worker {
         Ok(open)
     }
 
-    /// What [`Worker::run`] found, complete: waits for points of other processes as long as any of them gives signs of
-    /// life. Returns `None` if points are still missing then, which nobody is working on.
+    /// Completes what [`Worker::run`] found: a shard waits for points of other processes, as long as any of them gives
+    /// signs of life. What is missing then, nobody is working on.
     ///
     /// # Errors
     /// Returns an error if the store cannot be read.
-    pub fn settled<T: DeserializeOwned>(
+    pub fn settle<T: DeserializeOwned>(
         &mut self,
         store: &Store,
         points: &[Point],
-        mut found: Vec<Option<T>>,
-    ) -> Result<Option<Vec<Option<T>>>, StoreError> {
+        found: &mut [Option<T>],
+    ) -> Result<(), StoreError> {
         let can_wait = matches!(self.role, Role::Part(_)) && self.limit != Some(0);
         let (mut last, mut since) = (None, Instant::now());
         loop {
             let mut missing = 0;
-            for (point, found) in points.iter().zip(&mut found) {
+            for (point, found) in points.iter().zip(&mut *found) {
                 let state = self.ledger.iter_mut().find(|(known, _)| known.key == point.key).map(|(_, state)| state);
                 let Some(state) = state.filter(|state| **state == State::Missing) else { continue };
                 *found = store.get(&point.key)?;
@@ -239,17 +245,12 @@ impl Worker {
                 };
                 missing += usize::from(*state == State::Missing);
             }
-            if missing == 0 {
-                return Ok(Some(found));
-            }
-            if !can_wait {
-                return Ok(None);
-            }
             let now = Some((missing, signs_of_life(store)?));
+            if missing == 0 || !can_wait || now == last && since.elapsed() >= self.lease {
+                return Ok(());
+            }
             if now != last {
                 (last, since) = (now, Instant::now());
-            } else if since.elapsed() >= self.lease {
-                return Ok(None);
             }
             thread::sleep(poll(self.lease));
         }

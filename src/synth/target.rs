@@ -54,7 +54,7 @@ impl Target {
     }
 
     /// nextpnr's name for its architecture and the options of the device, where it can be routed.
-    pub(super) const fn router(self) -> Option<(&'static str, &'static [&'static str])> {
+    pub(crate) const fn router(self) -> Option<(&'static str, &'static [&'static str])> {
         match self {
             Self::Ecp5 => {
                 Some(("ecp5", &["--85k", "--speed", "8", "--package", "CABGA381", "--lpf-allow-unconstrained"]))

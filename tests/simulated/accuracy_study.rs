@@ -1,82 +1,91 @@
 //! An interrupted study of `afu accuracy` resumes, and its results equal those of an uninterrupted one.
 
-use contact_afu::accuracy::trade::{Named, Plan, Size, Study, Work, run};
+use contact_afu::accuracy::trade::{Ended, Named, Plan, Request, Size, run};
 use contact_afu::accuracy::{Contenders, Profiled, measure};
 use contact_afu::config::{Config, Profile, RecordFormat, Shell};
 use contact_afu::pairs::Set;
 use contact_afu::query::Query;
 use contact_afu::store::Store;
+use contact_afu::study::{News, Role, Shard, Worker};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
+use std::time::Duration;
 
-/// One arithmetic with both kinds of records, without synthesis.
+/// One arithmetic with both kinds of records, without synthesis and without times of this machine.
 fn plan() -> Plan {
-    let link = "harp1".parse().expect("a link");
-    let mut plan = Size::Quick.plan(link, "harp1", 1, 1);
+    let mut plan = Request::new(Size::Quick, "harp1", 1).plan().expect("a link");
     let profile: Profile = "e8f3z".parse().expect("a profile");
     let config =
         |record| Config { scpus: 1, shell: Shell::Line, profile: profile.clone(), record, ..Config::default() };
     plan.choices = vec![("a", config(RecordFormat::F32)), ("b", config(RecordFormat::F16))];
     let named = |set: Set| Named { name: set.to_string(), is_scene: true, pairs: set.pairs(1) };
     plan.sets = vec![named(Set::Diamond(4)), named(Set::Dense(500))];
-    plan.synthesis = false;
+    plan.software = false;
     plan
 }
 
-/// Runs the study in a folder and stops it after `stop_after` pieces of work. Returns also how many cosims it started.
-fn study(folder: &Path, stop_after: usize) -> (Option<Study>, usize) {
-    let (mut done, mut begun, mut configurations) = (0, 0, 0);
-    let (mut planned, mut worked) = (0.0, 0.0);
+/// Works on the study in a store and stops it after `stop_after` points. Returns also the points that it measured.
+fn study(store: &Path, worker: &mut Worker, stop_after: usize) -> (Option<Ended>, Vec<String>) {
+    let mut measured = Vec::new();
     let ran = catch_unwind(AssertUnwindSafe(|| {
-        run(&plan(), Some((folder, false)), |work| match work {
-            Work::Begun(what) => {
-                begun += usize::from(what.ends_with(": cosim"));
-                assert!(worked < planned, "the bar is full while there is work: {what}");
-            }
-            Work::Done(_) if done == stop_after => panic!("pulled the plug"),
-            Work::Done(seconds) => (done, worked) = (done + 1, worked + seconds),
-            Work::Planned(seconds) => planned += seconds,
-            Work::Configuration(line) => {
-                configurations += 1;
-                assert!(line.starts_with("e8f3z") && line.contains(" cycles, line in to line out"), "{line}");
+        run(&plan(), &Store::open(store), worker, |news| {
+            if let News::Ended(point, failed, _) = news {
+                assert!(failed.is_none(), "{failed:?}");
+                measured.push(point.title.clone());
+                assert!(measured.len() < stop_after, "pulled the plug");
             }
         })
         .expect("a study that ends")
     }));
-    if ran.is_ok() {
-        assert!((worked - planned).abs() < 1e-3, "what was planned was done: {planned}, {worked}");
-        assert_eq!(configurations, 2);
-    }
-    (ran.ok(), begun)
+    (ran.ok(), measured)
 }
 
-/// The results without times measured on this machine.
-fn figures(mut results: Study) -> Study {
-    results.kernels.clear();
-    results.points.iter_mut().for_each(|point| point.software_ns = None);
-    results
+fn whole() -> Worker {
+    Worker::new(Role::Whole).with_lease(Duration::from_millis(500))
 }
 
 #[test]
 fn an_interrupted_study_goes_on_and_comes_to_the_same() {
     let room = tempfile::tempdir().expect("a temporary folder");
-    let [whole, parts] = ["whole", "parts"].map(|name| room.path().join(name));
-    let (undisturbed, begun) = study(&whole, usize::MAX);
-    let undisturbed = figures(undisturbed.expect("nothing stopped it"));
-    assert_eq!(begun, 2);
+    let [whole_store, parts, shards] = ["whole", "parts", "shards"].map(|name| room.path().join(name));
+    let (undisturbed, measured) = study(&whole_store, &mut whole(), usize::MAX);
+    let undisturbed = undisturbed.expect("nothing stopped it");
+    assert!(!undisturbed.is_waiting);
+    let undisturbed = undisturbed.results;
+    let of = |kind: &str| measured.iter().filter(|title| title.starts_with(kind)).count();
+    assert_eq!((of("errors of "), of("cycles of ")), (4, 2), "{measured:?}");
 
     // The study stops after both sets and the first configuration, whose cycles are stored. A worker may have started
     // the second one.
-    let (stopped, _) = study(&parts, 2);
+    let (stopped, _) = study(&parts, &mut whole(), 5);
     assert!(stopped.is_none(), "it was stopped");
-    let store = Store::open(&parts.join("measurements"));
+    let store = Store::open(&parts);
     let of = |kind: &str| store.list().expect("read").into_iter().filter(|key| key.kind() == kind).collect::<Vec<_>>();
     let kept = of("cycles/1").len();
     assert!(of("errors/1").len() == 4 && kept > 0, "{kept}");
 
-    let (resumed, begun) = study(&parts, usize::MAX);
-    assert_eq!(begun, 2 - kept, "what is kept is not simulated again");
-    assert_eq!(figures(resumed.expect("nothing stopped it")), undisturbed);
+    let (resumed, measured) = study(&parts, &mut whole(), usize::MAX);
+    let simulated = measured.iter().filter(|title| title.starts_with("cycles of ")).count();
+    assert_eq!(simulated, 2 - kept, "what is kept is not simulated again");
+    assert_eq!(resumed.expect("nothing stopped it").results, undisturbed);
+
+    // By shards, one after the other: the first cannot know what follows before the others have measured theirs.
+    let shard = |index| Role::Part(Shard::new(index, 2).expect("a shard"));
+    let mut by_shards = Vec::new();
+    for (index, waits) in [(1, true), (2, false), (1, false)] {
+        let mut worker = Worker::new(shard(index)).with_lease(Duration::from_millis(500));
+        let (ended, measured) = study(&shards, &mut worker, usize::MAX);
+        assert_eq!(ended.expect("nothing stopped it").is_waiting, waits, "shard {index}: {measured:?}");
+        by_shards.extend(measured);
+    }
+    let mut reader = Worker::new(Role::Reader);
+    let (merged, measured) = study(&shards, &mut reader, usize::MAX);
+    assert_eq!(merged.expect("nothing stopped it").results, undisturbed);
+    assert!(measured.is_empty() && !reader.is_missing_any(), "a reader measures nothing");
+    let count = by_shards.len();
+    by_shards.sort();
+    by_shards.dedup();
+    assert_eq!(count, by_shards.len(), "each point was measured by one of them");
 
     // Stored results are used as they are: no row is measured again either.
     for key in of("errors/1") {
@@ -84,8 +93,8 @@ fn an_interrupted_study_goes_on_and_comes_to_the_same() {
         judged["tally"]["missed"] = 4711.into();
         store.put(&key, &judged).expect("kept");
     }
-    let (resumed, _) = study(&parts, usize::MAX);
-    assert_eq!(resumed.expect("nothing stopped it").points[0].rows[0].tally.missed, 4711);
+    let (resumed, _) = study(&parts, &mut whole(), usize::MAX);
+    assert_eq!(resumed.expect("nothing stopped it").results.points[0].rows[0].tally.missed, 4711);
 
     let [f32, f16] = [0, 1].map(|i| &undisturbed.points[i]);
     assert_eq!((f32.name.as_str(), f16.name.as_str()), ("e8f3z", "e8f3z record f16"));

@@ -124,6 +124,6 @@ fn method(results: &Study) -> Markup {
             @for what in &results.left_out { li { "Left out: " (what) "." } }
         }
         pre { (results.command) }
-        p.soft { (results.date) ", contact-afu " (results.version) }
+        p.soft { @if !results.date.is_empty() { (results.date) ", " } "contact-afu " (results.version) }
     }
 }

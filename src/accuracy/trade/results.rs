@@ -26,11 +26,11 @@ pub struct Study {
     pub schema: String,
     /// This crate's.
     pub version: String,
-    /// The day, year first, in UTC.
+    /// The day that software was timed, year first, in UTC; empty if it was not.
     pub date: String,
     /// The command that made it.
     pub command: String,
-    /// The processor that software was timed on.
+    /// The processor that software was timed on; empty if it was not.
     pub processor: String,
     /// The sets of pairs.
     pub sets: Vec<SetFigures>,
