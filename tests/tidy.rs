@@ -57,8 +57,8 @@ const HOUSE: &[(&str, &[&str])] = &[
     (
         "accuracy",
         &[
-            "count", "study", "store", "query", "record", "report", "plot", "synth", "verify", "host", "cosim",
-            "config", "ode", "afu", "link", "pairs", "kernel", "number",
+            "count", "study", "store", "query", "record", "report", "plot", "tools", "synth", "verify", "host",
+            "cosim", "config", "ode", "afu", "link", "pairs", "kernel", "number",
         ],
     ),
     (

@@ -42,8 +42,9 @@ use failure::Failure;
 /// they touch, depth, normal and position. Its SCPUs (sphere collision processing units) work in parallel.
 /// `afu help COMMAND` explains all options of a command.
 ///
-/// Exit status: 0 success; 1 a mismatch, a failed check, a job that did not finish, or a point of a study that failed or
-/// is missing; 2 wrong usage or input; 3 a missing tool; 4 any other error; 5 a study that waits for other shards. Results go to standard output or files. Progress and messages go to standard error.
+/// Exit status: 0 success; 1 a mismatch, a failed check, a job that did not finish, or a point of a study that failed
+/// or is missing; 2 wrong usage or input; 3 a missing tool; 4 any other error; 5 a study that waits for other shards.
+/// Results go to standard output or files. Progress and messages go to standard error.
 #[derive(Parser, Debug)]
 #[command(name = "afu", version = usage::version())]
 pub struct Program {
