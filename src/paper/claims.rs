@@ -1,4 +1,4 @@
-//! Claims of the paper's text that do not add up, with the arithmetic of each.
+//! Claims in the paper's text that are inconsistent, with the arithmetic of each.
 
 use serde::Serialize;
 
@@ -8,9 +8,9 @@ use crate::number::Format;
 use crate::pairs::Set;
 use crate::query::Fields;
 
-/// Clock of the AFU's port on HARP v1, in MHz: the paper does not say one.
+/// Clock of the AFU's port on HARP v1, in MHz. The paper does not state a clock.
 const PORT_MHZ: f64 = 200.0;
-/// Bytes of a pair in, and likewise of a contact out.
+/// Bytes of a pair, and also of a contact.
 const RECORD_BYTES: f64 = 32.0;
 
 /// A claim of the paper, and what follows from it.
@@ -18,7 +18,7 @@ const RECORD_BYTES: f64 = 32.0;
 pub struct Claim {
     /// The claim.
     pub says: String,
-    /// Where.
+    /// The section of the paper.
     pub place: &'static str,
     /// The arithmetic, with its results.
     pub arithmetic: String,
@@ -26,7 +26,7 @@ pub struct Claim {
     pub follows: String,
 }
 
-/// The claims that do not add up.
+/// The claims that are inconsistent.
 pub fn claims(p: &Published) -> Vec<Claim> {
     let (ode, afu, gain) = (p.ode_ns, p.afu_ns, p.gain_ns());
     let (less, faster) = (100.0 * gain / ode, 100.0 * (ode / afu - 1.0));
@@ -59,28 +59,28 @@ pub fn claims(p: &Published) -> Vec<Claim> {
             says: format!("the configuration before and after each transaction takes {} milliseconds on average", p.set_up_ms),
             place: "VI",
             arithmetic: format!(
-                "{} ms / {gain} ns = {:.0} collisions to win it back, not {}; {} × {gain} ns = {set_up:.0} ns = 2 × {:.0} ns",
+                "{} ms / {gain} ns = {:.0} collisions to recover it, not {}; {} × {gain} ns = {set_up:.0} ns = 2 × {:.0} ns",
                 p.set_up_ms, printed_ns / gain, p.crossover, p.crossover, set_up / 2.0
             ),
-            follows: format!("nanoseconds must be meant: {:.0} before and as many after", set_up / 2.0),
+            follows: format!("the unit must be nanoseconds: {:.0} before and {:.0} after", set_up / 2.0, set_up / 2.0),
         },
         Claim {
             says: format!("with N SCPUs the time of a collision becomes T/N; N = {}", p.scpus),
             place: "III.E, VI",
             arithmetic: format!(
-                "{afu} ns · {PORT_MHZ} MHz = {cycles:.1} cycles a collision; × {} SCPUs = {:.0} cycles in each",
+                "{afu} ns · {PORT_MHZ} MHz = {cycles:.1} cycles per collision; × {} SCPUs = {:.0} cycles in each",
                 p.scpus, cycles * p.scpus
             ),
-            follows: "the SCPUs were not pipelined, or waited for one another; the text gives no cycles and no clock (200 MHz is that of HARP's port)".to_owned(),
+            follows: "the SCPUs were not pipelined, or waited for one another. The text gives neither cycles nor a clock (200 MHz is the clock of HARP's port)".to_owned(),
         },
         Claim {
             says: format!("a link of {} GB/s makes fine-grained work worth while", p.link_gb_s),
             place: "I, II",
             arithmetic: format!(
-                "32 B in and 32 B out at {} GB/s: {parallel} ns with the directions side by side, {shared} ns shared; {afu} / {shared} = {:.1}, {afu} / {parallel} = {:.1}",
+                "32 B in and 32 B out at {} GB/s: {parallel} ns with parallel directions, {shared} ns with shared bandwidth; {afu} / {shared} = {:.1}, {afu} / {parallel} = {:.1}",
                 p.link_gb_s, afu / shared, afu / parallel
             ),
-            follows: format!("the link allows {:.0} to {:.0} times what was reached: it was not the limit", (afu / shared).floor(), (afu / parallel).floor()),
+            follows: format!("the link allows {:.0} to {:.0} times the throughput that was reached, so it was not the limit", (afu / shared).floor(), (afu / parallel).floor()),
         },
         Claim {
             says: "Flow 2, grazing, if d < 0: the bodies barely touch".to_owned(),
@@ -89,7 +89,7 @@ pub fn claims(p: &Published) -> Vec<Claim> {
                 "d = √(x² + y² + z²) ≥ 0; for coincident centres d = {zero}, and {zero} < 0 is {}, {zero} ≤ 0 is {}",
                 zero < 0.0, zero <= 0.0
             ),
-            follows: "Flow 2 as printed never runs; ODE tests d ≤ 0, and what takes it are coincident centres, not a light touch".to_owned(),
+            follows: "Flow 2 as printed never runs. ODE tests d ≤ 0, which is true for coincident centres, not for a light touch".to_owned(),
         },
         Claim {
             says: format!("real collisions of the benchmark with hMax {} and dSph 0, 10 to 1000 of them", p.h_max),
@@ -98,7 +98,7 @@ pub fn claims(p: &Published) -> Vec<Claim> {
                 "hMax {}: {in_step} real contacts in the first step; {} / {in_step} = {:.1} steps; hMax {layers} is the first with {} in one step ({})",
                 p.h_max, p.crossover, p.crossover / in_step as f64, p.crossover, contacts(layers)
             ),
-            follows: "a transaction above the crossover must gather several steps, which a simulation in real time cannot: each step needs its contacts before the next".to_owned(),
+            follows: "a transaction above the crossover must gather several steps. A simulation in real time cannot do this, because each step needs its contacts before the next".to_owned(),
         },
     ]
 }
@@ -125,8 +125,8 @@ mod tests {
             "2 × 2000 ns",
             "= 17.2 cycles",
             "= 172 cycles",
-            "4 ns with",
-            "8 ns shared",
+            "4 ns with parallel",
+            "8 ns with shared",
             "0 < 0 is false, 0 ≤ 0 is true",
             "36 real contacts",
             "hMax 5 is the first",

@@ -37,12 +37,20 @@ fn area(layout: &Layout) -> String {
     format!("{} {} {} {} {least} {most}", layout.left, layout.top, layout.wide, layout.high)
 }
 
+/// The left edge of the title: above the axes, or further left if it would not fit.
+fn title_left(plot: &Plot, left: f64) -> f64 {
+    const BOLD_CHARACTER: f64 = 8.2;
+    const MARGIN: f64 = 8.0;
+    let fits = plot.width - MARGIN - BOLD_CHARACTER * plot.title.chars().count() as f64;
+    round(left.min(fits.max(MARGIN)))
+}
+
 fn inside(plot: &Plot, layout: &Layout) -> Markup {
     let Layout { left, top, wide, high, height, .. } = *layout;
     let (right, bottom) = (left + wide, top + high);
     html! {
         rect class="ground" width=(plot.width) height=(height) fill=(LIGHT.ground) {}
-        text class="title" x=(left) y="20" fill=(LIGHT.ink) font-size="14" font-weight="600" { (plot.title) }
+        text class="title" x=(title_left(plot, left)) y="20" fill=(LIGHT.ink) font-size="14" font-weight="600" { (plot.title) }
         g class="ticks" {
             @for (value, words) in &layout.x.ticks {
                 @let x = round(left + layout.x.place(*value) * wide);

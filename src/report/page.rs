@@ -1,5 +1,4 @@
-//! Pages of HTML that need nothing but themselves: no network, light or dark as the reader has it, and no script but
-//! one of the page's own.
+//! HTML pages without external resources: no network, light or dark as the reader prefers, and no script but their own.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -7,7 +6,7 @@ use sha2::{Digest, Sha256};
 
 use crate::plot;
 
-/// What a browser may load for a page: its own style, and nothing else from anywhere.
+/// What a browser may load for a page: only its own style.
 pub(crate) const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:";
 
 const STYLE: &str = "\
@@ -17,13 +16,13 @@ body{margin:0 auto;padding:1.5rem;max-width:60rem;background:var(--ground);color
 font:15px/1.5 system-ui,'DejaVu Sans',sans-serif}
 h1{font-size:1.6rem;line-height:1.2}h2{font-size:1.2rem;margin-top:2.2rem}
 p.soft,caption,figcaption{color:var(--soft)}caption{text-align:left;padding-bottom:.4rem}
-figure{margin:1.5rem 0}figure svg{display:block;max-width:100%;height:auto;border:1px solid var(--grid)}
+figure{margin:1.5rem 0}figure svg{display:block;box-sizing:border-box;max-width:100%;height:auto;border:1px solid var(--grid)}
 div.wide{overflow-x:auto}
 @media (max-width:40rem){body{padding:1rem}figure{overflow-x:auto}figure>svg.plot{min-width:38rem}\
 #row span:nth-child(n+9){display:none}}
 table{border-collapse:collapse;font-variant-numeric:tabular-nums;margin:.8rem 0}
 th,td{padding:.3rem .7rem;border-bottom:1px solid var(--grid);text-align:left;vertical-align:top}
-td.n,th.n{text-align:right;white-space:nowrap}
+td.n,th.n{text-align:right}td.n{white-space:nowrap}th{vertical-align:bottom}
 code,pre{font-family:ui-monospace,'DejaVu Sans Mono',monospace;font-size:.92em}
 p code{overflow-wrap:anywhere}
 pre{overflow-x:auto;border:1px solid var(--grid);padding:.7rem}
@@ -34,16 +33,18 @@ th[aria-sort]::after{content:\" ↑\"}th[aria-sort=descending]::after{content:\"
 #points{font-size:.85em}#points th{cursor:pointer;white-space:normal;vertical-align:bottom}#points td{white-space:nowrap}
 #points tr>:first-child{position:sticky;left:0;background:var(--ground)}#points tr.chosen td{background:var(--grid)}
 details summary{cursor:pointer}
-#row{position:sticky;bottom:0;display:flex;flex-wrap:wrap;gap:.2rem 1.1rem;padding:.5rem .7rem;font-size:.85em;\
+@media (max-width:40rem){th,td{padding:.3rem .45rem}td:first-child{overflow-wrap:anywhere}}
+#row:has(span+span){position:sticky;bottom:0}
+#row{display:flex;flex-wrap:wrap;gap:.2rem 1.1rem;padding:.5rem .7rem;font-size:.85em;\
 background:var(--ground);border:1px solid var(--grid);font-variant-numeric:tabular-nums}#row small{color:var(--soft)}
 ";
 
-/// A page: its title, and what is below it.
+/// A page from its title and its body.
 pub fn page(title: &str, body: &Markup) -> String {
     whole(title, body, None)
 }
 
-/// A page with a script, which runs when everything is there. No other script does: the policy names it by its hash.
+/// A page with a script, which runs at its end. The policy allows only this script, by its hash.
 pub(crate) fn scripted(title: &str, body: &Markup, script: &str) -> String {
     whole(title, body, Some(script))
 }
@@ -71,7 +72,7 @@ fn whole(title: &str, body: &Markup, script: Option<&str>) -> String {
     page.into_string()
 }
 
-/// Bytes in base 64 (RFC 4648, section 4), as policies have hashes.
+/// Bytes in base 64 (RFC 4648, section 4), as hashes are written in policies.
 pub(crate) fn base64(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::new();
@@ -83,14 +84,14 @@ pub(crate) fn base64(bytes: &[u8]) -> String {
     text
 }
 
-/// A plot, drawn twice: for a wide screen and for a narrow one, where its text would be too small otherwise.
+/// A plot, drawn twice: for a wide screen, and for a narrow one on which the text of the first would be too small.
 pub(crate) fn figure(plot: &plot::Plot) -> Markup {
     html! {
         figure { div.broad { (plot.figure()) } div.narrow { (plot.clone().narrow().figure()) } }
     }
 }
 
-/// A table: a caption, headings, and rows. Columns but the first `words` are figures, on the right.
+/// A table: a caption, headings, and rows. All columns but the first `words` hold figures, aligned to the right.
 pub fn table(caption: &str, heading: &[&str], words: usize, rows: &[Vec<String>]) -> Markup {
     let class = |column: usize| if column < words { "" } else { "n" };
     html! {

@@ -8,12 +8,12 @@ use crate::query::{ContactRecord, FLAGS};
 use crate::report::table::{grouped, table, words};
 
 impl Plan {
-    /// The plan as a table: what is on, how much of it, and which lines call for it.
+    /// The plan as a table: the parts that are on, their values, and the lines that call for them.
     pub fn text(&self) -> String {
         words(&["", "", "value", "called for by"], self.rows.iter().map(row))
     }
 
-    /// What another plan has otherwise: rows that differ, then costs side by side.
+    /// The differences of another plan: rows that differ, then costs side by side.
     ///
     /// # Errors
     /// Returns an error if there is no such AFU.
@@ -43,7 +43,7 @@ impl Cost {
 }
 
 impl Row {
-    /// The lines that call for it, or a word that says that none does; for a group of bodies only their numbers.
+    /// The lines that call for it, or a word that says that none does. For a group of bodies, only their numbers.
     pub(crate) fn called_for_by(&self) -> Vec<String> {
         match self.calls.as_slice() {
             [] if self.on => vec!["(default)".to_owned()],
@@ -60,6 +60,12 @@ impl Row {
                 .collect(),
         }
     }
+}
+
+/// An energy with a few significant digits.
+fn energy(value: f64) -> String {
+    let is_plain = value == 0.0 || (1e-2..1e6).contains(&value.abs());
+    if is_plain { format!("{value:.4}") } else { format!("{value:.4e}") }
 }
 
 /// Costs side by side.
@@ -121,14 +127,14 @@ impl SceneRun {
         rows.into_iter().map(|(name, value)| vec![name, value]).collect()
     }
 
-    /// The energy at both ends of the run, if it was wanted.
+    /// The energy at both ends of the run, if it was requested.
     pub(super) fn energy_sentence(&self) -> Option<String> {
         let sum = |e: &super::Energy| e.kinetic + e.potential;
         let (first, last) = (self.energy.first()?, self.energy.last()?);
-        Some(format!("energy {:.5e} at first, {:.5e} in the end", sum(first), sum(last)))
+        Some(format!("energy: {} at the start, {} at the end", energy(sum(first)), energy(sum(last))))
     }
 
-    /// What to say of a run that gained energy from nowhere.
+    /// The warning of a run that gained unexplained energy.
     pub(super) fn warning(&self) -> Option<String> {
         self.summary.balance.and_then(|balance| balance.warning())
     }
@@ -146,12 +152,12 @@ impl SceneRun {
         out
     }
 
-    /// Costs: what was called for beside everything.
+    /// The costs of the scene's AFU beside those of an AFU with everything.
     pub fn costs(&self) -> String {
         costs(&[("what the scene calls for", &self.cost), ("everything", &self.everything)])
     }
 
-    /// The contacts as CSV: only fields that were computed have columns.
+    /// The contacts as CSV. Only computed fields have columns.
     pub fn contacts_csv(&self) -> String {
         let fields = self.config.contact;
         let numbers = || ContactRecord::words(fields).filter(|word| *word != FLAGS);
@@ -166,7 +172,7 @@ impl SceneRun {
         out
     }
 
-    /// The bodies' ways as CSV.
+    /// The trajectories of the bodies as CSV.
     pub fn trajectories_csv(&self) -> String {
         let mut out = "step,body,x,y,z\n".to_owned();
         for (step, places) in self.places.iter().enumerate() {
@@ -177,7 +183,7 @@ impl SceneRun {
         out
     }
 
-    /// The bodies' ways as npy: f64, steps × bodies × 3.
+    /// The trajectories of the bodies as npy: f64, steps × bodies × 3.
     pub fn trajectories_npy(&self) -> Vec<u8> {
         let shape = vec![self.places.len() as u64, self.radii.len() as u64, 3];
         npy_of_numbers(shape, self.places.iter().flatten().flatten().copied())
