@@ -1,5 +1,5 @@
-// Verilator's writer of FST files, which takes no notice of a file system that refuses, made to take it. This unit is
-// compiled in the place of Verilator's own; its macros reach the calls in question and nothing else.
+// Verilator's writer of FST files ignores errors of the file system. This unit is compiled in its place and reports
+// them. Its macros replace only the calls that matter.
 
 #include <cerrno>
 #include <cstdio>
@@ -7,12 +7,12 @@
 #include <iostream>
 #include <sstream>
 
-// Whether anything could not be written since the last call, for writers that do not throw.
+// True if a write failed since the last call, for writers that do not throw.
 extern "C" bool afu_fst_failed();
 
 #if defined(__has_include) && __has_include("fstcpp/fstcpp_writer.cpp")
 
-// Its checks abort the process when a stream has failed: this one throws before they look.
+// The writer's checks abort the process when a stream has failed. This stream throws before they are reached.
 struct afu_fst_stream : std::ofstream {
     afu_fst_stream() { exceptions(std::ios::badbit | std::ios::failbit); }
 };
@@ -32,7 +32,7 @@ extern "C" bool afu_fst_failed() { return false; }
 #include <sys/stat.h>
 #include <zlib.h>
 
-// GTKWave's writer looks at no result, but a FILE remembers that one was bad until it is closed.
+// GTKWave's writer ignores results, but a FILE keeps its error flag until it is closed.
 static thread_local bool afu_fst_bad = false;
 
 static int afu_fst_fclose(FILE *file) {
@@ -48,8 +48,8 @@ static int afu_fst_gzclose(gzFile file) {
     return result;
 }
 
-// It maps its temporary files, and a page that a full disk has no room for would be a bus error: they are memory, and
-// mapped only if all of it could be had.
+// The writer maps its temporary files, and a page without room on a full disk would be a bus error. Here these files
+// are in memory, and are mapped only if they have their full size.
 static FILE *afu_fst_tmpfile() {
 #ifdef __linux__
     const int descriptor = memfd_create("afu-fst", 0);

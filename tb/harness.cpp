@@ -1,5 +1,5 @@
-// harness.h over whatever module Verilator made a class `Vmodel` of. `ports.inc`, written beside the class, lists its
-// ports as AFU_PORT(name, bits, direction, member).
+// Implements harness.h for any module that Verilator made into the class `Vmodel`. `ports.inc`, written beside the
+// class, lists its ports as AFU_PORT(name, bits, direction, member).
 
 #include "harness.h"
 
@@ -43,7 +43,7 @@ struct waveform_error : std::runtime_error {
 } // namespace
 
 // Verilator's own versions of these end the process. The runtime is compiled with VL_USER_FATAL, VL_USER_STOP and
-// VL_USER_FINISH, which leaves them to us; the exception ends the evaluation and is caught before the border.
+// VL_USER_FINISH, so that they are defined here. The exception ends the evaluation and is caught before the interface.
 void vl_fatal(const char *file, int line, const char *scope, const char *message) {
     throw std::runtime_error(where(file, line, scope) + (message ? message : "fatal error"));
 }
@@ -66,8 +66,8 @@ struct afu_instance {
     uint64_t half_period_ps = 1;
     uint64_t now_ps = 0;
 
-    // Runs what writes the waveform. A writer that has failed would fail again in its destructor, which must not throw:
-    // it is given up as it is, and never destroyed.
+    // Runs `body`, which writes the waveform. A writer that has failed would fail again in its destructor, which must
+    // not throw, so it is released and never destroyed.
     template <class Body> void writing(Body body) {
         std::string why;
         errno = 0;
@@ -100,8 +100,9 @@ struct afu_instance {
     void dump() {}
 #endif
 
-    // Runs `body`; turns what it throws into -1 or AFU_WAVEFORM, and a text. What Verilator's runtime finds through the thread, such as
-    // who is to blame for a $stop, must be this instance and not the last one the thread made, which may be gone.
+    // Runs `body`, and turns an exception into -1 or AFU_WAVEFORM, with a text. Verilator's runtime finds the context
+    // through the thread, for instance for a $stop. It must be this instance's, not that of the last instance that the
+    // thread made, which may be destroyed.
     template <class Body> int guarded(Body body) {
         if (Verilated::threadContextp() != context.get()) Verilated::threadContextp(context.get());
         try {
@@ -118,7 +119,7 @@ struct afu_instance {
         return -1;
     }
 
-    // The same for what runs the model, which is in no usable state after an exception.
+    // As `guarded`, for a `body` that runs the model. After an exception, the model can no longer be used.
     template <class Body> int simulated(Body body) {
         if (failed) return -1;
         const int result = guarded(body);
@@ -132,13 +133,13 @@ namespace {
 afu_instance *create(uint64_t seed) {
     try {
         auto instance = std::make_unique<afu_instance>();
-        // Becomes the thread's context too: parts of the design that are libraries of their own are made in it.
+        // Also becomes the thread's context, in which parts of the design that are separate libraries are created.
         instance->context = std::make_unique<VerilatedContext>();
         VerilatedContext *context = instance->context.get();
         context->randReset(seed ? 2 : 0);
         if (seed) {
             const int folded = static_cast<int>((seed ^ (seed >> 31)) & 0x7fffffff);
-            context->randSeed(folded ? folded : 1); // 0 would mean: choose one
+            context->randSeed(folded ? folded : 1); // 0 would let Verilator choose one
         }
         context->traceEverOn(AFU_TRACE != 0);
         instance->model = std::make_unique<Vmodel>(context);
@@ -147,7 +148,7 @@ afu_instance *create(uint64_t seed) {
     instance->ports.push_back(afu_port{name, bits, direction, static_cast<void *>(&model.member)});
 #include "ports.inc"
 #undef AFU_PORT
-        // Inputs begin as zero even where the rest is random: what the caller does not drive is not noise.
+        // Inputs begin as zero even if the rest is random, so that an input that the caller does not drive is not noise.
         for (const afu_port &port : instance->ports) {
             const uint32_t bytes =
                 port.bits <= 8 ? 1 : port.bits <= 16 ? 2 : port.bits <= 32 ? 4 : port.bits <= 64 ? 8 : (port.bits + 31) / 32 * 4;
@@ -209,7 +210,7 @@ int trace_open(afu_instance *instance, const char *path, uint64_t half_period_ps
     return instance->guarded([&] {
         if (instance->tracing) throw std::runtime_error("a waveform is already being written");
         if (half_period_ps == 0) throw std::runtime_error("the half period must not be zero");
-        // A file beyond a limit of its size is an error of the write, as on a full disk, and not the process's end.
+        // If a file exceeds its size limit, the write fails, as on a full disk, and the process does not end.
         const auto handler = std::signal(SIGXFSZ, SIG_IGN);
         if (handler != SIG_DFL) std::signal(SIGXFSZ, handler);
         instance->writing([&] {
@@ -220,7 +221,7 @@ int trace_open(afu_instance *instance, const char *path, uint64_t half_period_ps
             instance->waveform->set_time_unit("1ps");
             instance->waveform->set_time_resolution("1ps");
             instance->waveform->open(path);
-            if (!instance->waveform->isOpen()) throw std::runtime_error("the file cannot be made");
+            if (!instance->waveform->isOpen()) throw std::runtime_error("the file cannot be created");
         });
         instance->tracing = true;
         instance->half_period_ps = half_period_ps;

@@ -13,7 +13,7 @@ pub(crate) struct Feature {
     pub needed_for: &'static str,
 }
 
-/// All of them.
+/// All features.
 pub(crate) const FEATURES: [Feature; 3] = [
     Feature {
         name: "cosim",
@@ -28,7 +28,7 @@ pub(crate) const FEATURES: [Feature; 3] = [
     Feature { name: "parry", built_in: cfg!(feature = "parry"), needed_for: "afu hard beside parry3d" },
 ];
 
-/// Those built in and those not, in a line.
+/// The features that are built in and those that are not, in one line.
 pub fn summary() -> String {
     let names = |built_in: bool| {
         let of = FEATURES.iter().filter(|feature| feature.built_in == built_in).map(|feature| feature.name);

@@ -1,5 +1,9 @@
-//! The programs outside this crate: which there are, what needs them, what installs them.
+//! The external programs: which were found, what needs them, and how to install them.
 
+// cosim/verilate has this file too, which a build script shares and a build without simulation leaves out.
+#[allow(clippy::duplicate_mod)]
+#[path = "../cosim/verilate/environments.rs"]
+mod environments;
 mod features;
 mod install;
 mod probe;

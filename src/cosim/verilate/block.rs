@@ -1,11 +1,11 @@
-//! The part of a design that is there many times, compiled once.
+//! The part of a design that is instantiated many times, compiled once.
 //!
-//! Left alone, Verilator flattens every instance into the top and writes its C++ anew: sixteen units are 40 MB, which
-//! take minutes to compile and outrun every cache when they run. Two ways out, whose figures are in `docs/cosim.md`:
-//! the module [`BLOCK`] becomes a library of its own (`--lib-create`), which the rest of the design calls for each
-//! instance, and whose objects are cached apart, so that another number of instances compiles only the rest. A waveform
-//! does not reach into a library; so in a traced design the module [`SHARED`] is kept from being flattened, whose
-//! instances then share most of their functions.
+//! Left alone, Verilator flattens every instance into the top and writes its C++ again. Sixteen units are 40 MB, which
+//! take minutes to compile and exceed every cache when they run. There are two ways out, with figures in
+//! `docs/cosim.md`. Without a waveform, the module [`BLOCK`] becomes a library of its own (`--lib-create`), which the
+//! rest of the design calls for each instance. Its objects are cached separately, so another number of instances
+//! compiles only the rest. A waveform does not reach into a library. In a traced design, the module [`SHARED`] is not
+//! flattened, so its instances share most of their functions.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -15,25 +15,25 @@ use super::{Design, Error, File, RECIPE, Tool, Trace, cache, key_of, rtl_sha256,
 
 /// The module: one processing unit of the AFU.
 const BLOCK: &str = "scpu";
-/// The module that is kept apart in a traced design: around the block, with a register before each of its inputs. (What
-/// reaches the inputs of a module's logic directly is named after the instance, and nothing is shared.)
+/// The module that is kept separate in a traced design. It surrounds the block, with a register before each of its
+/// inputs. (Logic that reads a module's input directly is named after the instance, and is not shared.)
 const SHARED: &str = "scpu_slot";
-/// A configuration for Verilator beside the folder `rtl`: generated Verilog carries no pragmas.
+/// A configuration for Verilator beside the folder `rtl`, because generated Verilog carries no pragmas.
 pub(super) const CONFIG_NAME: &str = "shared.vlt";
 /// The class Verilator makes of the block.
 const PREFIX: &str = "Vblock";
 
 /// A compiled block.
 pub(super) struct Block {
-    /// Stands for the block's own file in the rest of the design.
+    /// The wrapper that replaces the block's own file in the rest of the design.
     pub wrapper: File,
-    /// Its objects.
+    /// The objects of the block.
     pub objects: Vec<PathBuf>,
-    /// What it needs of Verilator's runtime.
+    /// The parts of Verilator's runtime that the block needs.
     pub runtime: Vec<String>,
 }
 
-/// Builds the block of `design`, or finds it in `cache`; nothing where the design has none, or is traced.
+/// Builds the block of `design`, or finds it in `cache`. `None` if the design has no block, or is traced.
 pub(super) fn build(design: &Design, tool: &Tool, compiler: &Compiler, cache: &Path) -> Result<Option<Block>, Error> {
     let file_name = format!("{BLOCK}.v");
     let has_block = design.files.iter().any(|file| file.name == file_name);
@@ -67,13 +67,13 @@ pub(super) fn build(design: &Design, tool: &Tool, compiler: &Compiler, cache: &P
     Ok(Some(Block { wrapper, objects: cache::files_in(&folder, "o")?, runtime }))
 }
 
-/// The files of the rest of the design: the wrapper in place of the block.
+/// The files of the rest of the design, with the wrapper in place of the block.
 pub(super) fn rest(design: &Design, block: &Block) -> Vec<File> {
     let of = |file: &File| if file.name == format!("{BLOCK}.v") { block.wrapper.clone() } else { file.clone() };
     design.files.iter().map(of).collect()
 }
 
-/// What [`CONFIG_NAME`] says.
+/// The text of [`CONFIG_NAME`].
 pub(super) fn config() -> String {
     format!("`verilator_config\nno_inline -module \"{SHARED}\"\n")
 }

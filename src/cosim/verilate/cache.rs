@@ -1,4 +1,4 @@
-//! Results kept by key: made aside, renamed into place, by one process at a time.
+//! Results kept by key. One process at a time makes a result in a temporary folder, which is then renamed.
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -7,20 +7,20 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::Error;
 
-/// The folder `cache/key`, made by `make` if it is not there. `make` is given an empty folder of its own, which becomes
-/// `cache/key` when it succeeds and vanishes when it fails: a key never holds half a result.
+/// The folder `cache/key`, made by `make` if it does not exist. `make` gets an empty folder of its own. If it succeeds,
+/// this becomes `cache/key`; if it fails, it is removed. So a key never holds half a result.
 pub(super) fn once(cache: &Path, key: &str, make: impl FnOnce(&Path) -> Result<(), Error>) -> Result<PathBuf, Error> {
     let result = cache.join(key);
     if result.is_dir() {
         return Ok(result);
     }
     fs::create_dir_all(cache).map_err(|e| Error::io("create", cache, e))?;
-    // Whoever is second waits here and then finds the result. The lock ends with its process, however that ends.
+    // A second process waits here and then finds the result. The lock ends with its process, however that ends.
     let lock_path = cache.join(format!("{key}.lock"));
     let lock = File::create(&lock_path).map_err(|e| Error::io("create", &lock_path, e))?;
     lock.lock().map_err(|e| Error::io("lock", &lock_path, e))?;
     let made = if result.is_dir() { Ok(()) } else { make_aside(cache, key, &result, make) };
-    // A process that comes after this makes a new lock and finds the result, or after a failure tries for itself.
+    // A later process makes a new lock. It finds the result or, after a failure, tries for itself.
     let _ = fs::remove_file(&lock_path);
     made.map(|()| result)
 }
@@ -34,17 +34,17 @@ fn make_aside(
     let aside = Aside::new(cache, key)?;
     make(&aside.0)?;
     match fs::rename(&aside.0, result) {
-        // Locks only save work; where they failed and another process was faster, its result is the same.
+        // Locks only save work. If locking failed and another process was faster, its result is the same.
         Err(_) if result.is_dir() => Ok(()),
         renamed => renamed.map_err(|e| Error::io("create", result, e)),
     }
 }
 
-/// A folder that is removed unless it was renamed away.
+/// A folder that is removed unless it was renamed.
 struct Aside(PathBuf);
 
 impl Aside {
-    /// Called with the key's lock held: what lies there under this key was left by a process that was killed.
+    /// Called with the key's lock held, so a folder of this key was left by a process that was killed.
     fn new(cache: &Path, key: &str) -> Result<Self, Error> {
         static NEXT: AtomicU64 = AtomicU64::new(0);
         let mine = format!("building-{key}-");
@@ -65,7 +65,7 @@ impl Drop for Aside {
     }
 }
 
-/// Removes everything in `folder` but `name`.
+/// Removes everything in `folder` except `name`.
 pub(super) fn keep_only(folder: &Path, name: &str) -> Result<(), Error> {
     for entry in fs::read_dir(folder).map_err(|e| Error::io("read", folder, e))?.flatten() {
         let path = entry.path();

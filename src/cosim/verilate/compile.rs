@@ -1,4 +1,4 @@
-//! Compiling what Verilator wrote. `cc` finds the compiler and its flags; the processes are run here, so that all cores
+//! Compiles Verilator's output. `cc` finds the compiler and its flags. The processes are run here, so that all cores
 //! work and the compiler's messages reach the caller.
 
 use std::env;
@@ -11,7 +11,7 @@ use std::thread;
 
 use super::{Error, Tool, Trace};
 
-/// Never 0, whatever the Cargo profile: a model at -O0 ran 17 times slower, and above 1 only its compilation slows.
+/// Never 0, whatever the Cargo profile: a model at -O0 ran 17 times slower. Above 1 only compilation slows down.
 const OPTIMISATION: u32 = 1;
 
 /// Variables that GCC and Clang read: folders of headers, programs and libraries, and the SDK of a Mac.
@@ -33,10 +33,10 @@ pub struct Compiler {
 }
 
 impl Compiler {
-    /// Finds the compiler that works on `host` for `target`: Rust target triples.
+    /// Finds the compiler that runs on `host` and compiles for `target`. Both are Rust target triples.
     ///
     /// # Errors
-    /// [`Error::MissingTool`] when there is none.
+    /// Returns [`Error::MissingTool`] if there is no compiler.
     pub fn find(target: &str, host: &str) -> Result<Self, Error> {
         let tool = cc::Build::new()
             .cpp(true)
@@ -59,23 +59,24 @@ impl Compiler {
         let version = String::from_utf8_lossy(&output.stdout).into_owned();
         let command = tool.to_command();
         let called: Vec<_> = [command.get_program()].into_iter().chain(command.get_args()).collect();
-        // Of the environment what compilers read; the flags that `cc` takes from it are among the arguments.
+        // From the environment, the variables that compilers read. The flags that `cc` takes from it are among the
+        // arguments.
         let read = READ_BY_COMPILERS.map(env::var_os);
         let identity = format!("{target}\n{version}\n{called:?}\n{read:?}\n{:?}", model_options());
         Ok(Self { tool, identity })
     }
 
-    /// Everything about it that can change what it makes.
+    /// Everything about the compiler that can change its output.
     pub(super) fn identity(&self) -> &str {
         &self.identity
     }
 
-    /// What it calls itself, one line.
+    /// The first line of its version text.
     pub fn version(&self) -> &str {
         self.identity.lines().nth(1).unwrap_or("")
     }
 
-    /// Compiles each of `sources` into `folder`, several at a time; the objects come in the order of the sources.
+    /// Compiles each of `sources` into `folder`, several at a time. The objects are in the order of the sources.
     pub(super) fn compile_all(
         &self,
         sources: &[PathBuf],
@@ -90,7 +91,7 @@ impl Compiler {
                 let mut command = self.tool.to_command();
                 command.args(flags).arg("-c").arg(source).arg("-o").arg(object(source));
                 if let Err(error) = run(&mut command, &source.display().to_string()) {
-                    next.store(sources.len(), Ordering::Relaxed); // the others stop after what they are at
+                    next.store(sources.len(), Ordering::Relaxed); // the others stop after their current source
                     *failure.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = Some(error);
                 }
             }
@@ -118,12 +119,12 @@ impl Compiler {
         } else {
             let script = model.with_extension("map");
             super::write(&script, "{ global: afu_model; local: *; };\n")?;
-            // -z defs: what is missing is missed here, not when the model is loaded.
+            // -z defs: a missing symbol is an error here, not when the model is loaded.
             command.arg(format!("-Wl,--version-script={}", script.display())).arg("-Wl,-z,defs");
         }
         if trace == Trace::Fst {
             command.arg("-lz");
-            // Verilator 5.006 brings its own copy of lz4; later ones take the system's.
+            // Verilator 5.006 brings its own copy of lz4; later ones use the system's.
             if !tool.include().join("gtkwave/lz4.c").is_file() {
                 command.arg("-llz4");
             }
@@ -132,7 +133,7 @@ impl Compiler {
     }
 }
 
-/// What installs a tool: the repository's script too, where that is in the current folder.
+/// The command that installs a tool, including the repository's script if it is in the current folder.
 pub(super) fn install(commands: &str) -> String {
     if Path::new("scripts/setup").is_file() { format!("scripts/setup, or {commands}") } else { commands.to_owned() }
 }
@@ -151,14 +152,14 @@ fn run(command: &mut Command, what: &str) -> Result<(), Error> {
     Err(Error::Compile { what: what.to_owned(), text: text.join("\n") })
 }
 
-/// Cargo's share of the machine in a build script, else all of it.
+/// The number of jobs: Cargo's in a build script, otherwise the number of cores.
 fn jobs() -> usize {
     let cargo = env::var("NUM_JOBS").ok().and_then(|text| text.parse().ok());
     cargo.or_else(|| thread::available_parallelism().ok().map(usize::from)).unwrap_or(1).max(1)
 }
 
-/// Hidden symbols, and none of GNU's unique ones: otherwise Verilator's globals would be shared by all models of a
-/// process, whatever their Verilator and flags, even under RTLD_LOCAL.
+/// Hidden symbols, and no GNU unique ones. Otherwise Verilator's globals would be shared by all models of a process,
+/// whatever their Verilator and flags, even under RTLD_LOCAL.
 fn model_options() -> [&'static str; 3] {
     ["-fvisibility=hidden", "-fvisibility-inlines-hidden", "-pthread"]
 }
@@ -191,8 +192,8 @@ pub(super) fn model_flags(tool: &Tool, trace: Trace) -> Vec<String> {
     flags(tool, trace)
 }
 
-/// Flags for Verilator's runtime: the harness defines what would otherwise end the process, and $display must not mix
-/// with a program's standard output.
+/// Flags for Verilator's runtime. The harness defines the functions that would otherwise end the process, and $display
+/// must not write to the program's standard output.
 pub(super) fn runtime_flags(tool: &Tool, trace: Trace) -> Vec<String> {
     let mut flags = flags(tool, trace);
     let own = ["-DVL_USER_FATAL", "-DVL_USER_STOP", "-DVL_USER_FINISH", "-DVL_PRINTF(...)=fprintf(stderr,__VA_ARGS__)"];
@@ -202,9 +203,9 @@ pub(super) fn runtime_flags(tool: &Tool, trace: Trace) -> Vec<String> {
 
 /// The C++ files of one model, as Verilator lists them (their names change from version to version).
 pub(super) struct Classes {
-    /// Of the model, without folder and extension.
+    /// Files of the model, without folder and extension.
     pub model: Vec<String>,
-    /// Of Verilator's runtime, likewise.
+    /// Files of Verilator's runtime, likewise.
     pub runtime: Vec<String>,
 }
 
@@ -238,12 +239,12 @@ impl Classes {
     }
 }
 
-/// Bytes of C++ from which on one more translation unit pays: reading Verilator's headers costs each about as much as
-/// compiling this much.
+/// Bytes of C++ above which another translation unit pays off. For each unit, reading Verilator's headers takes about
+/// as long as compiling this much.
 const UNIT_BYTES: u64 = 150_000;
 
-/// Joins many small C++ files into few translation units of about equal size (which `#include` them), `first` at the
-/// head of the first; returns the units.
+/// Joins many small C++ files into few translation units of about equal size, which `#include` them. `first` is at the
+/// head of the first unit. Returns the units.
 pub(super) fn bundle(folder: &Path, names: &[String], prefix: &str, first: &str) -> Result<Vec<PathBuf>, Error> {
     let mut files = Vec::new();
     for name in names {

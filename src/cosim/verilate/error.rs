@@ -1,13 +1,13 @@
-//! What can go wrong on the way from Verilog to a model.
+//! Errors on the way from Verilog to a model.
 
 use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Why no model was built. (Written out, not derived: build.rs shares this file and keeps its dependencies few.)
+/// Why no model was built. (Not derived with thiserror, because build.rs shares this file and has few dependencies.)
 #[derive(Debug)]
 pub enum Error {
-    /// A program that is needed is not there, or too old.
+    /// A program that is needed is missing, or too old.
     MissingTool {
         /// Its name.
         name: String,
@@ -25,32 +25,32 @@ pub enum Error {
     },
     /// The C++ compiler or linker failed.
     Compile {
-        /// What it was working on.
+        /// The file it was working on.
         what: String,
         /// Its messages.
         text: String,
     },
-    /// A file list that cannot be used.
+    /// A file list cannot be used.
     FileList {
         /// The list.
         path: PathBuf,
         /// What is wrong.
         what: String,
     },
-    /// What Verilator wrote is not understood.
+    /// Verilator's output is not as expected.
     Unexpected {
         /// The file.
         path: PathBuf,
         /// What is wrong.
         what: String,
     },
-    /// A file or folder could not be read or written, or a program not run.
+    /// A file or folder could not be read or written, or a program could not be run.
     Io {
         /// The verb: read, write, create, run.
         action: &'static str,
-        /// On what.
+        /// The path.
         path: PathBuf,
-        /// Why.
+        /// The cause.
         source: io::Error,
     },
 }

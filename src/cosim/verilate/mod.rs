@@ -1,14 +1,15 @@
-//! From Verilog text to a compiled model: finds Verilator and a C++ compiler, runs them, keeps what they made.
+//! From Verilog to a compiled model: finds Verilator and a C++ compiler, runs them, and keeps the results.
 //!
-//! build.rs uses this folder too (by `#[path]`), so it knows std, `cc` and a hash, and nothing of the crate. Neither
-//! perl, python nor make takes part: Verilator's binary is run directly and its C++ compiled here.
+//! build.rs uses this folder too (by `#[path]`), so it uses only std, `cc` and a hash, and nothing of the crate.
+//! Neither perl, python nor make is needed: Verilator's binary is run directly, and its C++ is compiled here.
 
-// Each of the two users leaves some of it unused.
+// Each of the two users leaves some items unused.
 #![allow(dead_code)]
 
 mod block;
 mod cache;
 mod compile;
+mod environments;
 mod error;
 mod ports;
 mod tool;
@@ -25,10 +26,10 @@ use sha2::{Digest, Sha256};
 /// The kind of waveform a model can write. It is a property of the compiled model: tracing costs time even when off.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Trace {
-    /// None: the fastest model.
+    /// No waveform: the fastest model.
     #[default]
     Off,
-    /// Value change dump (IEEE 1364-2005, clause 18): text, read by everything.
+    /// Value change dump (IEEE 1364-2005, clause 18): text that every viewer reads.
     Vcd,
     /// GTKWave's compressed format; needs zlib's headers (Verilator 5.006) or lz4's (later).
     Fst,
@@ -45,50 +46,50 @@ impl Trace {
     }
 }
 
-/// One Verilog file: the name errors call it by, and its text.
+/// One Verilog file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct File {
-    /// A relative path without `..`.
+    /// A relative path without `..`, by which errors name the file.
     pub name: String,
-    /// What is in it.
+    /// The content.
     pub text: String,
 }
 
-/// The files that wrap any model in the C ABI.
+/// The files that wrap a model in the C ABI.
 #[derive(Clone, Copy, Debug)]
 pub struct Harness<'a> {
     /// `tb/harness.h`.
     pub header: &'a str,
     /// `tb/harness.cpp`.
     pub source: &'a str,
-    /// `tb/fst.cpp`, which stands in the place of the runtime's own writer of FST files.
+    /// `tb/fst.cpp`, which replaces the runtime's own writer of FST files.
     pub fst: &'a str,
 }
 
-/// What to verilate.
+/// A design to verilate.
 #[derive(Clone, Copy, Debug)]
 pub struct Design<'a> {
-    /// Verilog files, each before those that use it.
+    /// Verilog files, each before the files that use it.
     pub files: &'a [File],
     /// The top module.
     pub top: &'a str,
     /// Parameters of the top module: name and Verilog constant.
     pub parameters: &'a [(String, String)],
-    /// The waveform to build in.
+    /// The kind of waveform.
     pub trace: Trace,
-    /// The wrapping.
+    /// The files of the C ABI.
     pub harness: Harness<'a>,
 }
 
-/// The program that makes models is a part of every model's key: a changed flag cannot meet a model made with the old.
+/// The source of this module is part of every model's key, so that a changed flag never meets an old model.
 const RECIPE: &str =
     concat!(include_str!("mod.rs"), include_str!("block.rs"), include_str!("compile.rs"), include_str!("ports.rs"));
 
-/// The class Verilator makes of the top module; `tb/harness.cpp` names it.
+/// The class that Verilator makes of the top module. `tb/harness.cpp` uses this name.
 const PREFIX: &str = "Vmodel";
 
-/// SHA-256 of files, names, lengths and order included, in lower-case hex: the identity of a design, as
-/// `afu::Afu::rtl_sha256` gives it for generated ones.
+/// SHA-256 of files, names, lengths and order included, in lower-case hex. This identifies a design, and is the same as
+/// `afu::Afu::rtl_sha256` for generated ones.
 pub fn rtl_sha256(files: &[File]) -> String {
     let parts: Vec<&str> = files.iter().flat_map(|file| [file.name.as_str(), file.text.as_str()]).collect();
     key_of(&parts)
@@ -98,7 +99,7 @@ fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Reads a file list (`.f`): one relative path a line; `//` and `#` begin comments.
+/// Reads a file list (`.f`): one relative path per line; `//` and `#` begin comments.
 pub fn read_file_list(list: &Path) -> Result<Vec<File>, Error> {
     let text = fs::read_to_string(list).map_err(|e| Error::io("read", list, e))?;
     let folder = list.parent().unwrap_or(Path::new("."));
@@ -123,7 +124,7 @@ pub fn read_file_list(list: &Path) -> Result<Vec<File>, Error> {
     Ok(files)
 }
 
-/// The key a model is cached by: everything that could change its bytes.
+/// The key under which a model is cached: everything that could change its bytes.
 fn key(design: &Design, tool: &Tool, compiler: &Compiler, kind: &str) -> String {
     let (rtl, arguments) = (rtl_sha256(design.files), verilator_arguments(design, design.files).join(" "));
     let Harness { header, source, fst } = design.harness;
@@ -140,7 +141,7 @@ fn key_of(parts: &[&str]) -> String {
     hex(&hash.finalize())
 }
 
-/// Lint errors stay errors. --output-split bounds the time one C++ file takes, so that all cores have work.
+/// Lint errors stay errors. --output-split limits the size of a C++ file, so that all cores have work.
 const FIXED_ARGUMENTS: [&str; 7] =
     ["--cc", "--no-timing", "-O3", "--output-split", "20000", "--output-split-cfuncs", "2000"];
 
@@ -158,7 +159,7 @@ fn verilator_arguments(design: &Design, files: &[File]) -> Vec<String> {
     arguments
 }
 
-/// Builds `design` as a shared library, or finds it in the folder `cache`. Any number of processes may do so at once.
+/// Builds `design` as a shared library, or finds it in the folder `cache`. Any number of processes may do this at once.
 /// `target` is the Rust target triple of this process.
 ///
 /// # Errors
@@ -200,7 +201,7 @@ pub fn objects_for_static(
     cache::files_in(&folder.join("objects"), "o")
 }
 
-/// Verilates `design` in the folder `aside` and compiles it; the runtime's objects come from the cache.
+/// Verilates `design` in the folder `aside` and compiles it. The runtime's objects come from the cache.
 fn objects(
     design: &Design,
     tool: &Tool,
@@ -236,8 +237,8 @@ fn objects(
     Ok(objects)
 }
 
-/// Runs Verilator on the files of `design`, in a folder `rtl` inside `aside`, so that messages name files as the caller
-/// does.
+/// Runs Verilator on the files of `design`, in a folder `rtl` inside `aside`, so that messages use the caller's file
+/// names.
 fn run_verilator(
     design: &Design,
     tool: &Tool,
@@ -265,7 +266,7 @@ fn run_verilator(
 /// The runtime's writer of FST files.
 const FST_WRITER: &str = "verilated_fst_c";
 
-/// Verilator's own runtime, compiled once for every model of one Verilator, compiler and trace.
+/// Verilator's own runtime, compiled once for each combination of Verilator, compiler and trace.
 fn runtime(
     names: &[String],
     design: &Design,

@@ -1,4 +1,4 @@
-//! The ports of a Verilated module, read from the header Verilator wrote, so that one harness serves every module.
+//! Reads the ports of a Verilated module from Verilator's header, so that one harness serves every module.
 
 use std::fs;
 use std::path::Path;
@@ -8,9 +8,9 @@ use super::Error;
 /// One port.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Port {
-    /// As in the Verilog.
+    /// The name in the Verilog.
     name: String,
-    /// As in the C++ class: Verilator renames what C++ reserves.
+    /// The name in the C++ class. Verilator renames words that C++ reserves.
     member: String,
     bits: u32,
     input: bool,

