@@ -1,17 +1,17 @@
-//! The answer of an engine to a pair, in numbers that are wide enough for every engine.
+//! The answer of an engine to a pair, in numbers wide enough for every engine.
 
 use crate::query::ContactRecord;
 
-/// An engine's answer to a pair. Without a hit its numbers mean nothing.
+/// An engine's answer to a pair. Without a hit, its numbers are meaningless.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Answer {
     /// True if the bodies touch.
     pub hit: bool,
-    /// Where.
+    /// The position.
     pub position: [f64; 3],
-    /// The direction that parts them, pointing into the first.
+    /// The direction in which they separate, pointing into the first.
     pub normal: [f64; 3],
-    /// How deep they overlap.
+    /// The depth of the overlap.
     pub depth: f64,
     /// True if the engine's own arithmetic did not decide the pair, so that this answer came from the fallback.
     pub unsettled: bool,

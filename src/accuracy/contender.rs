@@ -1,4 +1,4 @@
-//! Who answers pairs.
+//! The contenders that answer pairs.
 
 use super::measure::in_parallel;
 use super::{Answer, Formula};
@@ -8,18 +8,18 @@ use crate::query::{ContactRecord, Fields, PairRecord, Query};
 
 /// Something that answers pairs: a profile's reference kernel, or another engine.
 pub trait Contender {
-    /// The name that results are kept and shown under: the same name answers the same bits.
+    /// The name under which results are stored and shown. The same name must always answer the same bits.
     fn name(&self) -> String;
 
     /// The answers to `pairs`, one each, in their order.
     ///
     /// # Errors
-    /// Returns an error if the engine could not do its work.
+    /// Returns an error if the engine failed.
     fn answers(&mut self, pairs: &[PairRecord]) -> Result<Vec<Answer>, EngineError>;
 }
 
-/// A profile's reference kernel, which the hardware equals bit for bit. Over shorter records it answers the pair that
-/// was rounded to them, and is judged by the one that was given: that rounding is part of what they cost.
+/// A profile's reference kernel, which the hardware equals bit for bit. Over shorter records it answers the rounded
+/// pair, but is judged by the given one, because this rounding is part of the cost of such records.
 #[derive(Clone, Debug)]
 pub struct Profiled {
     name: String,
@@ -65,8 +65,8 @@ impl Contender for Profiled {
 /// Contenders, in the order of a report.
 pub type Contenders = Vec<Box<dyn Contender>>;
 
-/// The profiles asked for, then the peers that this build has and that answer the query. Returns what is missing too,
-/// each with what would bring it.
+/// The given profiles, then the peers of this build that can answer the query. Also returns the missing peers, each
+/// with the way to get it.
 ///
 /// # Errors
 /// Returns an error if a peer does not start.

@@ -1,11 +1,11 @@
-//! The formula as physics engines have it, in plain `f32`.
+//! The formula in plain `f32`, as in physics engines.
 
 use super::{Answer, Contender};
 use crate::kernel::EngineError;
 use crate::query::{PairRecord, Query};
 
-/// ODE's formula in the machine's binary32, branches and all, written apart from the kernel. No input is refused and no
-/// NaN made canonical.
+/// ODE's formula in the machine's binary32, including its branches, written independently of the kernel. No input is
+/// refused, and NaNs are not made canonical.
 #[derive(Clone, Copy, Debug)]
 pub struct Formula(pub Query);
 

@@ -6,7 +6,7 @@ use crate::query::{ContactRecord, Flow, PairRecord, Query};
 
 /// Half a unit in the last place of binary32, relative.
 const HALF_ULP: f64 = 1.0 / (1 << 24) as f64;
-/// The smallest binary32 number, which every tolerance grants.
+/// The smallest binary32 number, which is added to every tolerance.
 const SMALLEST: f64 = f32::from_bits(1) as f64;
 
 /// The truth about a pair as `f64`, which is 2^29 times finer than the judged numbers.
@@ -31,7 +31,7 @@ impl Standard {
         Self { truth, rounded, exact }
     }
 
-    /// True if the bodies touch in truth.
+    /// True if the bodies really touch.
     pub fn is_contact(&self) -> bool {
         self.exact.hit
     }
@@ -55,22 +55,21 @@ pub struct Judgement {
     pub non_finite: bool,
     /// The normal is not a unit vector.
     pub normal: bool,
-    /// The normal points elsewhere.
+    /// The normal has a wrong direction.
     pub direction: bool,
     /// The depth is wrong.
     pub depth: bool,
     /// The position is wrong.
     pub position: bool,
-    /// Gross failure.
+    /// The answer is a gross failure.
     pub bad: bool,
-    /// The engine's own arithmetic did not settle it.
+    /// The engine's own arithmetic did not decide the pair.
     pub unsettled: bool,
-    /// Errors of depth, normal (the largest of its components) and position, in units in the last place of binary32:
-    /// of the depth; of 1; of the largest of the component and the numbers that it is made of. Zero where there is
-    /// nothing to compare, infinite for an infinity or a NaN.
+    /// Errors of depth, normal (the largest of its components) and position, in units in the last place of binary32.
+    /// The unit is that of the depth, of 1, and of the largest of the component and the numbers that it is computed
+    /// from. Zero if there is nothing to compare, infinite for an infinity or a NaN.
     pub ulps: [f64; 3],
-    /// The same errors relative to what makes them: of the depth and the position, to their
-    /// [`scale`](Truth::scale); of the normal, to 1.
+    /// The same errors, relative: of the depth and the position to their [`scale`](Truth::scale), of the normal to 1.
     pub relative: [f64; 3],
 }
 
@@ -113,7 +112,7 @@ pub fn judge(standard: &Standard, answer: &Answer) -> Judgement {
     found
 }
 
-/// An error's share of what makes it; none of nothing.
+/// An error relative to `of`; 0 without an error.
 fn share(error: f64, of: f64) -> f64 {
     if error == 0.0 { 0.0 } else { error / of }
 }
@@ -123,8 +122,8 @@ fn numbers(answer: &Answer) -> impl Iterator<Item = f64> {
     answer.position.into_iter().chain(answer.normal).chain([answer.depth])
 }
 
-/// How far a number is from the true one; nothing where both are beyond binary32. An infinity where the truth is the
-/// largest number stands for the one that would follow.
+/// The difference between a number and the true one; 0 if both are beyond binary32. If the truth is the largest number,
+/// an infinity counts as the number that would follow.
 fn difference(given: f64, exact: f64, rounded: f64) -> f64 {
     if given.is_finite() {
         return (given - exact).abs();

@@ -7,7 +7,7 @@ const ROW: usize = 22;
 const TOP: usize = 64;
 const NAMES: usize = 130;
 const COLUMN: usize = 104;
-/// Colours are presentation attributes, which every viewer knows; the style replaces them on a dark ground.
+/// Colours are presentation attributes, which every viewer supports. The style replaces them on a dark background.
 const STYLE: &str = "@media (prefers-color-scheme:dark){.ground{fill:#15181d}.ink{fill:#e8eaee}.soft{fill:#a4acb8}}";
 
 /// The picture as an SVG file: in each cell the share of pairs on which the contender failed grossly.

@@ -8,7 +8,7 @@ use crate::store::{Key, Store, StoreError, sha256};
 use serde::{Deserialize, Serialize};
 use std::thread;
 
-/// Pairs that are judged at a time: the truth about each takes 2 KB.
+/// The number of pairs that are judged at a time. The truth about each takes 2 KB.
 const BATCH: usize = 4096;
 
 /// A contender that failed.
@@ -21,9 +21,9 @@ pub struct ContenderError {
     pub error: EngineError,
 }
 
-/// A row for each contender on `pairs` of a query, all valid, which are called `set`: one that `store` holds, or
-/// measured now and kept there. `progress` is called with the pairs done. Returns the rows, and how many of them the
-/// store held.
+/// A row for each contender on `pairs` of a query, all valid, which are called `set`. A row comes from `store`, or is
+/// measured and stored. `progress` is called with the number of pairs done. Returns the rows, and the number of rows
+/// that the store had.
 ///
 /// # Errors
 /// Returns an error if a contender fails, or if a row cannot be read or stored.
@@ -88,7 +88,7 @@ pub(super) fn judge_all(
     mut progress: impl FnMut(u64),
 ) -> Result<Vec<Judged>, ContenderError> {
     let mut all: Vec<(Tally, Gathered)> = contenders.iter().map(|_| Default::default()).collect();
-    // Without contenders nobody asks for the truth either.
+    // Without contenders the truth is not needed either.
     let anyone = !contenders.is_empty();
     for batch in pairs.chunks(BATCH).take_while(|_| anyone) {
         let standards = standards(query, batch);
@@ -104,7 +104,7 @@ pub(super) fn judge_all(
     Ok(all.into_iter().map(|(tally, errors)| Judged { tally, errors: errors.errors() }).collect())
 }
 
-/// The stored part of a row; the rest is known from the request.
+/// The stored part of a row. The request gives the rest.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Judged {
@@ -124,14 +124,14 @@ fn standards(query: Query, pairs: &[PairRecord]) -> Vec<Standard> {
     in_parallel(pairs, |part| part.iter().map(|pair| Standard::of(query, pair)).collect())
 }
 
-/// What `work` makes of parts of `pairs`, one after the other.
+/// Applies `work` to parts of `pairs` in parallel, and returns the results in order.
 pub(super) fn in_parallel<T: Send>(pairs: &[PairRecord], work: impl Fn(&[PairRecord]) -> Vec<T> + Sync) -> Vec<T> {
     let workers = thread::available_parallelism().map_or(1, usize::from);
     let share = pairs.len().div_ceil(workers).max(1);
     let work = &work;
     thread::scope(|scope| {
         let parts: Vec<_> = pairs.chunks(share).map(|part| scope.spawn(move || work(part))).collect();
-        // A worker only ever ends by returning: a panic in it is one here.
+        // A worker ends only by returning. If it panics, so does this.
         parts.into_iter().flat_map(|part| part.join().unwrap_or_default()).collect()
     })
 }
@@ -148,14 +148,14 @@ fn count_up(standards: &[Standard], answers: &[Answer]) -> (Tally, Gathered) {
     (tally, errors)
 }
 
-/// The tally and the errors of answers to valid pairs, whoever gave them.
+/// The tally and the errors of answers to valid pairs.
 pub fn assess(query: Query, pairs: &[PairRecord], answers: &[Answer]) -> (Tally, ErrorStatistics) {
     let (tally, errors) = count_up(&standards(query, pairs), answers);
     (tally, errors.errors())
 }
 
-/// SHA-256 of everything that decides a row: this program's version, the contender, the query unless it is the default,
-/// the pairs.
+/// SHA-256 of everything that affects a row: this program's version, the contender, the query unless it is the default,
+/// and the pairs.
 fn hash(query: Query, contender: &str, pairs: &[PairRecord]) -> String {
     let query = if query.is_default() { String::new() } else { format!("{query} ") };
     with_pairs(format!("{} {contender} {query}", env!("CARGO_PKG_VERSION")), pairs)

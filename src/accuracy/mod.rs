@@ -1,8 +1,8 @@
-//! How right answers are: engines and profiles on the same pairs, judged against the truth.
+//! The accuracy of answers: engines and profiles on the same pairs, judged against the truth.
 //!
-//! A [`Contender`] answers pairs; [`judge`] says what is wrong with an answer; [`measure`] does so for contenders on a
-//! set of pairs, and makes a [`Row`] of each, which it keeps in a [`Store`](crate::store::Store). [`fill`] does that
-//! over the hard categories, and makes [`HardResults`] of them.
+//! A [`Contender`] answers pairs, and [`judge`] finds the errors of an answer. [`measure`] does this for contenders on
+//! a set of pairs and makes a [`Row`] of each, which it keeps in a [`Store`](crate::store::Store). [`fill`] does it for
+//! the hard categories, and makes [`HardResults`] of them.
 
 mod answer;
 mod contender;

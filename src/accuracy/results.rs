@@ -12,7 +12,7 @@ pub const SCHEMA: &str = "contact-afu/hard/1";
 const CSV: &str = "hard.csv";
 const PICTURE: &str = "hard.svg";
 
-/// One contender on one category.
+/// The result of one contender on one category.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Row {
@@ -20,11 +20,11 @@ pub struct Row {
     pub category: String,
     /// The contender's name.
     pub contender: String,
-    /// SHA-256 of what went in: version, contender, pairs.
+    /// SHA-256 of the inputs: version, contender, pairs.
     pub key: String,
     /// The counts of wrong answers.
     pub tally: Tally,
-    /// How large the errors are.
+    /// The statistics of the errors.
     pub errors: ErrorStatistics,
 }
 
@@ -35,8 +35,8 @@ impl Row {
     }
 }
 
-/// A study: what every contender was given, and what came of it. Its folder holds it three times: as `manifest.json`,
-/// the rows as `hard.csv`, and gross failures as the picture `hard.svg`.
+/// A study: its inputs and the results of every contender. Its folder has them as `manifest.json`, the rows as
+/// `hard.csv`, and gross failures as the picture `hard.svg`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HardResults {
@@ -45,7 +45,7 @@ pub struct HardResults {
     /// The query of the pairs.
     #[serde(default, skip_serializing_if = "Query::is_default")]
     pub query: Query,
-    /// Pairs of all categories together.
+    /// The number of pairs in all categories together.
     pub pairs: u64,
     /// Seed of the pairs.
     pub seed: u64,
@@ -69,7 +69,7 @@ impl HardResults {
         }
     }
 
-    /// Writes the folder as it is now; each file is replaced whole.
+    /// Writes the folder in its present state. Each file is replaced as a whole.
     pub(super) fn save(&self, folder: &Path) -> Result<(), folder::Error> {
         folder::create(folder)?;
         folder::replace_json(&folder.join(manifest::NAME), self)?;
@@ -105,7 +105,7 @@ impl HardResults {
         distinct(self.rows.iter().map(|row| row.category.as_str()))
     }
 
-    /// Pairs of a category, as text: two numbers where the last ones have one pair less.
+    /// The number of pairs in a category, as text: two numbers if the last categories have one pair less.
     pub(super) fn per_category(&self) -> String {
         let pairs = |of: fn(u64, u64) -> u64| {
             self.rows.iter().map(|row| row.tally.pairs).reduce(of).map_or_else(String::new, grouped)

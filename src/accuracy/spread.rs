@@ -1,25 +1,25 @@
-//! Errors of many answers, in a few figures.
+//! Statistics of the errors of many answers.
 
 use super::Judgement;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// How large errors are. Infinite ones are not among them: they are gross failures, and counted as such.
+/// Statistics of errors. Infinite ones are not included, because they are counted as gross failures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Spread {
-    /// Errors, zeros among them: contacts that were found.
+    /// The number of errors, including zeros: one per contact that was found.
     pub count: u64,
     /// The mean.
     pub mean: f64,
-    /// What 99.9 % of them do not exceed, from above and to 3 %; of several sets together, the largest of theirs.
+    /// The 99.9th percentile, from above and to 3 %. For several sets together, the largest of theirs.
     pub p999: f64,
     /// The largest.
     pub largest: f64,
 }
 
 impl Spread {
-    /// The statistics of both together.
+    /// The statistics of both together. The percentile is the larger one.
     #[must_use]
     pub fn plus(self, other: &Self) -> Self {
         let count = self.count.saturating_add(other.count);
@@ -33,7 +33,7 @@ impl Spread {
     }
 }
 
-/// Errors of contacts' numbers, in units in the last place of binary32 and relative, as [`Judgement`] has them.
+/// Errors of contacts' numbers, in units in the last place of binary32 and relative, as in [`Judgement`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ErrorStatistics {
@@ -41,13 +41,13 @@ pub struct ErrorStatistics {
     pub depth_ulps: Spread,
     /// Errors of the normal, in ulps of 1.
     pub normal_ulps: Spread,
-    /// Errors of the position, in ulps of the largest number that makes it.
+    /// Errors of the position, in ulps of the largest number that it is computed from.
     pub position_ulps: Spread,
-    /// Errors of the depth, relative to the sizes that make it.
+    /// Errors of the depth, relative to the sizes that it is computed from.
     pub depth: Spread,
     /// Errors of the normal, relative to 1.
     pub normal: Spread,
-    /// Errors of the position, relative to the largest number that makes it.
+    /// Errors of the position, relative to the largest number that it is computed from.
     pub position: Spread,
     /// The largest of the three relative errors of a contact.
     pub contact: Spread,
@@ -74,19 +74,19 @@ impl ErrorStatistics {
 
 const FIGURES: usize = 7;
 
-/// Errors being gathered.
+/// Errors that are being gathered.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Gathered([Gathering; FIGURES]);
 
 impl Gathered {
-    /// The errors of one more contact that was found.
+    /// Adds the errors of one more contact that was found.
     pub fn add(&mut self, found: &Judgement) {
         let contact = found.relative.iter().copied().fold(0.0, f64::max);
         let errors = found.ulps.into_iter().chain(found.relative).chain([contact]);
         self.0.iter_mut().zip(errors).for_each(|(gathering, error)| gathering.add(error));
     }
 
-    /// Those of others too.
+    /// Adds the errors of another collection.
     pub fn extend(&mut self, other: Self) {
         self.0.iter_mut().zip(other.0).for_each(|(mine, other)| mine.extend(other));
     }
@@ -102,7 +102,7 @@ struct Gathering {
     count: u64,
     sum: f64,
     largest: f64,
-    /// Number of errors with these leading bits: sign, exponent and five bits of the fraction.
+    /// The number of errors with these leading bits: sign, exponent and five bits of the fraction.
     leading: BTreeMap<u64, u64>,
 }
 
@@ -133,7 +133,7 @@ impl Gathering {
         let mut p999 = 0.0;
         for (&bits, &count) in self.leading.iter().rev() {
             if count > above {
-                // Exactly zero has no neighbours worth a bound.
+                // The bound of exact zero is zero.
                 p999 = if bits == 0 { 0.0 } else { f64::from_bits((bits + 1) << BELOW) };
                 break;
             }

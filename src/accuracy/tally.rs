@@ -1,4 +1,4 @@
-//! Judgements, counted.
+//! Counts of judgements.
 
 use super::Judgement;
 use serde::{Deserialize, Serialize};
@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Tally {
-    /// Pairs answered.
+    /// The number of pairs answered.
     pub pairs: u64,
-    /// Pairs that truly touch.
+    /// The number of pairs that really touch.
     pub contacts: u64,
     /// Contacts not found.
     pub missed: u64,
@@ -18,9 +18,9 @@ pub struct Tally {
     pub false_hits: u64,
     /// Answers with an infinity or a NaN where the truth is finite.
     pub non_finite: u64,
-    /// Answers whose normal is no unit vector.
+    /// Answers whose normal is not a unit vector.
     pub normal: u64,
-    /// Answers whose normal points elsewhere.
+    /// Answers whose normal has a wrong direction.
     pub direction: u64,
     /// Answers with a wrong depth.
     pub depth: u64,
@@ -29,18 +29,18 @@ pub struct Tally {
     /// Gross failures. The key in JSON keeps its old name until the schema changes.
     #[serde(rename = "BAD")]
     pub bad: u64,
-    /// Pairs that the engine's own arithmetic did not settle.
+    /// Pairs that the engine's own arithmetic did not decide.
     pub unsettled: u64,
     /// The largest finite error of a depth, in its units in the last place of binary32.
     pub depth_ulps: f64,
     /// The largest finite error of a normal's component, in units of 1.
     pub normal_ulps: f64,
-    /// The largest finite error of a position's component, in units of what makes it.
+    /// The largest finite error of a position's component, in units of the largest number that it is computed from.
     pub position_ulps: f64,
 }
 
 impl Tally {
-    /// Counts one more judgement, of a pair that touches or not.
+    /// Counts one more judgement of a pair, which touches or not.
     pub fn add(&mut self, is_contact: bool, found: &Judgement) {
         let Judgement { missed, false_hit, non_finite, normal, direction, depth, position, bad, unsettled, .. } =
             *found;
@@ -51,7 +51,7 @@ impl Tally {
         self.raise(found.ulps.map(|ulps| if ulps.is_finite() { ulps } else { 0.0 }));
     }
 
-    /// Both together. Counts end at the largest number: a file of results may say anything.
+    /// The sum of both. Counts saturate, because a file of results may contain any number.
     #[must_use]
     pub fn plus(mut self, other: &Self) -> Self {
         for (count, more) in self.each().into_iter().zip(other.counts()) {

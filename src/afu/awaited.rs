@@ -1,11 +1,11 @@
-//! Which requests wait for a response. A response whose request does not wait, because it was answered before or was
-//! never sent, is an error: what it carries belongs to no line of this job.
+//! Marks the requests that wait for a response. A response without a waiting request (answered before, or never sent)
+//! is an error, because its data belong to no line of this job.
 
 use crate::hdl::{Graph, Signal};
 
 use super::in_order::Arrival;
 
-/// From a response to [`Answers`]: compared with the mask, registered.
+/// Cycles from a response to [`Answers`]: compared with the mask, registered.
 pub(super) const CYCLES_TO_ANSWER: u32 = 1;
 
 /// The port on which requests wait for acceptance.
@@ -15,18 +15,18 @@ pub(super) struct Port<'g> {
     pub(super) slot: Signal<'g>,
 }
 
-/// Responses of this job, a cycle after they came.
+/// Responses of this job, one cycle after they arrived.
 pub(super) struct Answers<'g> {
-    /// One that a request waits for.
+    /// A response to a waiting request.
     pub(super) answered: Signal<'g>,
-    /// One that no request waits for, while the job runs.
+    /// A response without a waiting request, while the job runs.
     pub(super) unexpected: Signal<'g>,
-    /// One that a request waits for, and that says that it failed.
+    /// A response to a waiting request that reports a failure.
     pub(super) failed: Signal<'g>,
 }
 
-/// Marks a slot when its request is accepted, and takes the mark away when its response comes, in a later cycle.
-/// `start` clears all marks: a request that still stands on the port then is one of an earlier job, and gets none.
+/// Marks a slot when its request is accepted, and clears the mark when its response arrives in a later cycle. `start`
+/// clears all marks. A request that is still on the port then belongs to an earlier job and is not marked.
 pub(super) fn awaited<'g>(
     graph: &'g Graph,
     slots: u32,

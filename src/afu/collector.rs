@@ -1,9 +1,9 @@
-//! The collector: reads the source lines of a job, as many at once as there is room for, and hands them on in order.
+//! The collector: reads the source lines of a job, as many at once as there is room for, and passes them on in order.
 //!
-//! A line's slot in the reorder memory is the low part of its number and the low part of its request's tag; the
-//! upper part of the tag is the job's epoch, by which responses to an earlier job are known and dropped.
+//! A line's slot in the reorder memory is the low part of its number and of its request's tag. The upper part of the
+//! tag is the job's epoch, which identifies responses to an earlier job, so that they are dropped.
 //!
-//! A line comes [two cycles](super::lines) after it was offered, whatever is taken in the meantime.
+//! A line arrives [two cycles](super::lines) after it was offered, whatever is taken in the meantime.
 
 use std::sync::Arc;
 
@@ -16,9 +16,9 @@ use super::lines::{Access, line_memory};
 use super::port::{ReadInputs, ReadOutputs, outputs};
 use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, Spec};
 
-/// From the first cycle in which it runs to its first request.
+/// Cycles from the first cycle in which it runs to its first request.
 pub(super) const CYCLES_TO_REQUEST: u32 = 2;
-/// From a response to the line offered, if it is the next in order: known to have come, and its turn.
+/// Cycles from a response to the offer of its line, if it is the next in order.
 pub(super) const CYCLES_TO_LINE: u32 = in_order::CYCLES_TO_COME + 1;
 
 /// Builds the module `contact_afu_collector`.
@@ -46,7 +46,7 @@ pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let request_tag = graph.data_register("rd_req_tag", spec.tag_bits());
 
     let port_free = (!*request_valid | link.rd_req_ready).named("port_free");
-    // Whether one may go is known a cycle before.
+    // One cycle ahead, it is known whether a request may be made.
     let may_ask = graph.register("may_ask", 1, 0);
     let issue = (*may_ask & port_free).named("issue");
     request_valid.next(issue | (*request_valid & !link.rd_req_ready));
@@ -55,12 +55,13 @@ pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let some_left = remaining.connect(start, lines, issue);
     next_address.next_if(start | issue, start.select(source, next_address.plus(1)));
     next_slot.next_if(start | issue, start.select(next_slot.same(0), next_slot.plus(1)));
-    // A slot is free a cycle after its line was taken.
+    // A slot is free one cycle after its line was taken.
     let taken = (take & !start).registered("taken");
     up_down(reserved, start, issue, taken);
     may_ask.next(run & some_left & !all_used(reserved, issue, taken));
 
-    // Responses: into the slot the tag names. One that no request waits for overwrites a line there and ends the job.
+    // Responses go into the slot that the tag names. A response that no request waits for overwrites a line there and
+    // ends the job.
     let response_epoch = link.rd_rsp_tag.high(EPOCH_BITS).named("response_epoch");
     let response = (link.rd_rsp_valid & response_epoch.equals(epoch)).named("is_current");
     let response_slot = link.rd_rsp_tag.low(slot_bits).named("response_slot");
@@ -70,8 +71,8 @@ pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let outstanding = graph.register("outstanding", slot_bits + 1, 0);
     up_down(outstanding, start, issue, answers.answered);
 
-    // Lines are offered in order, up to two ahead of the one that is taken: so whether there is one never waits for
-    // what is taken.
+    // Lines are offered in order, up to two ahead of the line that is taken. So an offer never depends on what is taken
+    // in the same cycle.
     let line_valid = graph.register("line_valid", 1, 0);
     let two_valid = graph.register("two_valid", 1, 0);
     let offers = goes_in_order(&graph, slots, start, response_slot, answers.answered, !*two_valid);

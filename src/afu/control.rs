@@ -1,8 +1,8 @@
-//! Control: takes a job, watches it, ends it. A job ends done when the last write is acknowledged. On an abort, an
-//! error response or a response that no request waits for it stops requests, waits for what is outstanding, and ends
-//! with an error. It waits no longer than the watchdog allows, or than [`DRAIN_CYCLES`] without one: then it gives up
-//! what is outstanding. A request that the link has not accepted by then stays on the port until it is, next jobs or
-//! not.
+//! Control: takes a job, watches it, ends it. A job is done when its last write is acknowledged. On an abort, an error
+//! response or an unexpected response, control stops requests, waits for outstanding responses, and ends the job with
+//! an error. It waits as long as the watchdog allows, or [`DRAIN_CYCLES`] without a watchdog. Then it gives up the
+//! outstanding requests. A request that the link has not accepted by then stays on the port until it is accepted, even
+//! during later jobs.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use crate::hdl::{BuildErrors, Graph, Module};
 use super::port::{JobInputs, JobOutputs};
 use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, JobError, Spec, feeder};
 
-/// Cycles without a response after which a job that is to end ends, if it has no watchdog.
+/// Cycles without a response after which a job that is being stopped ends, if it has no watchdog.
 pub const DRAIN_CYCLES: u32 = 1 << 16;
 
 /// Cycles from `start` high to the first cycle in which the parts run.
@@ -80,9 +80,9 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, BuildEr
     let fewer = count.low(shift.max(1)).minus(1);
     last_place.next_if(accept, if shift == 0 { fewer.same(0) } else { fewer });
 
-    // Pairs inside, and room for results: a pair takes its place when it enters, a line frees its places when it
-    // leaves for memory. With only hits, a pair without contact frees its place as soon as that is known,
-    // and a contact when it leaves the backlog.
+    // Pairs inside, and room for results. A pair takes its place when it enters, and a line frees its places when it
+    // leaves for memory. If only hits are written, a pair without contact frees its place as soon as the decision is
+    // known, and a contact when it leaves the backlog.
     let room = graph.register("room", room_bits, u128::from(capacity));
     let returned = match spec.config.results {
         Results::All => graph.constant(room_bits, u128::from(layout.contacts_per_line())).gate(freed),
@@ -91,14 +91,14 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, BuildEr
     let change = (returned - entered.extend(room_bits)).gate(!*begin).registered("room_change");
     let next_room = (room.value() + change).named("next_room");
     room.next(begin.select(room.same(u128::from(capacity)), next_room));
-    // True if a group may enter, whatever the size of earlier groups that are not yet counted.
+    // True if a group may enter, whatever the size of earlier groups that are not counted yet.
     let may_enter = graph.register("may_enter", 1, 0);
     may_enter.next(run & next_room.drop_low(feeder::room_to_enter(spec).ilog2()).any());
     let inside = graph.register("pairs_inside", room_bits, 0);
     inside.next(inside.value() + entered.extend(room_bits) - emerged.extend(room_bits));
 
-    // Watchdog: cycles since the last response while one is outstanding; they begin again when the job is to end. A
-    // response in time is never too late because of the register.
+    // Watchdog: cycles since the last response while a request is outstanding. The count restarts when the job is to
+    // end. The register does not make a timely response late.
     let silence = graph.register("silence", COUNT_BITS, 0);
     let link_idle = link_idle_now.registered("link_idle_heard");
     let quiet = (response | link_idle).named("not_waiting");
@@ -148,11 +148,11 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, BuildEr
         graph.output("job_destination_lines", job_lines.value());
     }
     let ended = gives_up.select(error.same(JobError::Watchdog.code().into()), ended).named("ended");
-    // A job is accepted while none is there that could end: that comes last here, since it is known last.
+    // A job is accepted if no running job could end. This condition is last in the expression because it is known last.
     let begun = mode.any().select(error.same(JobError::Mode.code().into()), error.same(0));
     error.next(accept.select(begun, ended));
 
-    // They begin a cycle after the job does, of which that cycle is one; nothing waits in it yet.
+    // The counts begin one cycle after the job, and include that cycle, in which nothing waits yet.
     for (port, counts, first) in [
         (told.cycles_busy, busy, 1),
         (told.cycles_input, waits_for_input & *running, 0),

@@ -1,28 +1,28 @@
-//! Counters that say what they come to without waiting for the sum: one that goes down, with flags of what it has come
-//! to, and one that goes up and down, with the slots it counts.
+//! Counters whose next value is known without waiting for a sum. One counts down, with flags about its value. The other
+//! counts up and down, with the slots that it counts.
 
 use crate::hdl::{Graph, Register, Signal};
 
-/// A counter that goes down one at a time.
+/// A counter that counts down in steps of one.
 pub(super) struct Countdown<'g> {
     left: Register<'g>,
-    /// Whether anything is left.
+    /// True if anything is left.
     pub(super) any: Signal<'g>,
-    /// Whether one is left.
+    /// True if exactly one is left.
     pub(super) one: Signal<'g>,
     flags: [Register<'g>; 2],
 }
 
 impl<'g> Countdown<'g> {
-    /// A counter of that many bits: nothing is left after reset.
+    /// A counter of this number of bits, which is zero after reset.
     pub(super) fn new(graph: &'g Graph, name: &str, width: u32) -> Self {
         let flags = ["any", "one"].map(|flag| graph.register(&format!("{flag}_{name}"), 1, 0));
         let [any, one] = flags.map(Register::value);
         Self { left: graph.register(name, width, 0), any, one, flags }
     }
 
-    /// Begins with `from` at `start`; goes down at `step`, which is set only while something is left. Gives whether
-    /// anything will be left.
+    /// Starts from `from` at `start`, and counts down at `step`, which is set only while something is left. Returns
+    /// whether anything will be left.
     pub(super) fn connect(self, start: Signal<'g>, from: Signal<'g>, step: Signal<'g>) -> Signal<'g> {
         let left = self.left;
         left.next_if(start | step, start.select(from, left.minus(1)));
@@ -36,13 +36,13 @@ impl<'g> Countdown<'g> {
     }
 }
 
-/// Connects a counter, from 0 at `start`, that one event takes up and another down: which comes last.
+/// Connects a counter that is 0 at `start`, goes up on one event and down on another. The second event arrives last.
 pub(super) fn up_down<'g>(count: Register<'g>, start: Signal<'g>, up: Signal<'g>, down: Signal<'g>) {
     let moved = up.select(count.plus(1), count.minus(1));
     count.next_if(start | (up ^ down), start.select(count.same(0), moved));
 }
 
-/// Whether all of a power of two slots are used after a cycle, of which `reserved` are at its beginning.
+/// True if all of a power of two slots are used after a cycle in which `reserved` are used at the beginning.
 pub(super) fn all_used<'g>(reserved: Register<'g>, takes: Signal<'g>, frees: Signal<'g>) -> Signal<'g> {
     let slots = reserved.width() - 1;
     !frees & (reserved.msb() | (reserved.low(slots).all() & takes))

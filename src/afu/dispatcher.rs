@@ -1,6 +1,6 @@
 //! The dispatcher: keeps finished lines, writes them in order, and waits for every acknowledgement.
 //!
-//! A tag is the job's epoch and a slot; slots are used in turn, each again only after its acknowledgement.
+//! A tag is the job's epoch and a slot. Slots are used in turn, and each is reused only after its acknowledgement.
 //!
 //! With `--results hits`, the number of lines is not known in advance. The host says how many it has room for; the rest
 //! are dropped, and the job ends with an error.
@@ -19,7 +19,7 @@ use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, Spec};
 
 /// Cycles from a line to its write request: stored, at the head, registered.
 pub(super) const CYCLES_TO_REQUEST: u32 = 3;
-/// Cycles from an acknowledgement to its count.
+/// Cycles from an acknowledgement until it is counted.
 pub(super) const CYCLES_TO_IDLE: u32 = awaited::CYCLES_TO_ANSWER + 1;
 
 /// Builds the module `contact_afu_dispatcher`, with room for `depth` (a power of two) lines.

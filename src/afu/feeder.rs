@@ -1,6 +1,6 @@
-//! The feeder: takes pairs from lines and gives them to the SCPUs in turn, as many a cycle as there are pairs, turns
-//! and room for their results. Pair p of a job goes to SCPU p mod N; at an interval above 1 in that one's
-//! [phase](super::rounds).
+//! The feeder: takes pairs from lines and gives them to the SCPUs in turn. In each cycle it gives as many as there are
+//! pairs, turns and room for their results. Pair p of a job goes to SCPU p mod N, at an interval above 1 in the
+//! [phase](super::rounds) of that SCPU.
 
 use std::sync::Arc;
 
@@ -11,16 +11,17 @@ use super::lines::CYCLES_TO_WORD;
 use super::rounds::Rounds;
 use super::{COUNT_BITS, SCPU_BITS, Spec};
 
-/// Register ranks from the decision which pairs go to them on their way: its data come as late as lines do, and are
-/// registered.
+/// Register ranks from the decision which pairs leave to the pairs themselves. Their data arrive as late as lines do,
+/// and are registered.
 const RANKS: u32 = CYCLES_TO_WORD + 1;
-/// Likewise to the size and the first SCPU of a group, which the slots get one cycle before its pairs: each then knows
-/// which pair it takes.
+/// Register ranks from the decision to the size and the first SCPU of a group. The slots get these one cycle before the
+/// pairs, so that each knows which pair it takes.
 const RANKS_TO_GROUP: u32 = RANKS - 1;
 /// Cycles from a line that is offered to a group of its pairs that leaves for the slots: the line in hand, and the
 /// ranks of the decision.
 pub(super) const CYCLES_TO_ISSUE: u32 = 1 + RANKS;
-/// Groups whose results are not yet counted when the room for another one is checked, that one included.
+/// The number of groups, including the new one, whose results are not counted yet when the room for the new one is
+/// checked.
 const UNSEEN_GROUPS: u32 = 3;
 
 /// The number of results, a power of two, for which there must be room when a group enters: its own, and those of
@@ -46,8 +47,8 @@ pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let line = graph.input("line", spec.line_bits);
     let may_enter = graph.input("may_enter", 1);
 
-    // A window of two lines: the one in hand, and the one the collector offers. What they hold comes later; here are
-    // the places in the one in hand of the next pair and of the last.
+    // A window of two lines: the line in hand, and the line that the collector offers. Their contents arrive later.
+    // These are the places of the next pair and of the last pair in the line in hand.
     let in_hand = graph.register("in_hand", 1, 0);
     let place = graph.register("place", place_bits, 0);
     let last = graph.data_register("last", place_bits);
@@ -59,7 +60,7 @@ pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let of_full = graph.constant(place_bits, u128::from(per_line - 1));
     let next_last = last_is_next.select(last_place, of_full).named("next_last");
 
-    // Lane j carries a pair when all lanes before it do.
+    // Lane j carries a pair if all lanes before it do.
     let rounds = Rounds::new(&graph, spec, scpus, turn.value());
     let after = |pairs: u32| {
         let place_after = place.extend(place_bits + 2).plus(u128::from(pairs));
@@ -117,7 +118,7 @@ pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
         );
     }
 
-    // The window itself, as late as lines come, and its pairs from the decision's place on.
+    // The window itself, as late as lines arrive, and its pairs from the decided place on.
     let held = graph.data_register("held", spec.line_bits);
     held.next_if(take.delay(CYCLES_TO_WORD).named("takes_line"), line);
     let first_place = place.delay(CYCLES_TO_WORD).named("first_place");
@@ -131,7 +132,7 @@ pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     }
     let aligned = aligned.low(lanes * pair_bits).named("aligned");
 
-    // Registered towards the slots.
+    // Registered on the way to the slots.
     let ranks = (0..RANKS_TO_GROUP).scan(group, |before, rank| {
         let last = rank + 1 == RANKS_TO_GROUP;
         let name = if last { "issue_group".to_owned() } else { format!("group_rank_{rank}") };

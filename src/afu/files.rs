@@ -12,16 +12,16 @@ use crate::pipeline::KernelReport;
 use super::Afu;
 use super::port::connections;
 
-/// The folder of the test bench, apart from what is synthesised.
+/// The folder of the test bench, separate from the files to synthesise.
 pub(super) const BENCH_FOLDER: &str = "sim";
 
-/// The name of the list of a configuration's Verilog files, each after those it needs.
+/// The file name of the list of a configuration's Verilog files, each after the files it needs.
 pub fn file_list(config: &Config) -> String {
     config.prefixed("contact_afu.f")
 }
 
 impl Afu {
-    /// All files of the generated folder, the manifest last: relative path and text.
+    /// All files of the generated folder as relative path and text. The manifest is last.
     pub fn files(&self) -> Vec<(String, String)> {
         let verilog = self.verilog();
         let names: Vec<&str> = verilog.iter().map(|(name, _)| name.as_str()).collect();
@@ -43,8 +43,8 @@ impl Afu {
         files
     }
 
-    /// SHA-256 over the Verilog's names and texts, in order: what a built model is known by (`cosim` computes the same
-    /// of the files it is given).
+    /// SHA-256 over the Verilog's names and texts, in order. It identifies a built model (`cosim` computes the same for
+    /// the files that it is given).
     pub fn rtl_sha256(&self) -> String {
         rtl_sha256(self.verilog().iter().map(|(name, text)| (name.as_str(), text.as_str())))
     }
@@ -124,7 +124,7 @@ impl Afu {
         if let Some(target) = spec.target {
             manifest["target"] = json!(target);
         }
-        // The names of a target's blocks: another target's flow cannot read them.
+        // The names of a target's blocks, which another target's flow cannot read.
         let primitives: BTreeSet<&str> =
             self.top().hierarchy().iter().filter_map(|module| module.primitive).map(Primitive::name).collect();
         if !primitives.is_empty() {

@@ -24,7 +24,7 @@ pub struct Afu {
     spec: Spec,
     shell: &'static dyn ShellDesign,
     top: Arc<Module>,
-    /// The module `contact_afu`, whatever shell is around it.
+    /// The module `contact_afu`, independent of the shell around it.
     core: Arc<Module>,
     kernel: Arc<Module>,
 }
@@ -32,10 +32,10 @@ pub struct Afu {
 /// Why an accelerator could not be generated.
 #[derive(Debug, thiserror::Error)]
 pub enum BuildError {
-    /// The specification.
+    /// The specification is invalid.
     #[error(transparent)]
     Spec(#[from] SpecError),
-    /// The hardware: a mistake of the generator.
+    /// The hardware is faulty because of a mistake of the generator.
     #[error("the generated hardware is faulty:\n{0}")]
     Hardware(#[from] BuildErrors),
 }
@@ -44,7 +44,7 @@ impl Afu {
     /// Generates the accelerator of a specification.
     ///
     /// # Errors
-    /// What is out of range in `spec`; a fault of the generator itself.
+    /// Returns an error if a value in `spec` is out of range, or if the generator has a fault.
     pub fn generate(spec: Spec) -> Result<Self, BuildError> {
         spec.check()?;
         let kernel = contact_kernel(&Settings {
@@ -61,12 +61,12 @@ impl Afu {
         Self::around(spec, kernel)
     }
 
-    /// The accelerator of a specification around a kernel of the caller's: a module of the ports of
-    /// [`crate::pipeline::contact_kernel`] at the specification's interval, whose outputs follow its inputs by its
+    /// The accelerator of a specification around a kernel of the caller's. The kernel is a module with the ports of
+    /// [`crate::pipeline::contact_kernel`] at the specification's interval. Its outputs follow its inputs by its
     /// `latency`, which is at least 1.
     ///
     /// # Errors
-    /// What is out of range in `spec`; ports that do not fit.
+    /// Returns an error if a value in `spec` is out of range, or if the ports do not fit.
     pub fn around(spec: Spec, kernel: Arc<Module>) -> Result<Self, BuildError> {
         spec.check()?;
         let record_bits = spec.config.record.format().width();
@@ -79,30 +79,30 @@ impl Afu {
         Ok(Self { spec, shell, top, core, kernel })
     }
 
-    /// The accelerator of a specification around an SCPU of the caller's, which is its own kernel then: a module with
-    /// the input `pair` and the outputs `record`, `contact` and `invalid_pair`, which follow it by its `latency`, at
-    /// least 1; and at an interval above 1 the input `take`, set in the cycle before a pair comes to stay for the
-    /// interval. This is what the controller is proven with; there is no shell around it.
+    /// The accelerator of a specification around an SCPU of the caller's, which is then its own kernel. The SCPU is a
+    /// module with the input `pair` and the outputs `record`, `contact` and `invalid_pair`, which follow it by its
+    /// `latency`, at least 1. At an interval above 1 it also has the input `take`, which is set in the cycle before a
+    /// pair arrives and stays for the interval. The controller is proven with such an SCPU, without a shell.
     ///
     /// # Errors
-    /// What is out of range in `spec`; ports that do not fit.
+    /// Returns an error if a value in `spec` is out of range, or if the ports do not fit.
     pub fn around_scpu(spec: Spec, scpu: Arc<Module>) -> Result<Self, BuildError> {
         spec.check()?;
         let core = line_top(&spec, &scpu)?;
         Ok(Self { spec, shell: shell::of(Shell::Line), top: core.clone(), core, kernel: scpu })
     }
 
-    /// What it was generated from.
+    /// The specification that it was generated from.
     pub fn spec(&self) -> &Spec {
         &self.spec
     }
 
-    /// What is around the core.
+    /// The shell around the core.
     pub(super) fn shell(&self) -> &'static dyn ShellDesign {
         self.shell
     }
 
-    /// Where records lie in lines.
+    /// The places of records in lines.
     pub fn layout(&self) -> Layout {
         self.spec.layout()
     }
@@ -117,7 +117,7 @@ impl Afu {
         self.spec.config.prefixed(&self.top.name)
     }
 
-    /// Whether there is a shell around it.
+    /// True if there is a shell around the core.
     pub fn has_shell(&self) -> bool {
         !Arc::ptr_eq(&self.top, &self.core)
     }
@@ -127,7 +127,7 @@ impl Afu {
         &self.kernel
     }
 
-    /// The Verilog, a file a module, each after those it instantiates: file name and text.
+    /// The Verilog, one file per module, each after those it instantiates: file name and text.
     pub fn verilog(&self) -> Vec<(String, String)> {
         let (config, header) = (&self.spec.config, self.header());
         let style = Style { reset: self.spec.reset, prefix: config.prefixed(""), header, memories: self.spec.memories };
@@ -136,12 +136,12 @@ impl Afu {
         self.top.hierarchy().into_iter().map(file).collect()
     }
 
-    /// The command that writes it.
+    /// The command that writes the Verilog.
     pub(super) fn command(&self) -> String {
         ["afu rtl".to_owned()].into_iter().chain(self.spec.flags()).collect::<Vec<_>>().join(" ")
     }
 
-    /// What every file says of its origin: no date, host or path, so that the same specification gives the same bytes.
+    /// The header of every file. It has no date, host or path, so the same specification gives the same bytes.
     fn header(&self) -> Vec<String> {
         let config = &self.spec.config;
         vec![

@@ -1,8 +1,9 @@
-//! Responses arrive in any order, and what they answer leaves in order: marks for answered requests, the oldest first.
+//! Responses arrive in any order, and their requests leave in order. This file marks answered requests, the oldest
+//! first.
 
 use crate::hdl::{Graph, Signal};
 
-/// Cycles from a response to its mark: [`awaited`](super::awaited) registers that it came.
+/// Cycles from a response to its mark. [`awaited`](super::awaited) registers its arrival.
 pub(super) const CYCLES_TO_COME: u32 = super::awaited::CYCLES_TO_ANSWER + 1;
 
 /// A response to the request in `slot`.
@@ -12,11 +13,11 @@ pub(super) struct Arrival<'g> {
 }
 
 /// True if the oldest of `slots` (a power of two) slots is answered and leaves, in a cycle in which `may_go` is set.
-/// Slots are used in turn from 0 at `start`; a slot is used again only after it left.
+/// Slots are used in turn, from 0 at `start`, and are reused only after they left.
 ///
-/// `answered` is set a cycle after a response came that a request waits for; `slot` is the response's in the cycle in
-/// which it came. The marks are ordered by age and move up when the oldest leaves, so that no
-/// search for the oldest is needed.
+/// `answered` is set one cycle after the response to an outstanding request arrived. `slot` is the response's slot in
+/// the cycle of its arrival. The marks are ordered by age and move up when the oldest leaves, so no search for the
+/// oldest is needed.
 pub(super) fn goes_in_order<'g>(
     graph: &'g Graph,
     slots: u32,
@@ -31,7 +32,7 @@ pub(super) fn goes_in_order<'g>(
     let next_oldest = (oldest.value() + goes.extend(oldest.width())).named("next_oldest");
     oldest.next(start.select(oldest.same(0), next_oldest));
 
-    // An arrival's age is counted first, and marked a cycle later.
+    // The age of an arrival is computed first, and marked one cycle later.
     let age = graph.data_register("arrived_age", slot.width());
     age.next(slot - next_oldest);
     let marked = (*came | age.one_hot().gate(answered)).named("marked");

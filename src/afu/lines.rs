@@ -5,25 +5,25 @@ use crate::hdl::{BuildErrors, Graph, Ports, Signal, block_memory};
 
 use super::Spec;
 
-/// From an address to its line, where nothing holds the line back.
+/// Cycles from an address to its line, if nothing holds the line back.
 pub(super) const CYCLES_TO_WORD: u32 = 2;
 /// Words and bits of a word that one primitive holds.
 const PRIMITIVE_DEPTH: u32 = 512;
 const PRIMITIVE_WIDTH: u32 = 36;
 
-/// What a memory of lines is asked.
+/// The inputs of a memory of lines.
 pub(super) struct Access<'g> {
     pub(super) write: Signal<'g>,
     pub(super) write_index: Signal<'g>,
     pub(super) line: Signal<'g>,
-    /// Whether a line is read.
+    /// True if a line is read.
     pub(super) read: Signal<'g>,
     pub(super) read_index: Signal<'g>,
-    /// Whether the line that was read before goes on to the output.
+    /// True if the line that was read before advances to the output.
     pub(super) advance: Signal<'g>,
 }
 
-/// A memory of `depth` lines under that name; gives the line. Its instances are one, or as many as primitives hold it,
+/// A memory of `depth` lines with this name; returns the line. It is one instance, or as many as the primitives need,
 /// each named after the first of its bits.
 pub(super) fn line_memory<'g>(
     graph: &'g Graph,

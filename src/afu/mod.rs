@@ -1,7 +1,7 @@
 //! The accelerator: record layout, processing units, the controller around them, and the top over the line port.
 //!
-//! Data flows one way: collector → feeder → slots (one SCPU each) → packer → dispatcher. Control watches. Where only
-//! contacts come back, sieve and backlog stand before the packer.
+//! Data flows one way: collector → feeder → slots (one SCPU each) → packer → dispatcher. Control watches. If only
+//! contacts come back, a sieve and a backlog precede the packer.
 
 mod awaited;
 mod backlog;

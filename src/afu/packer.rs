@@ -46,8 +46,8 @@ fn of_all(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     graph.finish()
 }
 
-/// Contacts of a cycle in order of pairs, each a record with its number, a cycle after how many they are; `all_out`
-/// when no more will come.
+/// Contacts of a cycle in the order of pairs. Each is a record with its number, which arrives one cycle after the
+/// number of contacts. `all_out` is set when no more will arrive.
 fn of_hits(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new("contact_afu_packer");
     graph.about("packs contacts into destination lines");
@@ -61,7 +61,7 @@ fn of_hits(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
         .collect();
     let all_out = graph.input("all_out", 1);
     if layout.contacts_per_line() == 1 {
-        // A record is a line: there is nothing to gather.
+        // A record fills a line, so nothing is gathered.
         let comes = (!start & group).registered("line_comes");
         let line_valid = (!start & comes).registered("line_valid");
         graph.output("line_valid", line_valid);
@@ -73,9 +73,9 @@ fn of_hits(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     graph.finish()
 }
 
-/// Packs the first `group` of `records` (as wide as in a line), which come a cycle after their number, behind those
-/// before them, as the outputs `line_valid`, `line` and `done`. At most as many as share a line come in one cycle. Once
-/// `all_out`, the line in hand goes out.
+/// Packs the first `group` of `records` (as wide as in a line) after those before them, and gives the outputs
+/// `line_valid`, `line` and `done`. The records arrive one cycle after their number, at most as many in a cycle as
+/// share a line. After `all_out`, the line in hand leaves.
 fn fill<'g>(
     graph: &'g Graph,
     spec: &Spec,
@@ -88,12 +88,12 @@ fn fill<'g>(
     let (lanes, record_bits, per_line) = (records.len() as u32, layout.contact_bits(), layout.contacts_per_line());
     let place_bits = per_line.ilog2().max(1);
 
-    // Where a group goes is decided before its records come.
+    // The place of a group is decided before its records arrive.
     let place = graph.register("place", place_bits, 0);
     let sum_bits = place_bits.max(group.width()) + 1;
     let next_place = (place.extend(sum_bits) + group.extend(sum_bits)).named("next_place");
     let fills = next_place.at_least(next_place.same(u128::from(per_line))).named("fills");
-    // After the last record the line in hand goes out as it is, its unused part zero.
+    // After the last record, the line in hand leaves as it is, with zeros in its unused part.
     let flushes = (all_out & place.any() & !group.any()).named("flushes");
     let wrapped = fills.select(next_place.minus(u128::from(per_line)), next_place).named("wrapped_place");
     place.next((start | flushes).select(place.same(0), wrapped.low(place_bits)));

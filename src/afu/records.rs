@@ -1,4 +1,4 @@
-//! The records of an AFU as a table for people: what lies where in a line, computed from the layout.
+//! The records of an AFU as a table for people: the content of each word, computed from the layout.
 
 use std::fmt::Write as _;
 
@@ -78,7 +78,7 @@ impl Afu {
         out
     }
 
-    /// What the word `flags` can be.
+    /// The possible values of the word `flags`.
     fn flags(&self) -> String {
         let mut out = "\nOf the word `flags`, bit 0 is set for a contact, bits 2:1 say which way the pair went, bit 3 is set \
                        for an invalid pair, and bit 4 for one that the host must decide. The others are zero. It is one \

@@ -1,4 +1,4 @@
-//! From the slots' results to the dispatcher: what keeps them, numbers them and packs them into lines.
+//! From the slots' results to the dispatcher: the modules that keep them, number them and pack them into lines.
 
 use std::sync::Arc;
 
@@ -8,30 +8,30 @@ use crate::hdl::{BuildErrors, Graph, Instantiated, Module, Signal};
 use super::feeder::room_to_enter;
 use super::{Spec, backlog, feeder, packer, sieve};
 
-/// Half of the dispatcher's lines are kept for those on their way to it when it says stop, where only contacts come
-/// back: up to six.
+/// If only contacts come back, half of the dispatcher's lines are reserved for lines that are in flight when it stops
+/// the packer. There are up to six.
 const LEAST_LINES_OF_HITS: u32 = 16;
 
-/// How much there is room for.
+/// The room for results.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Room {
-    /// Results, from a pair's entrance on: in the dispatcher's lines, or in the backlog.
+    /// Results that fit, counted from the entry of their pair: in the dispatcher's lines, or in the backlog.
     pub(super) results: u32,
-    /// Lines that the dispatcher keeps.
+    /// Lines that the dispatcher holds.
     pub(super) lines: u32,
 }
 
 impl Room {
-    /// Enough for every pair on its way through SCPUs of this latency.
+    /// Enough room for every pair in SCPUs of this latency.
     pub(super) fn of(spec: &Spec, slot_latency: u32) -> Self {
         let layout = spec.layout();
-        // Results that are in the SCPUs or wait for their write request, and some more to ride out a stall of the link.
+        // Results that are in the SCPUs or wait for their write request, and some more to bridge a stall of the link.
         let in_flight = (feeder::CYCLES_TO_ISSUE + slot_latency + spec.dispatch_cycles) * spec.lanes();
         let least_lines = spec.dispatch_cycles.next_power_of_two();
         match spec.config.results {
             Results::All => {
                 let lines = in_flight.div_ceil(layout.contacts_per_line()) + spec.dispatch_cycles / 2;
-                // A line that waits for more must not keep them out.
+                // A line that waits for more records must not block them.
                 let least = (room_to_enter(spec) + layout.contacts_per_line()).div_ceil(layout.contacts_per_line());
                 let lines = lines.max(least).next_power_of_two().max(least_lines);
                 Self { results: lines * layout.contacts_per_line(), lines }
@@ -50,13 +50,13 @@ pub(super) struct Parts {
     before: Option<[Arc<Module>; 2]>,
 }
 
-/// Their instances, as far as others hear of them.
+/// Their instances, as far as other parts use them.
 pub(super) struct Packed<'g> {
-    /// Gives lines, and says when the last has gone.
+    /// Outputs lines, and signals when the last has left.
     pub(super) packer: Instantiated<'g>,
-    /// Has the counts of the status.
+    /// Outputs the counts of the status.
     pub(super) status: Instantiated<'g>,
-    /// Places that are free again, where only contacts come back.
+    /// Places that are free again, if only contacts come back.
     pub(super) places_freed: Option<Signal<'g>>,
 }
 
@@ -69,8 +69,8 @@ impl Parts {
         Ok(Self { packer: packer::packer(spec)?, before })
     }
 
-    /// The instances. `lanes` has the slots' outputs by name, which come a cycle after their number, `group`; `accepts`
-    /// is high while the dispatcher has room for more.
+    /// The instances. `lanes` has the slots' outputs by name, which arrive one cycle after their number, `group`.
+    /// `accepts` is high while the dispatcher has room.
     pub(super) fn instances<'g>(
         &self,
         graph: &'g Graph,

@@ -1,10 +1,10 @@
-//! Turns at an interval above 1: the pairs of an SCPU are a multiple of the interval apart, however long the feeder
-//! waited.
+//! Turns at an interval above 1. The pairs of an SCPU are always a multiple of the interval apart, even after the
+//! feeder waited.
 //!
-//! A phase counter runs freely through the interval. Where a line has L pairs, SCPUs 0 to L − 1 take theirs in phase 0
-//! alone, the next L in phase 1, and so on round: a group stays within such a block. With N SCPUs an interval of II
-//! cycles takes N pairs; and where N is above L·II, there are as many SCPUs as the largest multiple of L·II that is not
-//! above N, since more than one line per cycle never comes ([`Spec::scpus_in_turn`]).
+//! A phase counter runs freely through the interval. If a line has L pairs, SCPUs 0 to L − 1 take theirs in phase 0
+//! only, the next L in phase 1, and so on. A group stays within such a block. With N SCPUs, an interval of II cycles
+//! takes N pairs. If N is above L·II, the number of SCPUs is the largest multiple of L·II that is not above N, because
+//! at most one line arrives per cycle ([`Spec::scpus_in_turn`]).
 
 use crate::hdl::{Graph, Register, Signal};
 
@@ -56,15 +56,15 @@ impl<'g> Rounds<'g> {
         }
     }
 
-    /// Takes the next turn's phase along: `wraps` when turns restart with this group, `ends_block` when its block
-    /// ends.
+    /// Advances to the phase of the next turn. `wraps` is set when turns restart with this group, `ends_block` when its
+    /// block ends.
     pub fn advance(&self, start: Signal<'g>, ends_block: Signal<'g>, wraps: Signal<'g>) {
         let moved = ends_block.named("ends_block").select(following(*self.turn_phase, self.interval), *self.turn_phase);
         let first = self.graph.constant(moved.width(), 0);
         self.turn_phase.next((start | wraps).select(first, moved));
     }
 
-    /// The turn's place in its block, if a block is more than one.
+    /// The place of the turn in its block; `None` if a block is a single turn.
     fn within(&self) -> Option<Signal<'g>> {
         (self.lanes > 1).then(|| self.turn.low(self.lanes.ilog2()))
     }

@@ -1,4 +1,4 @@
-//! A Sphere Collision Processing Unit: raw words in, a contact record out, a pair every cycle or every few.
+//! A Sphere Collision Processing Unit: raw words in, a contact record out, one pair every cycle or every few cycles.
 
 use std::sync::Arc;
 
@@ -7,8 +7,8 @@ use crate::query::{ContactRecord, FLAGS, Fields, Flow, Rule};
 
 use super::Spec;
 
-/// Builds the module `scpu` around a kernel: detection of invalid pairs on the raw words, flags, record packing.
-/// Its latency is the kernel's.
+/// Builds the module `scpu` around a kernel, with detection of invalid pairs on the raw words, flags, and record
+/// packing. Its latency is the kernel's.
 pub(super) fn scpu(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new("scpu");
     let latency = kernel.latency;
@@ -28,8 +28,8 @@ pub(super) fn scpu(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>, Bui
     let words: Vec<Signal<'_>> =
         inputs().zip(0..).map(|(input, index)| pair.slice(bits * index, bits).named(input.name)).collect();
 
-    // A NaN, an infinity or a negative radius (a negative zero is a radius) makes a pair invalid. A register between
-    // what is seen in a word and what follows for the pair: the kernel asks for that a cycle later.
+    // A NaN, an infinity or a negative radius makes a pair invalid (−0 is valid). A register separates the test of the
+    // words from its effect on the pair, because the kernel uses the result one cycle later.
     let is_late = take.is_none();
     let mut invalid = graph.constant(1, 0);
     for (word, input) in words.iter().zip(inputs()) {

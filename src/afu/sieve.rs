@@ -7,7 +7,7 @@ use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
 use super::{COUNT_BITS, Spec, status};
 
-/// A contact on its way to the lanes before it.
+/// A contact with the number of lanes that it still has to move.
 #[derive(Clone, Copy)]
 struct Lane<'g> {
     valid: Signal<'g>,
@@ -29,7 +29,7 @@ pub(super) fn sieve(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
 
     let start = graph.input("start", 1);
     let count = graph.input("count", COUNT_BITS);
-    // It comes one cycle before the results that it counts.
+    // It arrives one cycle before the results that it counts.
     let group = graph.input("group", group_bits).registered("group_here");
     let mut records = Vec::new();
     let mut contacts = Vec::new();
@@ -43,7 +43,7 @@ pub(super) fn sieve(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     }
     let (emerged, all_seen) = status::emerged(&graph, start, group, count);
 
-    // Each contact moves up by the number of lanes before it without one.
+    // Each contact moves by the number of lanes before it without a contact.
     let steps = lanes.ilog2();
     let distance_bits = steps.max(1);
     let mut distance = graph.constant(distance_bits, 0);
@@ -57,7 +57,7 @@ pub(super) fn sieve(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
         distance = (distance + (!contacts[index]).extend(distance_bits)).named(&format!("gaps_to_{lane}"));
         hits = (hits + contacts[index].extend(group_bits)).named(&format!("hits_to_{lane}"));
     }
-    // The lowest bit of all distances first: then no contact moves onto another.
+    // The lowest bit of all distances comes first, so that no contact moves onto another.
     for step in 0..steps {
         row = (0..row.len()).map(|lane| moved(&row, lane, step)).collect();
     }
@@ -83,8 +83,8 @@ pub(super) fn sieve(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     graph.finish()
 }
 
-/// The content of a lane after a step of the compaction: the contact from `2^step` lanes on if it moves that far, else
-/// the lane's own contact if it stays.
+/// The content of a lane after a step of the compaction: the contact that is `2^step` lanes further if it moves that
+/// far, otherwise the lane's own contact if it stays.
 fn moved<'g>(row: &[Lane<'g>], lane: usize, step: u32) -> Lane<'g> {
     let own = row[lane];
     let stays = own.valid & !own.distance.bit(step);

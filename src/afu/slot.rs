@@ -29,8 +29,9 @@ pub(super) fn slot(spec: &Spec, scpu: &Arc<Module>) -> Result<Arc<Module>, Build
     let out_turn = graph.input("out_turn", SCPU_BITS);
 
     // Lane j of a group that begins with SCPU `turn` belongs to SCPU (turn + j) mod N. What an SCPU takes outside its
-    // turn, nobody reads. Size and turn come a cycle before the pairs, so that what chooses among these is registered.
-    // No lane is N or above: said of the parameter, so that synthesis leaves out the lanes that few SCPUs never use.
+    // turn is not used. Size and turn arrive one cycle before the pairs, so that the selection among these is
+    // registered. No lane is N or above, and the parameter says so, so that synthesis leaves out the lanes that few
+    // SCPUs never use.
     let in_lane = lane(index, in_turn, scpus).named("in_lane");
     let mut chosen = pairs.low(layout.pair_bits());
     for number in 1..lanes {
@@ -39,7 +40,7 @@ pub(super) fn slot(spec: &Spec, scpu: &Arc<Module>) -> Result<Arc<Module>, Build
         chosen = here.select(pairs.slice(number * layout.pair_bits(), layout.pair_bits()), chosen);
     }
     let unit = if spec.config.interval > 1 {
-        // The pair stays until the next one; the SCPU gets its valid bit one cycle ahead.
+        // The pair stays until the next one. The SCPU gets its valid bit one cycle ahead.
         let in_group = graph.input("in_group", group_bits);
         let width = SCPU_BITS.max(group_bits);
         let takes = in_lane.extend(width).less_than(in_group.extend(width)).registered("takes");

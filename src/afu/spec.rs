@@ -1,4 +1,4 @@
-//! What an accelerator is generated from: the configuration, and what only proofs and integrators change.
+//! The specification of an accelerator: the configuration, and options that only proofs and integrators change.
 
 use crate::config::{Config, INTERVALS, Multipliers};
 use crate::count::counted;
@@ -8,46 +8,46 @@ use crate::hdl::{DelayModel, Reset};
 use super::EPOCH_BITS;
 use crate::record::{COUNT_BITS, LINE_BITS, Layout};
 
-/// Everything that decides the generated Verilog.
+/// Everything that affects the generated Verilog.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spec {
-    /// What the user asked for.
+    /// The user's configuration.
     pub config: Config,
     /// How registers are reset.
     pub reset: Reset,
-    /// Bits of a line: 512; less for proofs.
+    /// Bits of a line: 512, or fewer for proofs.
     pub line_bits: u32,
-    /// Bits of a record's word: those of the configuration's records; less for proofs, whose SCPUs are not the
-    /// kernel's.
+    /// Bits of a record's word: as in the configuration's records, or fewer for proofs, whose SCPUs do not contain the
+    /// kernel.
     pub word_bits: u32,
-    /// Reads, and writes, outstanding at most: 64; less for proofs.
+    /// The most outstanding reads, and also writes: 64, or fewer for proofs.
     pub max_outstanding: u32,
-    /// Cycles that results may wait for their write requests before pairs wait for room: 16; less for proofs.
+    /// Cycles that results may wait for their write requests before pairs wait for room: 16, or fewer for proofs.
     pub dispatch_cycles: u32,
-    /// How long the target takes for each operation.
+    /// The delay of each operation on the target.
     pub delays: DelayModel,
-    /// The FPGA family's name, if the Verilog is for one alone.
+    /// The name of the FPGA family; `None` if the Verilog is for every family.
     pub target: Option<&'static str>,
-    /// Which memories the target has.
+    /// The kinds of memory that the target has.
     pub memories: Memories,
 }
 
 /// Why a specification was refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SpecError {
-    /// The configuration.
+    /// The configuration is invalid.
     #[error(transparent)]
     Config(#[from] crate::config::Error),
-    /// A line that holds no record.
+    /// A line would hold no record.
     #[error("line of {0} bits: expected a power of two that holds a pair and a contact")]
     Line(u32),
-    /// Words that the kernel does not have.
+    /// The kernel does not have words of this size.
     #[error("words of {0} bits: expected the records' {1}; only an SCPU of your own may have 1 to 32")]
     Word(u32, u32),
-    /// No room beyond what a pipeline holds, or more than memory serves.
+    /// There is no room beyond the content of a pipeline, or more than memories can hold.
     #[error("{0} cycles in dispatch: expected 1 to 1024")]
     Dispatch(u32),
-    /// A number of requests that the tags cannot carry.
+    /// Tags cannot represent this number of requests.
     #[error("{0} outstanding requests: expected a power of two from 2 to 64")]
     Outstanding(u32),
 }
@@ -70,7 +70,7 @@ impl From<Config> for Spec {
 }
 
 impl Spec {
-    /// How long the target takes, with multiplier blocks spared where the configuration says so.
+    /// The delay model, without multiplier blocks if the configuration says so.
     pub fn model(&self) -> DelayModel {
         self.delays.clone().with_spared_multipliers(self.config.multipliers == Multipliers::Spare)
     }
@@ -80,7 +80,7 @@ impl Spec {
         Layout::of(self.line_bits, &self.config).with_words_of(self.word_bits)
     }
 
-    /// Bits of a tag: the job's epoch, and a slot.
+    /// Bits of a tag: the job's epoch and a slot.
     pub(crate) fn tag_bits(&self) -> u32 {
         EPOCH_BITS + self.max_outstanding.ilog2()
     }
@@ -90,8 +90,8 @@ impl Spec {
         self.layout().pairs_per_line()
     }
 
-    /// The SCPUs that turns go round at an interval: all, or as many as take a whole number of full lines per cycle.
-    /// The others are not built.
+    /// The number of SCPUs that take turns at an interval: all, or as many as take a whole number of full lines per
+    /// cycle. The others are not built.
     pub fn scpus_in_turn(&self, interval: u32) -> u32 {
         let whole = self.lanes() * interval;
         match self.config.scpus {
@@ -100,14 +100,14 @@ impl Spec {
         }
     }
 
-    /// The SCPUs that take a full line per cycle, of which more than these must be a multiple; `None` if any number is
-    /// used.
+    /// The number of SCPUs that takes a full line per cycle. A larger number must be a multiple of it. `None` if any
+    /// number is used.
     pub fn full_rate(&self) -> Option<u32> {
         let interval = self.config.interval;
         (interval > 1).then(|| self.lanes() * interval)
     }
 
-    /// What to tell the user about SCPUs that are not built; `None` if all are.
+    /// The warning about SCPUs that are not built; `None` if all are.
     pub fn unused_scpus(&self) -> Option<String> {
         let Config { scpus, interval, .. } = self.config;
         let built = self.scpus_in_turn(interval);
@@ -119,15 +119,15 @@ impl Spec {
         ))
     }
 
-    /// The longest interval at which the SCPUs take `pairs_a_cycle`, or what a line has of them if that is less; 1
-    /// where they do not at any.
+    /// The longest interval at which the SCPUs take `pairs_a_cycle`, or the pairs of a line if that is less. 1 if they
+    /// do not at any interval.
     pub fn longest_interval(&self, pairs_a_cycle: f64) -> u32 {
         let wanted = pairs_a_cycle.min(f64::from(self.lanes())) * (1.0 - 1e-9);
         let takes = |interval: u32| f64::from(self.scpus_in_turn(interval)) / f64::from(interval);
         INTERVALS.rev().find(|interval| takes(*interval) >= wanted).unwrap_or(1)
     }
 
-    /// The options of `afu rtl` that give this configuration, without the interval that it takes by itself.
+    /// The options of `afu rtl` that give this configuration, without an interval that is the default.
     pub(super) fn flags(&self) -> Vec<String> {
         let mut flags = self.config.flags();
         if self.config.interval == self.longest_interval(f64::INFINITY)
@@ -146,17 +146,17 @@ impl Spec {
         flags
     }
 
-    /// Bits that hold a number of pairs from none to all lanes.
+    /// Bits that hold a number of pairs from 0 to the number of lanes.
     pub(super) fn group_bits(&self) -> u32 {
         self.lanes().ilog2() + 1
     }
 
-    /// Where only contacts come back: those that leave for their line in one cycle, at most.
+    /// The most contacts that leave for their line in one cycle, if only contacts come back.
     pub(super) fn leaving(&self) -> u32 {
         self.lanes().min(self.layout().contacts_per_line())
     }
 
-    /// Bits that hold a number of contacts from none to [`Spec::leaving`].
+    /// Bits that hold a number of contacts from 0 to [`Spec::leaving`].
     pub(super) fn leaving_bits(&self) -> u32 {
         self.leaving().ilog2() + 1
     }
@@ -167,7 +167,7 @@ impl Spec {
     }
 
     /// # Errors
-    /// The first value out of range.
+    /// Fails with the first value that is out of range.
     pub fn check(&self) -> Result<(), SpecError> {
         self.config.check()?;
         if !(1..=32).contains(&self.word_bits) {

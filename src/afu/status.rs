@@ -1,10 +1,11 @@
-//! What the status says of the pairs that came out: counted as they come, in order of pairs.
+//! Counts the pairs that leave, in their order, for the status.
 
 use crate::hdl::{Graph, Signal};
 
 use super::COUNT_BITS;
 
-/// How many pairs came out before this cycle's `group`, since `start`, and whether all `count` had come a cycle ago.
+/// The number of pairs that left before this cycle's `group` since `start`, and a bit that is set if all `count` had
+/// left one cycle ago.
 pub(super) fn emerged<'g>(
     graph: &'g Graph,
     start: Signal<'g>,
@@ -17,7 +18,7 @@ pub(super) fn emerged<'g>(
 }
 
 /// Counts contacts and invalid pairs, as the outputs `contacts`, `invalid` and `first_invalid`. `emerged` is the number
-/// of the pair in lane 0; the two lists have a bit a lane.
+/// of the pair in lane 0. The two lists have one bit per lane.
 pub(super) fn count<'g>(
     graph: &'g Graph,
     start: Signal<'g>,
@@ -45,7 +46,7 @@ pub(super) fn count<'g>(
     graph.output("first_invalid", first_invalid.value());
 }
 
-/// How many of the bits are set, as a pair count.
+/// The number of set bits, as a pair count.
 fn ones<'g>(graph: &'g Graph, bits: &[Signal<'g>]) -> Signal<'g> {
     let width = bits.len().ilog2() + 1;
     let sum = bits.iter().fold(graph.constant(width, 0), |sum, bit| sum + bit.extend(width));

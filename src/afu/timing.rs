@@ -1,10 +1,10 @@
-//! How many cycles each part of an AFU takes, from the numbers its hardware is generated with.
+//! The number of cycles that each part of an AFU takes, from the constants with which its hardware is generated.
 
 use crate::record::Capability;
 
 use super::{Afu, collector, control, dispatcher, feeder, packer, slot, top};
 
-/// Cycles on the way of a line that meets nothing in its way, part by part, without those that the link takes.
+/// The cycles that a line takes in each part without waiting. The link's cycles are not included.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Timing {
     /// Control: from `start` to the parts running.
@@ -21,25 +21,25 @@ pub struct Timing {
     pub gather: u32,
     /// Packer: to a full line.
     pub pack: u32,
-    /// Packer: more for a last line that is not full.
+    /// Packer: additional cycles for a last line that is not full.
     pub flush: u32,
-    /// Packer: to knowing that a job has no pairs.
+    /// Packer: until it is known that a job has no pairs.
     pub nothing: u32,
     /// Dispatcher: to its write request.
     pub dispatch: u32,
-    /// Dispatcher: from the last acknowledgement to its being counted.
+    /// Dispatcher: from the last acknowledgement until it is counted.
     pub acknowledge: u32,
     /// Control: to `done`.
     pub done: u32,
 }
 
 impl Afu {
-    /// What the AFU says of itself: its capability word, taken apart by [`Capability`].
+    /// The AFU's capability word, which [`Capability`] decodes.
     pub fn capability(&self) -> u64 {
         Capability::new(&self.spec().config, self.kernel().latency).bits()
     }
 
-    /// What each part takes.
+    /// The cycles of each part.
     pub fn timing(&self) -> Timing {
         Timing {
             start: control::CYCLES_TO_RUN,

@@ -12,7 +12,7 @@ use super::results::{Parts, Room};
 use super::{MAX_SCPUS, SCPU_BITS, Spec};
 use super::{collector, dispatcher, feeder, slot};
 
-/// Register ranks round the slots: results are registered after they were or-ed together.
+/// Register ranks around the slots: results are registered after they were or-ed together.
 pub(super) const RANKS_AFTER: u32 = 1;
 
 /// The top over the plain line port, around an SCPU.
@@ -34,7 +34,7 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, B
     graph.about("collision-detection accelerator: a controller and SCPUS sphere collision processing units");
     graph.about(format!("an SCPU's latency is {} cycles", unit.latency));
     let scpus = graph.parameter("SCPUS", spec.config.scpus, 1..=MAX_SCPUS, SCPU_BITS);
-    // SCPUs that never have a turn are left out.
+    // SCPUs that never have a turn are not built.
     let in_turn = match spec.full_rate() {
         Some(multiple) if multiple < MAX_SCPUS => graph.rounded_down("SCPUS_IN_TURN", scpus, multiple),
         _ => scpus,
@@ -43,7 +43,7 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, B
     let reads = ReadInputs::of(spec).map(|port| port.input(&graph));
     let writes = WriteInputs::of(spec).map(|port| port.input(&graph));
 
-    // What flows back: control hears of all the others.
+    // Signals that flow back. Control receives signals from all other parts.
     let wire = |name: &str, width: u32| graph.wire(name, width);
     let (read_failed, write_failed) = (wire("read_failed", 1), wire("write_failed", 1));
     let (response, unexpected, link_idle) = (wire("response", 1), wire("unexpected", 1), wire("link_idle", 1));
@@ -108,8 +108,8 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, B
     waits_for_input.drive(feeder.output("waits_for_input"));
     waits_for_output.drive(feeder.output("waits_for_output"));
 
-    // A group's size and first SCPU travel beside the SCPUs, so that its results are known when they come out. They
-    // come a cycle before its pairs, and are there again a cycle before its results.
+    // A group's size and first SCPU are delayed beside the SCPUs, so that the results are identified when they leave.
+    // They arrive one cycle before the pairs, and leave one cycle before the results.
     let group = feeder.output("issue_group");
     let turn = feeder.output("issue_turn");
     let (group_out, turn_out) = alongside(&graph, group, turn, slot_latency);
@@ -124,8 +124,8 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, B
         slot_inputs.push(("in_group", group));
     }
     let slots = graph.array("slots", &slot, in_turn, &slot_inputs);
-    // The slots' answers come a cycle after `group_out`, and are registered once more after the or: so it is known a
-    // cycle before they are there how many there will be.
+    // The slots' results arrive one cycle after `group_out`, and are registered once more after the or. So their number
+    // is known one cycle ahead.
     let group_done = group_out.registered("group_done");
     let kinds = ["record", "contact", "invalid"].into_iter().filter(|kind| has_records || *kind != "record");
     let lane_outputs: Vec<(String, Signal<'_>)> = (0..lanes)
@@ -177,8 +177,8 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, B
     graph.finish()
 }
 
-/// Group size and turn as they were `cycles` ago. What a delay line holds is not reset, so group sizes count only once
-/// the line has been filled since reset.
+/// Group size and turn, `cycles` ago. The content of a delay line is not reset, so group sizes count only once the line
+/// has been filled since reset.
 fn alongside<'g>(graph: &'g Graph, group: Signal<'g>, turn: Signal<'g>, cycles: u32) -> (Signal<'g>, Signal<'g>) {
     let age_bits = cycles.ilog2() + 1;
     let age = graph.register("cycles_since_reset", age_bits, 0);
@@ -189,7 +189,7 @@ fn alongside<'g>(graph: &'g Graph, group: Signal<'g>, turn: Signal<'g>, cycles: 
     (group_out, travelled.low(turn.width()).named("turn_out"))
 }
 
-/// What the host may rely on: see [`Capability`]. The number of SCPUs is the parameter's.
+/// Properties that the host may rely on: see [`Capability`]. The parameter gives the number of SCPUs.
 fn capability<'g>(graph: &'g Graph, spec: &Spec, scpus: Signal<'g>, latency: u32) -> Signal<'g> {
     let word = u128::from(Capability::new(&spec.config, latency).bits());
     let constant = |low: u32, width: u32| graph.constant(width, word >> low & ((1 << width) - 1));

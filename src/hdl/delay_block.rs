@@ -1,4 +1,4 @@
-//! A long delay as a block memory with registers of its own: no look-up table and no flip-flop waits.
+//! A long delay as a block memory with its own registers, without look-up tables or flip-flops.
 
 use std::ops::RangeInclusive;
 use std::sync::Arc;
@@ -9,13 +9,14 @@ use super::error::BuildErrors;
 use super::graph::Graph;
 use super::module::{Module, Primitive};
 
-/// The cycles of a delay in a block: a shorter one fits one primitive's depth in look-up tables, a longer one no block.
+/// The cycles of a delay in a block. A shorter one fits in the depth of one primitive of look-up tables, and a longer
+/// one does not fit in a block.
 const CYCLES: RangeInclusive<u32> = 18..=514;
-/// The widths of a delay in a block: a narrower one wastes it, a wider one does not fit.
+/// The widths of a delay in a block. A narrower one wastes it, and a wider one does not fit.
 const WIDTH: RangeInclusive<u32> = 24..=36;
 
-/// The delay as a module with an input `value` and an output `delayed`, for a target whose block memories are written
-/// as primitives and where one fits; nothing elsewhere.
+/// The delay as a module with an input `value` and an output `delayed`. `None` if the target's block memories are not
+/// written as primitives, or if the delay does not fit in one.
 ///
 /// # Errors
 /// Returns the first error that the graph recorded.
@@ -29,15 +30,15 @@ pub fn delay_block(cycles: u32, width: u32, model: &DelayModel) -> Result<Option
 }
 
 fn line(cycles: u32, width: u32, primitive: Primitive) -> Result<Arc<Module>, BuildErrors> {
-    // A word is read into one register of the block and waits in another. Of that it comes late, and from afar: a
-    // register in the fabric takes it.
+    // A word is read into one register of the block and then waits in another. The block's output is late and comes
+    // from afar, so a register in the fabric takes it.
     let depth = cycles - 2;
     let graph = Graph::new(format!("delay_{cycles}x{width}{}", primitive.suffix()));
     graph.about(format!("value, {cycles} cycles ago: a block memory with registers of its own"));
     let bits = 32 - (depth - 1).leading_zeros();
     let newest = graph.register("newest", bits, 0);
     let is_last = newest.equals(graph.constant(bits, u128::from(depth - 1))).named("is_last");
-    // The oldest word stands where the next one goes.
+    // The oldest word is where the next one goes.
     let oldest = newest.plus(1).gate(!is_last).named("oldest");
     newest.next(oldest);
     let value = graph.input("value", width);

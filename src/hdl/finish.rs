@@ -1,4 +1,5 @@
-//! From a graph under construction to a module: errors together, dead logic gone, operands before users, no loops.
+//! From a graph under construction to a module: collects errors, removes dead logic, puts operands before users, and
+//! finds loops.
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -30,7 +31,7 @@ fn order(inner: &mut Inner) -> Result<Vec<NodeId>, NodeId> {
     if !live.iter().any(|id| matches!(inner.nodes[id.index()].op, Op::Delay { .. })) {
         return Ok(live);
     }
-    // Only what lives may lengthen a chain, so each step is followed by another look at what does.
+    // Only live delays may lengthen a chain, so each step is followed by another search for live nodes.
     share_delays::collapse(inner, &live);
     let live = Walk::new(inner).order()?;
     share_delays::chain(inner, &live);
@@ -51,8 +52,7 @@ fn check_connected(inner: &mut Inner) {
     }
 }
 
-/// Puts what drives a wire in its place; an unnamed driver takes the wire's name.
-/// Fails with a wire that drives itself.
+/// Replaces wires by their drivers. An unnamed driver takes the wire's name. Fails with a wire that drives itself.
 fn resolve_wires(inner: &mut Inner) -> Result<(), NodeId> {
     let mut target: Vec<NodeId> = (0..inner.nodes.len() as u32).map(NodeId).collect();
     for target in &mut target {
@@ -92,7 +92,7 @@ impl Inner {
 }
 
 /// Depth-first from the outputs. Registers, delays, memory reads and instances without a combinational path cut it:
-/// what feeds those is visited later, so that operands come first wherever a value passes through in one cycle.
+/// their inputs are visited later, so that operands come first on every combinational path.
 struct Walk<'a> {
     inner: &'a Inner,
     order: Vec<NodeId>,
@@ -124,7 +124,7 @@ impl<'a> Walk<'a> {
         Ok(self.order)
     }
 
-    /// Iterative, since a digit recurrence is deeper than a thread's stack should be trusted with.
+    /// Iterative, because a digit recurrence is too deep for a thread's stack.
     fn visit(&mut self, root: NodeId) -> Result<(), NodeId> {
         let mut stack = vec![(root, false)];
         while let Some((id, leaving)) = stack.pop() {
@@ -158,7 +158,7 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// The nodes that `id` needs in the same cycle, and those that it needs before the next one.
+/// The nodes that `id` needs in the same cycle, and the nodes that it needs before the next one.
 fn dependencies(inner: &Inner, id: NodeId) -> (Vec<NodeId>, Vec<NodeId>) {
     let node = &inner.nodes[id.index()];
     match node.op {

@@ -59,7 +59,7 @@ pub(super) fn binary<'g>(left: Signal<'g>, right: Signal<'g>, op: &Op) -> Option
     }
 }
 
-/// Looks through constants, slices and concatenations, so that a field is taken from where it comes from.
+/// Looks through constants, slices and concatenations, so that a field is taken from its origin.
 pub(super) fn slice(operand: Signal<'_>, low: u32, width: u32) -> Option<Signal<'_>> {
     if low == 0 && width == operand.width() {
         return Some(operand);
@@ -71,7 +71,7 @@ pub(super) fn slice(operand: Signal<'_>, low: u32, width: u32) -> Option<Signal<
             let shifted = if low >= 128 { 0 } else { value >> low };
             Some(graph.constant(width, shifted & ones(width)?))
         }
-        // A field that has a name is sliced by that name.
+        // A field that has a name is sliced under that name.
         Op::Slice { low: inner } if node.name.is_none() => {
             Some(Signal::new(graph, node.operands[0]).slice(inner + low, width))
         }

@@ -1,9 +1,9 @@
-//! Fan-out: a value whose bits select in many places arrives late everywhere.
+//! Fan-out: a value whose bits select in many places arrives late in all of them.
 
 use super::module::{Module, NodeId, Op};
 
-/// How many places each value chooses in, by node: bits of the choices, of the gates and of the differences or sums
-/// that it is the condition of.
+/// For each node, the number of places in which it selects: bits of the selections, gates, and differences or sums of
+/// which it is the condition.
 pub(super) fn loads(module: &Module) -> Vec<u32> {
     let mut loads = vec![0; module.nodes.len()];
     for node in &module.nodes {
@@ -17,11 +17,11 @@ pub(super) fn loads(module: &Module) -> Vec<u32> {
             loads[chooser(module, node.operands[position]).index()] += node.width;
         }
     }
-    // Its complement and its copies have the same fan-out: a register may lie on either side of them.
+    // Its complement and its copies have the same fan-out, because a register may be on either side of them.
     for id in module.ids() {
         loads[id.index()] = loads[id.index()].max(loads[chooser(module, id).index()]);
     }
-    // And the busiest bit of what they are taken from or go into.
+    // Also that of the busiest bit of the values that they are taken from or go into.
     for id in module.ids() {
         if let Op::Slice { .. } = module.node(id).op {
             let whole = module.node(id).operands[0].index();
@@ -37,7 +37,7 @@ pub(super) fn loads(module: &Module) -> Vec<u32> {
     loads
 }
 
-/// The value that drives a line to many places: itself, what it is the complement of, or the bit that it repeats.
+/// The value that drives a line to many places: itself, the value that it complements, or the bit that it repeats.
 pub(super) fn chooser(module: &Module, id: NodeId) -> NodeId {
     match module.node(id).op {
         Op::Not => chooser(module, module.node(id).operands[0]),
@@ -50,8 +50,7 @@ mod tests {
     use crate::hdl::module::Op;
     use crate::hdl::{DelayModel, Graph};
 
-    /// A comparison of a line that chooses takes as long whichever side of the inverter it reads, alone or beside
-    /// others.
+    /// A comparison of a line that selects takes the same time on either side of the inverter, alone or beside others.
     #[test]
     fn a_complement_is_as_busy_as_its_line() {
         let model = DelayModel::ecp5();

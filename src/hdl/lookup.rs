@@ -6,8 +6,8 @@ use super::module::Op;
 use super::signal::Signal;
 
 impl Signal<'_> {
-    /// The word of a table that this value is the index of; each word has `width` bits. A case statement, and logic: a
-    /// memory would have to be read a cycle ahead. Up to 12 bits of index.
+    /// The word of a table at the index that this value gives; each word has `width` bits. This is a case statement and
+    /// logic, because a memory would have to be read one cycle ahead. At most 12 bits of index.
     #[track_caller]
     pub(crate) fn lookup(self, table: &[u128], width: u32) -> Self {
         let place = Location::caller();

@@ -1,4 +1,4 @@
-//! Delays of one value share their registers: those of 5 and 3 cycles are a chain of 3 and 2.
+//! Delays of one value share their registers: delays of 5 and 3 cycles become a chain of 3 and 2.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -7,7 +7,7 @@ use super::module::{
     DISTRIBUTED_DEPTH, LONGEST_DISTRIBUTED_DELAY, LONGEST_REGISTER_DELAY, Node, NodeId, Op, is_memory_delay,
 };
 
-/// Makes every live delay one of a value that is not itself delayed, so that what merely led to it can go.
+/// Turns every live delay into one of a value that is not itself delayed, so that intermediate delays can be removed.
 pub(super) fn collapse(inner: &mut Inner, live: &[NodeId]) {
     let delayed = |nodes: &[Node], id: NodeId| match nodes[id.index()].op {
         Op::Delay { cycles } => Some((nodes[id.index()].operands[0], cycles)),
@@ -22,7 +22,7 @@ pub(super) fn collapse(inner: &mut Inner, live: &[NodeId]) {
             steps += 1;
         }
         if steps == live.len() {
-            // Behind a circle of delays, which has no beginning: a value that keeps going round. It stays as it is.
+            // After a loop of delays, which has no beginning: a value that circulates. It does not change.
             continue;
         }
         let node = &mut inner.nodes[id.index()];
@@ -31,7 +31,7 @@ pub(super) fn collapse(inner: &mut Inner, live: &[NodeId]) {
     }
 }
 
-/// Makes the live delays of each value, collapsed before, one chain.
+/// Turns the live delays of each value, collapsed before, into one chain.
 pub(super) fn chain(inner: &mut Inner, live: &[NodeId]) {
     let mut of: BTreeMap<NodeId, BTreeMap<u32, NodeId>> = BTreeMap::new();
     let mut replaced: HashMap<NodeId, NodeId> = HashMap::new();
@@ -79,9 +79,9 @@ pub(super) fn chain(inner: &mut Inner, live: &[NodeId]) {
     }
 }
 
-/// How much of a delay stands apart before the rest of it: a few cycles are as many registers, each with a name of its
-/// own; many are several memories, each of one primitive's depth. What `is_late` passes a register before it goes into
-/// a memory: a register stands beside the logic that it takes its value from, and the way into a memory is a long one.
+/// The length of the first part of a delay. A short delay is a row of named registers, and a long one is several
+/// memories, each as deep as one primitive. If `is_late`, the value passes a register before it enters a memory. A
+/// register can be close to the logic before it, but the path into a memory is long.
 fn step(cycles: u32, width: u32, is_late: bool) -> Option<u32> {
     match (cycles, is_memory_delay(cycles, width)) {
         (0 | 1, _) => None,

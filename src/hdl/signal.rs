@@ -6,8 +6,8 @@ use std::panic::Location;
 use super::graph::{Graph, is_identifier};
 use super::module::{NodeId, Op};
 
-/// A handle of one node of a [`Graph`]. A poisoned handle comes from a bad operation, which is on record in the
-/// graph; operations on it give poison again, without a further error.
+/// A handle of one node of a [`Graph`]. A bad operation is recorded in the graph and returns a poisoned handle.
+/// Operations on it return poisoned handles again, without a further error.
 #[derive(Clone, Copy)]
 pub struct Signal<'g> {
     graph: &'g Graph,
@@ -62,7 +62,7 @@ impl<'g> Signal<'g> {
         node.name.unwrap_or_else(|| format!("{:?} of {} bits", node.op, node.width))
     }
 
-    /// Names the value in the generated Verilog. The first name given to a value stays; constants need none.
+    /// Names the value in the generated Verilog. The first name given to a value is kept; constants need none.
     #[track_caller]
     #[must_use]
     pub fn named(self, name: &str) -> Self {
@@ -182,7 +182,8 @@ impl<'g> Signal<'g> {
         self.binary(self.same(value), "minus", Op::Sub, None, Location::caller())
     }
 
-    /// Difference to a value as wide, or sum where `add` (1 bit) is set; modulo 2^width, on one carry chain.
+    /// The difference to a value of the same width, or the sum if `add` (1 bit) is set; modulo 2^width, on one carry
+    /// chain.
     #[track_caller]
     pub(crate) fn minus_or_plus(self, other: Self, add: Self) -> Self {
         let (what, place) = ("minus or plus", Location::caller());
@@ -204,7 +205,7 @@ impl<'g> Signal<'g> {
         self.graph.shared(Op::SubAdd, self.width(), ids, place)
     }
 
-    /// One bit: some bit is set.
+    /// One bit: any bit is set.
     #[track_caller]
     pub fn any(self) -> Self {
         match (self.width(), self.as_constant()) {
@@ -220,7 +221,7 @@ impl<'g> Signal<'g> {
         if self.width() == 1 { self } else { self.unary("all", Op::All, 1, Location::caller()) }
     }
 
-    /// One-hot decoder: of 2^width bits, the bit whose index is this value is set. Up to 7 bits wide.
+    /// One-hot decoder: of 2^width bits, the bit whose index is this value is set. At most 7 bits wide.
     #[track_caller]
     pub fn one_hot(self) -> Self {
         let width = self.width();
@@ -232,7 +233,7 @@ impl<'g> Signal<'g> {
         self.unary("one hot", Op::OneHot, 1 << width, Location::caller())
     }
 
-    /// `yes` where this bit is set, else `no`.
+    /// `yes` if this bit is set, otherwise `no`.
     #[track_caller]
     pub fn select(self, yes: Self, no: Self) -> Self {
         let place = Location::caller();
@@ -255,7 +256,7 @@ impl<'g> Signal<'g> {
         self.graph.shared(Op::Mux, yes.width(), ids, place)
     }
 
-    /// This value where `condition` (1 bit) is set, else zero.
+    /// This value if `condition` (1 bit) is set, otherwise zero.
     #[track_caller]
     pub fn gate(self, condition: Self) -> Self {
         if self.id.is_none() { self } else { self & condition.repeat(self.width()) }
@@ -305,7 +306,7 @@ impl<'g> Not for Signal<'g> {
 impl<'g> Mul for Signal<'g> {
     type Output = Signal<'g>;
 
-    /// The whole unsigned product, as wide as both operands together.
+    /// The full unsigned product, as wide as both operands together.
     #[track_caller]
     fn mul(self, other: Self) -> Self {
         let place = Location::caller();

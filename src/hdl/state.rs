@@ -1,4 +1,4 @@
-//! State: registers and memories; and instances of other modules.
+//! State: registers and memories. Also instances of other modules.
 
 use std::ops::Deref;
 use std::panic::Location;
@@ -8,7 +8,7 @@ use super::graph::{Graph, is_identifier};
 use super::module::{Instance, InstanceCount, Memory, Module, Op};
 use super::signal::Signal;
 
-/// A register under construction; reads as its present value.
+/// A register under construction. It reads as its present value.
 #[derive(Clone, Copy, Debug)]
 pub struct Register<'g>(Signal<'g>);
 
@@ -64,7 +64,7 @@ impl<'g> Register<'g> {
 }
 
 impl<'g> Signal<'g> {
-    /// A register of that name, clear after reset, which takes this value at every clock edge.
+    /// A register of this name, zero after reset, which takes this value at every clock edge.
     #[track_caller]
     pub fn registered(self, name: &str) -> Signal<'g> {
         let register = self.graph().register(name, self.width(), 0);
@@ -83,7 +83,7 @@ pub struct MemoryHandle<'g> {
 }
 
 impl<'g> MemoryHandle<'g> {
-    /// Writes `data` to `address` at the clock edges at which `enable` is set. Once a memory.
+    /// Writes `data` to `address` at the clock edges at which `enable` is set. A memory can have one write.
     #[track_caller]
     pub fn write(self, enable: Signal<'g>, address: Signal<'g>, data: Signal<'g>) {
         let place = Location::caller();
@@ -108,14 +108,14 @@ impl<'g> MemoryHandle<'g> {
         self.graph.inner.borrow_mut().memories[self.index].write = Some([ids[0], ids[1], ids[2]]);
     }
 
-    /// The word that stood at `address` before the last clock edge: a registered read. A read of the address being
-    /// written gives the old word in simulation and must not be relied on.
+    /// The word at `address` before the last clock edge: a registered read. A read of the address that is being written
+    /// returns the old word in simulation, which must not be relied on.
     #[track_caller]
     pub fn read(self, address: Signal<'g>) -> Signal<'g> {
         self.read_at(&[address], Location::caller())
     }
 
-    /// As [`MemoryHandle::read`], at the clock edges at which `enable` is set; in between it stays.
+    /// As [`MemoryHandle::read`], at the clock edges at which `enable` is set. Otherwise the word is kept.
     #[track_caller]
     pub(crate) fn read_if(self, enable: Signal<'g>, address: Signal<'g>) -> Signal<'g> {
         self.read_at(&[address, enable], Location::caller())
@@ -191,16 +191,16 @@ impl Graph {
         MemoryHandle { graph: self, index: inner.memories.len() - 1, width, address_width: address_width(depth) }
     }
 
-    /// An instance of `module`; `inputs` names each of its input ports once. Its parameters are this module's of the
-    /// same name, where there are such.
+    /// An instance of `module`. `inputs` names each of its input ports once. Its parameters are this module's of the
+    /// same name, if there are any.
     #[track_caller]
     pub fn instance<'g>(&'g self, name: &str, module: &Arc<Module>, inputs: &[(&str, Signal<'g>)]) -> Instantiated<'g> {
         self.refuse_top(name, module, Location::caller());
         self.instantiate(name, module, InstanceCount::One, inputs, Location::caller())
     }
 
-    /// As [`Graph::instance`], of a module that may have a reset of its own: for a wrapper that is synthesised, which
-    /// the evaluator does not take.
+    /// As [`Graph::instance`], for a module that may have its own reset. This is for a wrapper that is synthesised; the
+    /// evaluator refuses it.
     #[track_caller]
     pub(crate) fn instance_of_top<'g>(
         &'g self,
@@ -217,8 +217,8 @@ impl Graph {
         }
     }
 
-    /// As many instances of `module` as the [`Graph::parameter`] `count` says, sharing their inputs, their outputs
-    /// or-ed together bit by bit. An input port of the module named `index` gets each copy's number.
+    /// The number of instances of `module` that the [`Graph::parameter`] `count` gives, with shared inputs and with
+    /// outputs or-ed together bit by bit. An input port of the module named `index` gets each copy's number.
     #[track_caller]
     pub fn array<'g>(
         &'g self,
@@ -298,7 +298,7 @@ impl Graph {
     }
 }
 
-/// Bits of an address of `depth` words, at least 1.
+/// The number of bits in an address of `depth` words, at least 1.
 pub(super) fn address_width(depth: u32) -> u32 {
     depth.saturating_sub(1).checked_ilog2().map_or(1, |log| log + 1)
 }

@@ -72,8 +72,8 @@ impl Faithful {
         TABLES[function as usize][fraction_bits as usize].get_or_init(|| Self::make(function, fraction_bits))
     }
 
-    /// The function's value for a fraction, in units in the result's last place: 2^F to 2^(F+1). `odd` is 1 for the
-    /// root of 2m, else 0.
+    /// The function's value for a fraction, in units of the result's last place: 2^F to 2^(F+1). `odd` is 1 for the
+    /// root of 2m, otherwise 0.
     #[inline]
     pub fn value(&self, odd: u32, fraction: u64) -> u64 {
         self.before_cut(odd, fraction) >> GUARD_BITS

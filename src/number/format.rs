@@ -247,7 +247,7 @@ impl FromStr for Format {
     }
 }
 
-/// Splits an option letter off the end of a format's text.
+/// Removes an option letter from the end of a format's text.
 fn option<T>(text: &str, letter: char, meaning: T) -> (&str, Option<T>) {
     match text.strip_suffix(letter) {
         Some(rest) => (rest, Some(meaning)),

@@ -1,5 +1,5 @@
-//! The numbers of the kernel: `f32`, [`Soft`] (any format, exact integer arithmetic inside), [`Precise`] (the truth)
-//! and, outside this module, the wires of the netlist. Imports nothing of ours.
+//! The numbers of the kernel: `f32`, [`Soft`] (any format, with exact integer arithmetic), [`Precise`] (the truth) and,
+//! outside this module, the wires of the netlist. This module imports nothing of ours.
 
 mod faithful;
 mod format;
@@ -27,8 +27,8 @@ impl Boolean for bool {}
 /// A number that carries its own context (format, graph), so that one kernel serves software and hardware.
 ///
 /// There is no Zero and no One: a constant is made from another number. Every operation rounds once, as its format says
-/// (IEEE 754-2019, clause 4.3); only roots and reciprocals may be faithful instead. Mixing formats is a programming
-/// error in the kernel: `Soft` panics with both formats' names, a wire records an error in its graph.
+/// (IEEE 754-2019, clause 4.3). Only roots and reciprocals may be faithful instead. Mixing formats is a programming
+/// error in the kernel: `Soft` panics with the names of both formats, and a wire records an error in its graph.
 pub trait Number:
     Copy
     + Debug
@@ -48,20 +48,21 @@ pub trait Number:
 
     /// `value`, in this number's format. `value` must be representable there.
     fn constant(self, value: f64) -> Self;
-    /// √self, rounded (IEEE 754-2019, clause 5.4.1); faithful where the format says so.
+    /// √self, rounded (IEEE 754-2019, clause 5.4.1), or faithful if the format says so.
     fn sqrt(self) -> Self;
-    /// 1/self, rounded; faithful where the format says so.
+    /// 1/self, rounded, or faithful if the format says so.
     fn recip(self) -> Self;
     /// self > other; false when either is NaN.
     fn gt(self, other: Self) -> Self::Bool;
     /// self ≤ other; false when either is NaN.
     fn le(self, other: Self) -> Self::Bool;
-    /// Whether √self, rounded, is greater than `bound` ≥ 0, decided without a root: self > (bound + ½ulp(bound))², or
-    /// where rounding is toward zero self ≥ (bound + ulp(bound))², taken exactly. A faithful root may differ.
+    /// True if √self, rounded, is greater than `bound` ≥ 0. It is decided without a root: self > (bound +
+    /// ½ulp(bound))², or for rounding toward zero self ≥ (bound + ulp(bound))², computed exactly. A faithful root may
+    /// differ.
     fn root_exceeds(self, bound: Self) -> Self::Bool;
-    /// `yes` where `condition` holds, else `no`.
+    /// `yes` if `condition` holds, otherwise `no`.
     fn select(condition: Self::Bool, yes: Self, no: Self) -> Self;
-    /// This number in another format, rounded once; in its own format it stays as it is.
+    /// This number in another format, rounded once. In its own format it does not change.
     fn to(self, format: Format) -> Self;
     /// Gives the value a name in generated hardware; has no effect elsewhere.
     #[must_use]

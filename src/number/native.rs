@@ -1,7 +1,8 @@
 //! `f32` as a [`Number`]: what the machine's own binary32 arithmetic computes.
 //!
-//! Rust neither fuses nor reorders floating-point operations, so its results are IEEE 754's on every target this
-//! crate supports. Only the words of NaN differ between machines: whoever writes a record makes them canonical.
+//! Rust neither fuses nor reorders floating-point operations, so its results are those of IEEE 754 on every target that
+//! this crate supports. Only the words of NaN differ between machines, and code that writes a record makes them
+//! canonical.
 
 use super::{Format, Number};
 
@@ -38,7 +39,7 @@ impl Number for f32 {
     /// below the smallest `self`.
     #[inline(always)]
     fn root_exceeds(self, bound: Self) -> bool {
-        // Half an ulp of a number of biased exponent e is 2^(max(e, 1) − 127 − 24); an infinity swallows it.
+        // Half an ulp of a number with biased exponent e is 2^(max(e, 1) − 127 − 24). An infinity absorbs it.
         let biased = (bound.to_bits() >> 23 & 0xFF).max(1);
         let half_ulp = f64::from_bits(u64::from(biased + (1023 - 127 - 24)) << 52);
         let middle = f64::from(bound) + half_ulp;

@@ -1,4 +1,4 @@
-//! Options of an arithmetic beside its widths.
+//! Options of an arithmetic besides its widths.
 
 /// The rounding of a result that does not fit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -6,7 +6,7 @@ pub enum Rounding {
     /// To the nearest, ties to even (IEEE 754-2019, clause 4.3.1).
     #[default]
     Nearest,
-    /// Toward zero (clause 4.3.2): what does not fit is dropped, and no finite result overflows to infinity.
+    /// Toward zero (clause 4.3.2): bits that do not fit are dropped, and no finite result overflows to infinity.
     TowardZero,
 }
 
@@ -15,8 +15,8 @@ pub enum Rounding {
 pub enum Subnormals {
     /// Gradual underflow (IEEE 754-2019, clause 3.4).
     Kept,
-    /// A subnormal operand reads as zero of its sign; a result that would round (with an unbounded exponent) to
-    /// less than the smallest normal number is zero of its sign.
+    /// A subnormal operand reads as zero of its sign. A result that would round (with an unbounded exponent) to less
+    /// than the smallest normal number is zero of its sign.
     Flushed,
 }
 

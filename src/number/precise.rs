@@ -1,4 +1,4 @@
-//! `Precise`: a fixed-point number so wide that its own rounding decides nothing that binary32 pairs ask.
+//! `Precise`: a fixed-point number so wide that its rounding never affects the result for binary32 pairs.
 
 use super::{Format, Number};
 use num_bigint::{BigInt, Sign};
@@ -6,9 +6,9 @@ use std::cmp::Ordering;
 use std::fmt;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
-/// Bits behind the point.
+/// Bits after the point.
 const POINT: u32 = 1472;
-/// 64-bit digits: 320 bits stand before the point, the sign among them.
+/// 64-bit digits: 320 bits are before the point, including the sign.
 const DIGITS: usize = 28;
 /// Results are rounded to multiples of 2^−1100 before they are rounded to a word.
 const SNAP: u32 = 1100;
@@ -30,7 +30,7 @@ impl Precise {
     /// Zero.
     pub(crate) const ZERO: Self = Self([0; DIGITS]);
 
-    /// The same value as `value`, where that is finite and below 2^256 in magnitude; zero elsewhere.
+    /// The same value as `value` if that is finite and below 2^256 in magnitude, otherwise zero.
     pub fn from_f64(value: f64) -> Self {
         if value == 0.0 || value.is_nan() || value.abs() >= 2.0_f64.powi(256) {
             return Self::ZERO;
@@ -64,8 +64,8 @@ impl Precise {
         if self.is_negative() { -self } else { self }
     }
 
-    /// The binary32 number nearest to it, ties to even; infinite beyond the largest one. Correct for whatever the
-    /// contact kernel gives, although that computes with errors: see [`Precise`].
+    /// The nearest binary32 number, ties to even; infinite beyond the largest one. It is correct for every result of
+    /// the contact kernel, although the kernel computes with errors: see [`Precise`].
     pub fn to_f32(self) -> f32 {
         let snapped = round_shift(&self.abs().big(), POINT - SNAP);
         if snapped.bits() == 0 {
@@ -101,7 +101,7 @@ impl Precise {
         BigInt::from_signed_bytes_le(&bytes)
     }
 
-    /// The integer of twice as many bits behind the point: quotients and roots are made of it.
+    /// The integer with twice as many bits after the point, from which quotients and roots are computed.
     fn raised(self) -> BigInt {
         self.big() << POINT
     }
@@ -189,7 +189,7 @@ impl Sub for Precise {
 impl Mul for Precise {
     type Output = Self;
 
-    /// Exact where the product is a multiple of 2^−1472, else rounded down.
+    /// Exact if the product is a multiple of 2^−1472, otherwise rounded down.
     fn mul(self, other: Self) -> Self {
         Self::from_big(&((self.big() * other.big()) >> POINT))
     }
@@ -198,7 +198,7 @@ impl Mul for Precise {
 impl Div for Precise {
     type Output = Self;
 
-    /// Rounded toward zero. A quotient by zero is zero: the kernel selects none.
+    /// Rounded toward zero. A quotient by zero is zero, because the kernel never selects it.
     fn div(self, other: Self) -> Self {
         self.raised().checked_div(&other.big()).map_or(Self::ZERO, |quotient| Self::from_big(&quotient))
     }
@@ -229,7 +229,7 @@ impl Number for Precise {
         Self::from_f64(value)
     }
 
-    /// Rounded down; zero of what is negative.
+    /// Rounded down. The root of a negative number is zero.
     fn sqrt(self) -> Self {
         if self.is_negative() { Self::ZERO } else { Self::from_big(&self.raised().sqrt()) }
     }
@@ -246,7 +246,7 @@ impl Number for Precise {
         self <= other
     }
 
-    /// Whether √self itself is greater: the decision that rounding roots to ever more bits comes to.
+    /// True if √self itself is greater: the decision to which roots with ever more bits converge.
     fn root_exceeds(self, bound: Self) -> bool {
         bound.is_negative() || self > bound * bound
     }
@@ -255,7 +255,7 @@ impl Number for Precise {
         if condition { yes } else { no }
     }
 
-    /// The same number: it has no format. Rounding is [`Precise::to_f32`].
+    /// The same number, because it has no format. [`Precise::to_f32`] rounds.
     fn to(self, _: Format) -> Self {
         self
     }

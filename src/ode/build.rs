@@ -1,6 +1,6 @@
-//! Rust declarations of the installed Open Dynamics Engine, and the linking of it: feature `ode`.
+//! The feature `ode`: makes Rust declarations of the installed Open Dynamics Engine, and links it.
 //!
-//! Unlike a missing Verilator, a missing ODE fails the build: whoever asks for the feature asks for the library.
+//! Unlike a missing Verilator, a missing ODE fails the build, because the feature needs the library.
 
 use std::env;
 use std::fmt::Write as _;
@@ -29,7 +29,7 @@ const CONSTANTS: &[&str] = &["dContactBounce", "dSphereClass"];
 /// The type of `dAllocateMaskAll`.
 const FLAGS: &str = "dAllocateODEDataFlags";
 
-/// Only what is used is included, and single precision is refused: positions would be of the wrong type.
+/// Only what is used is included. Single precision is refused, because positions would have the wrong type.
 const HEADER: &str = "\
 #include <ode/common.h>
 #ifndef dDOUBLE
@@ -82,7 +82,7 @@ fn declare() -> Result<(), String> {
     let made = panic::catch_unwind(panic::AssertUnwindSafe(|| builder.generate()))
         .map_err(|_| "libclang is missing, which reads ODE's headers; ./scripts/setup installs it".to_owned())?;
     let text = made.map_err(|e| format!("ODE's headers: {}; {INSTALL}", one_line(&e.to_string())))?.to_string();
-    // A name that the headers lack is no error to bindgen.
+    // bindgen ignores names that are missing in the headers.
     let mut missing = String::new();
     for name in FUNCTIONS.split_whitespace() {
         if !text.contains(&format!("fn {name}(")) {
@@ -96,7 +96,7 @@ fn declare() -> Result<(), String> {
     fs::write(&to, text).map_err(|e| format!("cannot write {}: {e}", to.display()))
 }
 
-/// Links libode, once it is sure to be there: a linker's own message would name no command.
+/// Links libode after checking that it exists, because a linker's own message would not name a command.
 fn link() -> Result<(), String> {
     if let Some(prefix) = prefix() {
         let folder = prefix.join("lib");
@@ -111,11 +111,11 @@ fn link() -> Result<(), String> {
     Ok(())
 }
 
-/// Whether the C compiler that links finds a library. One that can't be asked is given the benefit of the doubt.
+/// True if the linker of the C compiler finds a library, or if the compiler cannot be asked.
 fn linker_finds(library: &str) -> bool {
     let compiler = env::var_os("CC").unwrap_or_else(|| "cc".into());
     let Ok(answer) = Command::new(compiler).arg(format!("-print-file-name={library}")).output() else { return true };
-    // It repeats the bare name of what it does not find.
+    // The compiler repeats the bare name if it does not find the library.
     let answer = String::from_utf8_lossy(&answer.stdout);
     !answer.trim().is_empty() && Path::new(answer.trim()) != Path::new(library)
 }

@@ -1,4 +1,4 @@
-//! A world's contacts by an engine: gathered, computed in one batch, handed to ODE one by one.
+//! A world's contacts from an engine: gathered, computed in one batch, and passed to ODE one by one.
 
 use super::{Collider, Contact, Error, Sphere, Touch, World, replace};
 use crate::kernel::Engine;
@@ -14,11 +14,11 @@ impl World {
         PairRecord::from_spheres(sphere(first), sphere(second))
     }
 
-    /// Every contact there is now, by an engine in the place of ODE's collider: the candidates in one batch, rounded
-    /// to binary32, and their contacts through ODE's collider override. In the order of [`World::contacts`].
+    /// Every present contact, by an engine that replaces ODE's collider. The candidates go in one batch, rounded to
+    /// binary32, and their contacts through ODE's collider override. The order is that of [`World::contacts`].
     ///
     /// # Errors
-    /// Returns an error if ODE runs with its own collider, a sphere is lost, or the engine fails or gives what is no
+    /// Returns an error if ODE runs with its own collider, a sphere is lost, or the engine fails or gives an invalid
     /// answer.
     pub fn contacts_by(&self, engine: &mut dyn Engine) -> Result<Vec<Touch>, Error> {
         self.ode.needs(Collider::Engine)?;
@@ -41,7 +41,7 @@ impl World {
     }
 }
 
-/// The contact that an engine's answer means.
+/// The contact in an engine's answer; `None` if the spheres do not touch.
 fn checked(first: Sphere, second: Sphere, answer: ContactRecord) -> Result<Option<Contact>, Error> {
     let (first, second) = (first.0, second.0);
     let flags = answer.flags();

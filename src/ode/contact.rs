@@ -1,4 +1,4 @@
-//! Contacts as ODE takes and gives them.
+//! Contacts in ODE's form.
 
 use super::numbers::LARGEST;
 use super::{Sphere, sys};
@@ -7,16 +7,16 @@ use crate::query::ContactRecord;
 /// Where two spheres touch, in ODE's numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
-    /// The place.
+    /// The position.
     pub position: [f64; 3],
-    /// The direction that parts them, pointing into the first.
+    /// The direction in which they separate, pointing into the first.
     pub normal: [f64; 3],
-    /// How deep they overlap.
+    /// The depth of the overlap.
     pub depth: f64,
 }
 
 impl Contact {
-    /// The contact of a record, if it is one: its `f32` are `f64` too, without rounding.
+    /// The contact of a record, or `None` if it is no contact. `f32` converts to `f64` without rounding.
     pub fn from_record(record: ContactRecord) -> Option<Self> {
         let wide = |v: [f32; 3]| v.map(f64::from);
         record.is_contact().then(|| Self {
@@ -26,7 +26,7 @@ impl Contact {
         })
     }
 
-    /// Whether no number is beyond what spheres of a world can give; a NaN is.
+    /// False if a number is beyond what spheres of a world can give, or a NaN.
     pub(super) fn is_plausible(&self) -> bool {
         let mut numbers = self.position.iter().chain(&self.normal).chain([&self.depth]);
         numbers.all(|v| v.abs() <= 4.0 * LARGEST)
@@ -37,11 +37,11 @@ impl Contact {
         Self { position: three(&raw.pos), normal: three(&raw.normal), depth: raw.depth }
     }
 
-    /// ODE's structure, of the geoms `g1` and `g2`.
+    /// ODE's structure, for the geoms `g1` and `g2`.
     pub(super) fn raw(&self, g1: sys::dGeomID, g2: sys::dGeomID) -> sys::dContactGeom {
         let four = |[x, y, z]: [f64; 3]| [x, y, z, 0.0];
         let (pos, normal) = (four(self.position), four(self.normal));
-        // -1 is what ODE's own collider of spheres puts for the sides.
+        // ODE's own collider of spheres writes -1 for the sides.
         sys::dContactGeom { pos, normal, depth: self.depth, g1, g2, side1: -1, side2: -1 }
     }
 }
@@ -51,20 +51,20 @@ impl Contact {
 pub struct Touch {
     /// The sphere that the normal points into.
     pub first: Sphere,
-    /// The other.
+    /// The other sphere.
     pub second: Sphere,
     /// The contact.
     pub contact: Contact,
 }
 
-/// The surface: what a contact does to the spheres.
+/// The surface, which decides the effect of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surface {
     /// Coulomb's coefficient, from 0.
     pub friction: f64,
-    /// The part of the speed they meet with that they part with: 0 to 1.
+    /// The speed after the contact as a share of the speed before it: 0 to 1.
     pub bounce: f64,
-    /// The speed below which they do not part, length a time.
+    /// The approach speed below which they do not bounce, length / time.
     pub bounce_speed: f64,
 }
 

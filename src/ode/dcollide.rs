@@ -12,13 +12,13 @@ impl Room {
         Self(MaybeUninit::uninit())
     }
 
-    /// Calls `dCollide` and leaves the contact where ODE put it: what a benchmark times is the call and nothing else.
+    /// Calls `dCollide` and leaves the contact where ODE put it, so that a benchmark times only the call.
     ///
     /// # Safety
     /// Both geoms live; the first is a sphere, the second a sphere or a plane.
     #[inline(always)]
     pub(super) unsafe fn ask(&mut self, first: sys::dGeomID, second: sys::dGeomID) -> bool {
-        // SAFETY: both geoms live (the caller's), and there is room for the one contact that is asked for.
+        // SAFETY: the caller keeps both geoms alive, and there is room for the one contact that is requested.
         unsafe { sys::dCollide(first, second, 1, self.0.as_mut_ptr(), size_of::<sys::dContactGeom>() as c_int) > 0 }
     }
 
@@ -27,7 +27,7 @@ impl Room {
     /// # Safety
     /// The last [`Room::ask`] said there is one.
     pub(super) unsafe fn contact(&self) -> Contact {
-        // SAFETY: where ODE counts a contact it wrote it.
+        // SAFETY: if ODE counts a contact, it has written it.
         Contact::read(unsafe { self.0.assume_init_ref() })
     }
 }
@@ -39,6 +39,6 @@ impl Room {
 #[inline]
 pub(super) unsafe fn dcollide(first: sys::dGeomID, second: sys::dGeomID) -> Option<Contact> {
     let mut room = Room::new();
-    // SAFETY: the caller's; and the contact is read only where there is one.
+    // SAFETY: as the caller promises. The contact is read only if there is one.
     unsafe { room.ask(first, second).then(|| room.contact()) }
 }

@@ -1,41 +1,42 @@
-//! The paper's simulation: spheres in the form of a diamond, each drawn to its centre.
+//! The paper's simulation: spheres in the shape of an octahedron (the diamond), each pulled to its centre.
 
 use super::contact::{Surface, Touch};
 use super::numbers::{LARGEST, positive, within};
 use super::{Error, Ode, Sphere, World};
 use crate::pairs::octahedron;
 
-/// The most layers: beyond, the table of tested pairs in ODE's hash space outgrows a gigabyte.
+/// The most layers. With more, the table of tested pairs in ODE's hash space exceeds a gigabyte.
 const MOST_LAYERS: u32 = 40;
 
 /// Spheres on the points of an octahedron's lattice, and the forces that make them collide.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Diamond {
-    /// The paper's hMax: layers of spheres from the centre to a tip, that of the centre included. From 1 to 40.
+    /// The paper's hMax: layers of spheres from the centre to a tip, including the centre. From 1 to 40.
     pub layers: u32,
-    /// The paper's dSph: the gap between neighbours along an axis, a length. At 0 they touch exactly; at minus a
-    /// sphere's diameter, the least, all centres coincide.
+    /// The paper's dSph: the gap between neighbours along an axis, a length. At 0 they touch exactly. At minus a
+    /// sphere's diameter, the minimum, all centres coincide.
     pub gap: f64,
     /// Radius of every sphere, a length.
     pub radius: f64,
-    /// Mass a volume of every sphere.
+    /// Mass per volume of every sphere.
     pub density: f64,
-    /// The force on every sphere in every step. It points to where the diamond's centre lies from the sphere at the
-    /// start; the sphere in the centre has none.
+    /// The force on every sphere in every step. It points in the direction from the sphere to the diamond's centre at
+    /// the start. The sphere in the centre has no force.
     pub force: f64,
-    /// The steps in which that force acts, from the first.
+    /// The number of steps, from the first, in which the force acts.
     pub force_steps: usize,
-    /// A step's time.
+    /// The time of a step.
     pub time_step: f64,
     /// Iterations of ODE's QuickStep.
     pub iterations: u32,
-    /// The surface of the spheres: what a contact does.
+    /// The surface of the spheres, which decides the effect of a contact.
     pub surface: Surface,
 }
 
 impl Diamond {
-    /// The paper's: layers and gap from the text; what it does not say as follows. Radius ½, so that at first every
-    /// number is exact in binary32; density and force 1; steps of 1/100; 20 iterations, ODE's default; no friction.
+    /// The paper's diamond, with layers and gap from its text. The text does not give the rest, which is chosen here:
+    /// radius ½, so that at first every number is exact in binary32; density and force 1; steps of 1/100; 20
+    /// iterations, ODE's default; no friction.
     pub const fn new(layers: u32, gap: f64) -> Self {
         let surface = Surface::SMOOTH;
         Self {
@@ -75,7 +76,7 @@ impl Diamond {
     }
 }
 
-/// A diamond on its way.
+/// A diamond that is being simulated.
 #[derive(Debug)]
 pub struct Simulation {
     world: World,
@@ -85,12 +86,12 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// The world of its spheres, which has their contacts before each step.
+    /// The world of its spheres, with their contacts before each step.
     pub fn world(&self) -> &World {
         &self.world
     }
 
-    /// Steps done.
+    /// The number of steps done.
     pub fn steps(&self) -> usize {
         self.steps
     }
@@ -100,10 +101,10 @@ impl Simulation {
         self.world.spheres().map(|sphere| self.world.position(sphere))
     }
 
-    /// Goes on by a step in which the spheres of `touches` part.
+    /// Runs one step, in which the spheres of `touches` separate.
     ///
     /// # Errors
-    /// Returns an error if a contact is not one, ODE has no memory, or a sphere is lost.
+    /// Returns an error if a contact is invalid, ODE has no memory, or a sphere is lost.
     pub fn advance(&mut self, touches: &[Touch]) -> Result<(), Error> {
         let spheres: Vec<Sphere> = self.world.spheres().collect();
         if self.steps < self.diamond.force_steps {

@@ -1,5 +1,5 @@
-//! What a world can have beyond spheres that touch: gravity, damping, sleep, walls. A world without one of them never
-//! calls what ODE has for it.
+//! Optional effects of a world: gravity, damping, sleep, walls. Without an effect, ODE's functions for it are never
+//! called.
 
 use super::dcollide::dcollide;
 use super::numbers::{LARGEST, signed, within};
@@ -9,20 +9,20 @@ use std::ffi::c_int;
 /// When a sphere falls asleep: ODE's auto-disable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sleep {
-    /// Speed below which it counts as idle, length a time.
+    /// Speed below which it counts as idle, length / time.
     pub speed: f64,
-    /// Angular speed below which it does, 1 a time.
+    /// Angular speed below which it counts as idle, 1 / time.
     pub turning: f64,
-    /// Steps that it must be idle.
+    /// The number of steps for which it must be idle.
     pub steps: u32,
 }
 
 impl Sleep {
-    /// ODE's own.
+    /// ODE's defaults.
     pub const USUAL: Self = Self { speed: 0.01, turning: 0.01, steps: 10 };
 }
 
-/// A wall: a plane that spheres stay in front of.
+/// A wall: a plane that spheres cannot pass.
 #[derive(Debug)]
 pub(super) struct Plane {
     geom: sys::dGeomID,
@@ -51,13 +51,13 @@ impl World {
         Ok(())
     }
 
-    /// The part of its speed, and of its turning, that every sphere loses in a step: `dWorldSetDamping`.
+    /// The share of its speed and of its angular speed that every sphere loses in a step: `dWorldSetDamping`.
     ///
     /// # Errors
-    /// Returns an error if it is not a part.
+    /// Returns an error if the share is out of range.
     pub fn set_damping(&mut self, part: f64) -> Result<(), Error> {
         within("damping", part, 0.0..=1.0)?;
-        // SAFETY: the world lives. Without thresholds all speeds are damped.
+        // SAFETY: the world lives. Without thresholds, all speeds are damped.
         unsafe {
             sys::dWorldSetDamping(self.id(), part, part);
             sys::dWorldSetLinearDampingThreshold(self.id(), 0.0);
@@ -81,7 +81,7 @@ impl World {
         Ok(())
     }
 
-    /// Lets spheres that are added afterwards fall asleep. Two that both sleep are no candidates.
+    /// Lets spheres that are added afterwards fall asleep. Two sleeping spheres are not candidates.
     ///
     /// # Errors
     /// Returns an error if a number is out of range.
@@ -107,7 +107,7 @@ impl World {
         self.spheres_sleep && unsafe { sys::dBodyIsEnabled(self.spheres[sphere.index()].body) == 0 }
     }
 
-    /// Gives a sphere its velocity, length / time, and its turning, radians / time.
+    /// Sets a sphere's velocity, length / time, and its angular velocity, radians / time.
     ///
     /// # Errors
     /// Returns an error if a number is out of range.
@@ -152,7 +152,8 @@ impl World {
         let [a, b, c] = signed("a wall's normal", normal)?;
         within("the length of a wall's normal", a * a + b * b + c * c, 0.999_999..=1.000_001)?;
         within("a wall's place", offset, -LARGEST..=LARGEST)?;
-        // SAFETY: ODE is started. In no space: it is tried against every sphere, and there are few walls.
+        // SAFETY: ODE is started. The plane is in no space, because it is tested against every sphere, and there are
+        // few walls.
         let geom = unsafe { sys::dCreatePlane(std::ptr::null_mut(), a, b, c, offset) };
         if geom.is_null() {
             return Err(Error::Memory);
@@ -161,8 +162,8 @@ impl World {
         Ok(())
     }
 
-    /// Every contact of a sphere with a wall, by ODE's own collider of sphere and plane, spheres in their order. None
-    /// of spheres that sleep.
+    /// Every contact of a sphere with a wall, by ODE's own collider of sphere and plane, in the order of the spheres.
+    /// Sleeping spheres have no contacts.
     pub fn wall_contacts(&self) -> Vec<WallTouch> {
         let mut touches = Vec::new();
         if self.walls.is_empty() {
@@ -183,7 +184,7 @@ impl World {
         touches
     }
 
-    /// Makes the next step part a sphere and a wall.
+    /// Makes the next step separate a sphere and a wall.
     ///
     /// # Errors
     /// Returns the errors of [`World::join`].
@@ -194,13 +195,13 @@ impl World {
         unsafe { self.attach(&touch.contact, surface, [parts.geom, wall], [parts.body, std::ptr::null_mut()]) }
     }
 
-    /// What goes with the world.
+    /// Destroys the geoms of the walls with the world.
     ///
     /// # Safety
     /// Once, and no wall is used afterwards.
     pub(super) unsafe fn destroy_walls(&mut self) {
         for wall in self.walls.drain(..) {
-            // SAFETY: made in `add_wall`, and the caller's word.
+            // SAFETY: created in `add_wall`; the caller promises the rest.
             unsafe { sys::dGeomDestroy(wall.geom) };
         }
     }
@@ -240,12 +241,12 @@ mod tests {
         assert!(world.is_asleep(sphere) && world.wall_contacts().is_empty());
     }
 
-    /// A fault once: ODE kept the forces on a sphere that slept, and gave it all of them when it woke.
+    /// This was once a fault: ODE kept the forces on a sleeping sphere, and applied all of them when it woke.
     #[test]
     fn forces_do_not_gather_while_a_sphere_sleeps() {
         let (_ode, mut world) = world();
         world.set_sleep(&Sleep::USUAL).unwrap();
-        // ODE lets only spheres with a joint sleep: both lie on a floor.
+        // ODE lets only spheres with a joint sleep, so both lie on a floor.
         world.set_gravity([0.0, 0.0, -10.0]).unwrap();
         world.add_wall([0.0, 0.0, 1.0], 0.0).unwrap();
         let still = world.add_sphere([0.0, 0.0, 0.5], 0.5, 1.0).unwrap();

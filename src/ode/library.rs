@@ -1,7 +1,7 @@
-//! ODE started and stopped.
+//! Starts and stops ODE.
 //!
-//! ODE keeps state for the whole process: whether it is started, which function collides two spheres, and the random
-//! numbers with which its solver reorders constraints. So one thread has it at a time; others wait for their turn.
+//! ODE has state for the whole process: whether it is started, which function collides two spheres, and the random
+//! numbers with which its solver reorders constraints. So only one thread has it at a time, and others wait.
 
 use super::{Error, replace, sys};
 use std::cell::RefCell;
@@ -27,9 +27,9 @@ impl fmt::Display for Collider {
     }
 }
 
-/// The library, started. It stops when the last clone and everything made of it is dropped.
+/// The started library. It stops when the last clone and everything made from it is dropped.
 ///
-/// ODE has no way to bring its own collider back but a new start, so all that live at one time have one collider.
+/// ODE can restore its own collider only by a restart, so all that live at the same time have the same collider.
 #[derive(Clone, Debug)]
 pub struct Ode {
     guard: Rc<LibraryGuard>,
@@ -52,10 +52,10 @@ thread_local! {
 impl Ode {
     /// ODE with this collider: the running one, if this thread has it, or a new start.
     ///
-    /// While another thread has ODE this call waits. So a thread that has it must not wait for one that wants it.
+    /// This call waits while another thread has ODE. So a thread that has ODE must not wait for one that wants it.
     ///
     /// # Errors
-    /// Returns an error if this thread has ODE with another collider, or the library can't be started or is of single
+    /// Returns an error if this thread has ODE with another collider, or if the library cannot be started or has single
     /// precision.
     pub fn start(collider: Collider) -> Result<Self, Error> {
         if let Some(guard) = GUARD.with_borrow(Weak::upgrade) {
@@ -81,7 +81,7 @@ impl Ode {
         self.guard.collider
     }
 
-    /// Refuses what only the other collider can do.
+    /// Returns an error unless ODE runs with the wanted collider.
     pub(super) fn needs(&self, wanted: Collider) -> Result<(), Error> {
         let running = self.guard.collider;
         if running == wanted { Ok(()) } else { Err(Error::OtherCollider { running, wanted }) }
@@ -89,7 +89,8 @@ impl Ode {
 }
 
 fn initialise() -> Result<(), Error> {
-    // SAFETY: the string ends with a zero; ODE is not started, and started by this thread alone, which holds the lock.
+    // SAFETY: the string ends with a zero. ODE is not started yet, and only this thread starts it, because it holds the
+    // lock.
     unsafe {
         if sys::dCheckConfiguration(c"ODE_double_precision".as_ptr()) == 0 {
             return Err(Error::SinglePrecision);
@@ -108,7 +109,7 @@ fn initialise() -> Result<(), Error> {
 impl Drop for LibraryGuard {
     fn drop(&mut self) {
         let mut taken = TAKEN.lock().unwrap_or_else(PoisonError::into_inner);
-        // SAFETY: started in `start`, by this thread. All that is made of ODE holds an `Ode`, so nothing is left.
+        // SAFETY: started in `start`, by this thread. Everything made from ODE holds an `Ode`, so nothing is left.
         unsafe { sys::dCloseODE() };
         *taken = false;
         RETURNED.notify_one();

@@ -1,9 +1,9 @@
 //! The real [Open Dynamics Engine](http://www.ode.org), in double precision: worlds of spheres, its collision of two
-//! spheres, and an [`Engine`](crate::kernel::Engine) (a kernel in software, an AFU) in that collision's place.
+//! spheres, and an [`Engine`](crate::kernel::Engine) (a kernel in software, an AFU) that replaces this collision.
 //!
-//! An [`Ode`] is the library, started; a [`World`] holds spheres. A step of a simulation is: [`World::add_force`],
-//! then [`World::contacts`] or [`World::contacts_by`] an engine, [`World::join`] for each contact, [`World::step`].
-//! [`Diamond`] is the paper's simulation, [`Benchmark`] the paper's measurement in it.
+//! An [`Ode`] is the started library, and a [`World`] holds spheres. A step of a simulation is: [`World::add_force`],
+//! then [`World::contacts`] or [`World::contacts_by`] with an engine, [`World::join`] for each contact,
+//! [`World::step`]. [`Diamond`] is the paper's simulation, and [`Benchmark`] the paper's measurement in it.
 //!
 //! # Licence
 //!
@@ -12,8 +12,8 @@
 //!
 //! > Open Dynamics Engine, Copyright (c) 2001-2007, Russell L. Smith. All rights reserved.
 //!
-//! Who passes on a program built with this feature passes on that notice, the licence's conditions and its disclaimer
-//! too (ODE's `LICENSE-BSD.TXT`; on Debian `/usr/share/doc/libode8/copyright`).
+//! If you redistribute a program built with this feature, include this notice and the licence's conditions and
+//! disclaimer (ODE's `LICENSE-BSD.TXT`; on Debian `/usr/share/doc/libode8/copyright`).
 
 mod benchmark;
 mod by_engine;

@@ -1,4 +1,4 @@
-//! Energy, momentum and angular momentum of a world: a simulation must keep them.
+//! Energy, momentum and angular momentum of a world, which a simulation must conserve.
 
 use super::{World, sys};
 

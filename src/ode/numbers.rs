@@ -1,17 +1,17 @@
-//! Ranges of the numbers that ODE is given: on others, an assertion in ODE ends the process.
+//! Ranges of the numbers that ODE accepts. Outside them, an assertion in ODE ends the process.
 
 use super::Error;
 use std::ops::RangeInclusive;
 
 /// The largest coordinate, radius, force or density: 2^27.
 ///
-/// ODE's hash space counts cells with an `int`, and cells are 1/8 at least. Within this bound neither that count nor,
-/// in `f64`, any product of a step overflows.
+/// ODE's hash space counts cells with an `int`, and cells are at least 1/8 wide. Within this bound, neither that count
+/// nor any product of a step in `f64` overflows.
 pub(super) const LARGEST: f64 = 134_217_728.0;
 /// The smallest radius, density or time: 2^-27. A mass must not become 0.
 pub(super) const SMALLEST: f64 = 1.0 / LARGEST;
 
-/// `value`, if it is in a range (a NaN is in none).
+/// `value` if it is in the range. A NaN is in no range.
 pub(super) fn within(what: &'static str, value: f64, range: RangeInclusive<f64>) -> Result<f64, Error> {
     if range.contains(&value) {
         return Ok(value);
@@ -19,7 +19,7 @@ pub(super) fn within(what: &'static str, value: f64, range: RangeInclusive<f64>)
     Err(Error::Number { what, value, least: *range.start(), most: *range.end() })
 }
 
-/// A sum that a step can need of anything with a sign.
+/// Numbers of either sign that a step may use.
 pub(super) fn signed(what: &'static str, values: [f64; 3]) -> Result<[f64; 3], Error> {
     for value in values {
         within(what, value, -LARGEST..=LARGEST)?;
@@ -27,7 +27,7 @@ pub(super) fn signed(what: &'static str, values: [f64; 3]) -> Result<[f64; 3], E
     Ok(values)
 }
 
-/// Something that must not be zero.
+/// A number that must not be zero.
 pub(super) fn positive(what: &'static str, value: f64) -> Result<f64, Error> {
     within(what, value, SMALLEST..=LARGEST)
 }

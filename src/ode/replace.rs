@@ -1,7 +1,7 @@
-//! An engine in the place of ODE's collider of two spheres.
+//! An engine that replaces ODE's collider of two spheres.
 //!
-//! ODE asks for one pair at a time and an engine wants a batch. So a step's pairs are gathered first and computed at
-//! once; then each goes through ODE's `dCollide` all the same, whose answer lies ready here.
+//! ODE asks for one pair at a time, and an engine takes a batch. So the pairs of a step are gathered first and computed
+//! at once. Then each still goes through ODE's `dCollide`, for which the answer is ready here.
 
 use super::dcollide::dcollide;
 use super::{Contact, sys};
@@ -20,36 +20,35 @@ thread_local! {
     static ANSWER: Cell<Option<Answer>> = const { Cell::new(None) };
 }
 
-/// Puts the answers in the place of ODE's collider, until ODE stops.
+/// Replaces ODE's collider by the stored answers, until ODE stops.
 pub(super) fn install() {
     set(collide);
 }
 
-/// `ode` is started, and by this thread: only [`super::Ode`] and tests that hold one call this.
+/// ODE must have been started by this thread: only [`super::Ode`] and tests that hold one call this.
 fn set(collide: unsafe extern "C" fn(sys::dGeomID, sys::dGeomID, c_int, *mut sys::dContactGeom, c_int) -> c_int) {
     let sphere = sys::dSphereClass as c_int;
-    // SAFETY: ODE is started; the function is of the type it wants.
+    // SAFETY: ODE is started, and the function has the expected type.
     unsafe { sys::dSetColliderOverride(sphere, sphere, Some(collide)) }
 }
 
-/// Sends a pair through ODE, with `contact` as the answer of the collider. What comes back is that contact, as ODE
-/// makes it of the answer.
+/// Sends a pair through ODE, with `contact` as the answer of the collider. Returns the contact as ODE returns it.
 ///
 /// # Safety
 /// `first` and `second` are two spheres that live.
 pub(super) unsafe fn answer(first: sys::dGeomID, second: sys::dGeomID, contact: Option<Contact>) -> Option<Contact> {
     ANSWER.set(Some(Answer { first, second, contact }));
-    // SAFETY: the caller's.
+    // SAFETY: as the caller promises.
     let found = unsafe { dcollide(first, second) };
     ANSWER.set(None);
     found
 }
 
-/// The collider: ODE calls it from `dCollide`, which was called from [`answer`].
+/// The collider. ODE calls it from `dCollide`, which [`answer`] called.
 ///
-/// `dSetColliderOverride` of two equal classes marks the function as one that takes them in reverse: ODE swaps the
-/// geoms, calls, then negates the normal and swaps the geoms of the contact. All of it is undone here beforehand, bit
-/// for bit: negation is exact, of zeros too. It is seen by which geom comes first, and not taken for granted.
+/// For two equal classes, `dSetColliderOverride` marks the function as one that takes them in reverse. ODE then swaps
+/// the geoms, calls, negates the normal and swaps the geoms of the contact. This function undoes all of it beforehand,
+/// bit for bit, since negation is exact, also of zeros. It looks at which geom comes first and does not assume it.
 unsafe extern "C" fn collide(
     o1: sys::dGeomID,
     o2: sys::dGeomID,
@@ -75,7 +74,7 @@ mod tests {
 
     const COINCIDENT: Contact = Contact { position: [0.0; 3], normal: [1.0, 0.0, 0.0], depth: 1.0 };
 
-    /// What one would write who does not know.
+    /// A collider as one would write it without knowing this.
     unsafe extern "C" fn naive(
         o1: sys::dGeomID,
         o2: sys::dGeomID,
@@ -109,7 +108,7 @@ mod tests {
         }
     }
 
-    /// The geoms of the contact that ODE hands out are in the order of the call.
+    /// The geoms of the contact that ODE returns are in the order of the call.
     #[test]
     fn the_geoms_of_a_contact_are_in_order() {
         let ode = Ode::start(Collider::Engine).unwrap();

@@ -6,7 +6,7 @@ use super::{Collider, Contact, Error, Ode, sys};
 use crate::query::Query;
 use std::ptr::null_mut;
 
-/// A sphere and the other body of a query, in no world, that stay where they are until moved.
+/// A sphere and the other body of a query, outside any world. They stay in place until they are moved.
 #[derive(Debug)]
 pub struct SpherePair {
     query: Query,
@@ -29,7 +29,7 @@ impl SpherePair {
     /// Returns the errors of [`SpherePair::new`].
     pub fn of_query(query: Query, ode: &Ode) -> Result<Self, Error> {
         ode.needs(Collider::Own)?;
-        // SAFETY: ODE is started; no space is a place for a geom, 0 a radius, and (1, 0, 0) a normal.
+        // SAFETY: ODE is started. A geom may be in no space, 0 is a valid radius, and (1, 0, 0) a valid normal.
         let geoms = unsafe {
             let second = match query {
                 Query::SphereSphere => sys::dCreateSphere(null_mut(), 0.0),
@@ -43,10 +43,10 @@ impl SpherePair {
         Ok(Self { query, geoms, _ode: ode.clone() })
     }
 
-    /// Moves both: a sphere's x y z and radius; a plane's normal, which ODE scales to length 1, and distance.
+    /// Moves both: a sphere to x y z and radius, a plane to its normal, which ODE scales to length 1, and its distance.
     ///
     /// # Errors
-    /// Returns an error if a number is not finite or a radius is negative; both stay as they were.
+    /// Returns an error if a number is not finite or a radius is negative. Both bodies are then unchanged.
     pub fn set(&mut self, first: [f64; 4], second: [f64; 4]) -> Result<(), Error> {
         let is_plane = self.query == Query::SpherePlane;
         for ([x, y, z, last], is_plane) in [(first, false), (second, is_plane)] {
@@ -70,7 +70,7 @@ impl SpherePair {
         Ok(())
     }
 
-    /// The two as ODE has them.
+    /// ODE's geoms of the two bodies.
     pub(super) fn geoms(&self) -> [sys::dGeomID; 2] {
         self.geoms
     }
@@ -87,7 +87,7 @@ impl SpherePair {
 impl Drop for SpherePair {
     fn drop(&mut self) {
         for geom in self.geoms {
-            // SAFETY: made in `new`, in no space, destroyed once; ODE runs until `_ode` is dropped, after this.
+            // SAFETY: created in `new`, in no space, and destroyed once. ODE runs until `_ode` is dropped, after this.
             unsafe { sys::dGeomDestroy(geom) };
         }
     }

@@ -1,4 +1,4 @@
-//! ODE's C interface as its installed headers have it. Nothing outside this folder sees it.
+//! ODE's C interface, from its installed headers. It is used only in this folder.
 
 #![allow(non_camel_case_types, non_snake_case, non_upper_case_globals, dead_code, clippy::all)]
 

@@ -1,4 +1,4 @@
-//! A world of spheres: bodies that ODE moves, and the space in which it finds which are near each other.
+//! A world of spheres: bodies that ODE moves, and the space in which it finds pairs that are close.
 
 use super::contact::{Surface, Touch};
 use super::dcollide::dcollide;
@@ -9,7 +9,7 @@ use std::any::Any;
 use std::ffi::{c_int, c_ulong, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
-/// A sphere of a world: which one it is, in the order they were added.
+/// A sphere of a world, identified by the order in which it was added.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Sphere(pub(super) usize);
 
@@ -27,13 +27,13 @@ pub(super) struct Parts {
     radius: f64,
 }
 
-/// Spheres, without gravity or anything else of [`World::set_gravity`] and what follows it unless asked for.
+/// Spheres. Gravity and the effects after [`World::set_gravity`] are off until they are set.
 ///
-/// Two worlds built and stepped alike give the same bits, however many others there are: each keeps its own place in
-/// the sequence of random numbers of ODE's solver.
+/// Two worlds that are built and stepped in the same way give the same bits, however many others exist. Each keeps its
+/// own position in the random numbers of ODE's solver.
 ///
 /// # Panics
-/// Its functions panic when given a sphere of a world with more spheres.
+/// Its functions panic if the sphere belongs to a world with more spheres.
 #[derive(Debug)]
 pub struct World {
     id: sys::dWorldID,
@@ -44,9 +44,9 @@ pub struct World {
     pub(super) walls: Vec<Plane>,
     /// True if spheres fall asleep.
     pub(super) spheres_sleep: bool,
-    /// Where ODE's random numbers go on.
+    /// The state of ODE's random numbers.
     seed: c_ulong,
-    /// The last of all to go.
+    /// Must be dropped last.
     pub(super) ode: Ode,
 }
 
@@ -81,7 +81,7 @@ impl World {
     /// Sets the number of iterations of ODE's QuickStep; the default is 20.
     ///
     /// # Errors
-    /// Returns an error if there are none, or more than a million.
+    /// Returns an error if the number is zero or more than a million.
     pub fn set_iterations(&mut self, iterations: u32) -> Result<(), Error> {
         within("the number of iterations", iterations.into(), 1.0..=1e6)?;
         // SAFETY: the world lives.
@@ -89,7 +89,7 @@ impl World {
         Ok(())
     }
 
-    /// Adds a sphere at rest. Its mass is that of its volume at this density.
+    /// Adds a sphere at rest. Its mass follows from its volume and this density.
     ///
     /// # Errors
     /// Returns an error if a number is out of range, or ODE has no memory.
@@ -110,7 +110,7 @@ impl World {
             sys::dBodySetMass(body, &mass);
             sys::dBodySetPosition(body, x, y, z);
             sys::dGeomSetBody(geom, body);
-            // Not an address: the near callback reads the number back.
+            // This is a number, not an address. The near callback reads it back.
             sys::dGeomSetData(geom, std::ptr::without_provenance_mut(sphere.0));
             self.spheres.push(Parts { body, geom, radius });
         }
@@ -133,8 +133,8 @@ impl World {
         self.spheres[sphere.0].radius
     }
 
-    /// Adds to the force on a sphere's centre during the next step. One that sleeps gets none: ODE would keep it, and
-    /// give the sphere the forces of all steps when it wakes.
+    /// Adds to the force on a sphere's centre during the next step. A sleeping sphere gets no force, because ODE would
+    /// keep it, and apply the forces of all steps when the sphere wakes.
     ///
     /// # Errors
     /// Returns an error if a number is out of range.
@@ -157,7 +157,7 @@ impl World {
     pub fn near(&self, mut visit: impl FnMut(Sphere, Sphere)) -> Result<(), Error> {
         self.all_in_reach()?;
         let mut near = Near { visit: &mut visit, panic: None };
-        // SAFETY: the space lives; the callback gets back the pointer it is given here, while `near` lives.
+        // SAFETY: the space lives. The callback gets the pointer that is given here, while `near` lives.
         unsafe { sys::dSpaceCollide(self.space, (&raw mut near).cast(), Some(near_callback)) };
         if let Some(panic) = near.panic {
             resume_unwind(panic);
@@ -189,7 +189,7 @@ impl World {
         Ok(self.dcollide(first, second))
     }
 
-    /// Two spheres as ODE has them: they live as long as the world.
+    /// ODE's geoms of two spheres, which live as long as the world.
     pub(super) fn geoms(&self, first: Sphere, second: Sphere) -> [sys::dGeomID; 2] {
         [first, second].map(|sphere| self.spheres[sphere.0].geom)
     }
@@ -201,7 +201,7 @@ impl World {
         unsafe { dcollide(first, second) }
     }
 
-    /// Every contact there is now, by ODE's own collider.
+    /// Every present contact, by ODE's own collider.
     ///
     /// # Errors
     /// Returns an error if ODE runs without it, or a sphere is lost: see [`World::step`].
@@ -216,11 +216,11 @@ impl World {
         Ok(touches)
     }
 
-    /// Makes the next step part two spheres that touch: ODE's contact joint.
+    /// Makes the next step separate two touching spheres, by ODE's contact joint.
     ///
     /// # Errors
-    /// Returns an error if the contact has a number that no contact here can have, or is of a sphere with itself, or a
-    /// number of the surface is out of range.
+    /// Returns an error if the contact has an impossible number or is of a sphere with itself, or if a number of the
+    /// surface is out of range.
     pub fn join(&self, touch: &Touch, surface: &Surface) -> Result<(), Error> {
         let Touch { first, second, contact } = touch;
         let [one, other] = [first, second].map(|sphere| &self.spheres[sphere.0]);
@@ -249,7 +249,7 @@ impl World {
         within("a bounce", surface.bounce, 0.0..=1.0)?;
         within("a bounce's speed", surface.bounce_speed, 0.0..=LARGEST)?;
         let contact = sys::dContact { surface: surface.raw(), geom: contact.raw(g1, g2), fdir1: [0.0; 4] };
-        // SAFETY: world and joints live, for the rest the caller's word; ODE copies the contact.
+        // SAFETY: world and joints live, and the caller promises the rest. ODE copies the contact.
         unsafe {
             let joint = sys::dJointCreateContact(self.id, self.joints, &contact);
             if joint.is_null() {
@@ -260,11 +260,11 @@ impl World {
         Ok(())
     }
 
-    /// Moves every sphere through a time, by ODE's QuickStep; afterwards there are no forces and no joints.
+    /// Moves every sphere through a time step by ODE's QuickStep. Afterwards there are no forces and no joints.
     ///
     /// # Errors
-    /// Returns an error if ODE has no memory, or a sphere is then beyond what ODE's space can hold; such a world is of
-    /// no more use.
+    /// Returns an error if ODE has no memory, or if a sphere is then beyond ODE's space. Such a world cannot be used
+    /// any more.
     pub fn step(&mut self, time: f64) -> Result<(), Error> {
         positive("a step's time", time)?;
         self.all_in_reach()?;
@@ -294,8 +294,9 @@ impl World {
 
 impl Drop for World {
     fn drop(&mut self) {
-        // SAFETY: each was made in `new` and is destroyed once: joints first, which hang on bodies, then the space with
-        // its geoms, which do too, then the world with its bodies. ODE runs until `ode` is dropped, after this.
+        // SAFETY: each was created in `new` and is destroyed once: first the joints, which refer to bodies, then the
+        // space with its geoms, which also do, and then the world with its bodies. ODE runs until `ode` is dropped,
+        // after this.
         unsafe {
             sys::dJointGroupDestroy(self.joints);
             self.destroy_walls();
@@ -313,10 +314,10 @@ struct Near<'a> {
 /// # Safety
 /// `data` is a `Near` that nothing else uses meanwhile, and both geoms are of a world.
 unsafe extern "C" fn near_callback(data: *mut c_void, o1: sys::dGeomID, o2: sys::dGeomID) {
-    // SAFETY: the caller's.
+    // SAFETY: as the caller promises.
     let (near, first, second) =
         unsafe { (&mut *data.cast::<Near>(), sys::dGeomGetData(o1).addr(), sys::dGeomGetData(o2).addr()) };
-    // No panic may pass through ODE: it waits here until ODE is done.
+    // A panic must not unwind through ODE. It is kept here until ODE returns.
     if near.panic.is_none() {
         let visited = catch_unwind(AssertUnwindSafe(|| (near.visit)(Sphere(first), Sphere(second))));
         near.panic = visited.err();

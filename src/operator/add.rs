@@ -7,8 +7,8 @@ use super::parts::{
 };
 use crate::hdl::Signal;
 
-/// a + b, or a − b where `subtract`; to odd, only for results that do not leave the normal range. An exact zero
-/// is +0 unless both terms are −0 (IEEE 754-2019, clause 6.3).
+/// a + b, or a − b if `subtract` is set. Rounding to odd is only for results within the normal range. An exact zero is
+/// +0 unless both terms are −0 (IEEE 754-2019, clause 6.3).
 pub fn add<'g>(a: Signal<'g>, b: Signal<'g>, domain: Domain, subtract: bool, rounding: Rounding) -> Signal<'g> {
     add_to(a, b, domain, domain, subtract, rounding)
 }
@@ -31,7 +31,7 @@ pub fn add_to<'g>(
 
     let b_is_larger = a.magnitude().less_than(b.magnitude()).named("b_is_larger");
     let choose = |if_b, if_a, name: &str| b_is_larger.select(if_b, if_a).named(name);
-    // Both differences beside the comparison: the right one is then there as soon as that is.
+    // Both differences are computed beside the comparison, so that the right one is available as soon as it is known.
     let [a_exponent, b_exponent] = [a.effective_exponent(), b.effective_exponent()];
     let more = to.fraction_bits() - domain.fraction_bits();
     let differences = [a_exponent - b_exponent, b_exponent - a_exponent];
@@ -42,10 +42,10 @@ pub fn add_to<'g>(
     let small_significand = choose(a.true_significand(), b.true_significand(), "small_significand");
     let [large_significand, small_significand] = [large_significand, small_significand].map(|it| it.append_zeros(more));
 
-    // Below the significand stand a guard bit, a round bit and the sticky bit; above it the carry.
+    // Below the significand are a guard bit, a round bit and the sticky bit; above it is the carry.
     let (mut aligned, mut sticky) = shift_right_sticky(small_significand.append_zeros(2), align_distance, "align");
     if !domain.keeps_subnormals() && !domain.is_normal() {
-        // A flushed number's fraction does not count: dropped here, where it is cheap.
+        // The fraction of a flushed number does not count. It is removed here, where this is cheap.
         let small_is_zero = b_is_larger.select(a.is_zero(), b.is_zero()).named("small_is_zero");
         (aligned, sticky) = (aligned.gate(!small_is_zero), sticky & !small_is_zero);
     }
@@ -66,7 +66,7 @@ pub fn add_to<'g>(
     let special = Special {
         nan: a.is_nan() | b.is_nan() | (both_infinite & effective_subtraction),
         infinity: a.is_infinity() | b.is_infinity(),
-        // A sum that is zero has an empty fraction; the exponent has seen to itself, but for results that may
+        // A sum of zero has an empty fraction, and the exponent is right by itself except for results that may
         // underflow.
         zero: if is_gradual || to.is_normal() { both_zero } else { is_exact_zero },
     };
@@ -74,8 +74,8 @@ pub fn add_to<'g>(
     pack(to, sign, fields, special)
 }
 
-/// How far the smaller number is moved: the right one of both differences of the exponents, in as many bits as a value
-/// of `moved_bits` needs. Of each it is known before whether it is too far for them.
+/// The distance by which the smaller number is shifted: the right one of both exponent differences, in the bits that a
+/// value of `moved_bits` needs. For each difference it is known beforehand whether it is too large for them.
 fn align_distance<'g>(differences: [Signal<'g>; 2], b_is_larger: Signal<'g>, moved_bits: u32) -> Signal<'g> {
     let [a_minus_b, b_minus_a] = differences;
     let (a_minus_b, b_minus_a) = (a_minus_b.named("a_exponent_minus_b"), b_minus_a.named("b_exponent_minus_a"));
@@ -91,8 +91,8 @@ fn align_distance<'g>(differences: [Signal<'g>; 2], b_is_larger: Signal<'g>, mov
     (near | far.repeat(bits)).named("align_distance")
 }
 
-/// Normalises and rounds `sum`, which is carry, significand and three bits. With subnormals the shift ends where the
-/// exponent does; what is then not normal is exact. Also tells whether the sum is zero.
+/// Normalises and rounds `sum`, which is carry, significand and three bits. With subnormals, the shift ends where the
+/// exponent does, and a result that is then not normal is exact. Also returns whether the sum is zero.
 fn gradual<'g>(
     domain: Domain,
     rounding: Rounding,
@@ -100,7 +100,7 @@ fn gradual<'g>(
     large_exponent: Signal<'g>,
 ) -> (Fields<'g>, Signal<'g>) {
     let sum_is_zero = sum.is_zero().named("sum_is_zero");
-    // A one where the smallest normal number's would stand: what is counted ends there, so the count is the distance.
+    // A one at the leading bit of the smallest normal number. Counting ends there, so the count is the distance.
     let count_bits = u32::BITS - (sum.width() - 1).leading_zeros();
     let long_exponent = large_exponent.extend(large_exponent.width().max(count_bits + 1));
     let is_near = long_exponent.drop_low(count_bits).is_zero().named("end_is_near");
@@ -113,7 +113,7 @@ fn gradual<'g>(
     let exponent_bits = domain.exponent_bits();
     let width = exponent_bits.max(distance.width());
     let exponent = (large_exponent.plus(1).extend(width) - distance.extend(width)).low(exponent_bits);
-    // Without its leading one a result is subnormal, or zero.
+    // A result without its leading one is subnormal or zero.
     let exponent = exponent.gate(normalised.msb()).named("normalised_exponent");
     let (significand, guard, sticky) = taken(domain, normalised);
     let fields = Fields {
@@ -129,8 +129,8 @@ fn gradual<'g>(
     (fields, sum_is_zero)
 }
 
-/// The same without subnormals: the exponent may go below its end; rounding then flushes. The exponent of `from` goes
-/// into that of `domain`.
+/// The same without subnormals: the exponent may go below its end, and rounding then flushes. The exponent of `from` is
+/// converted to that of `domain`.
 fn flushed<'g>(
     from: Domain,
     domain: Domain,
@@ -157,11 +157,11 @@ fn taken<'g>(domain: Domain, normalised: Signal<'g>) -> (Signal<'g>, Signal<'g>,
     (significand, normalised.bit(3).named("guard"), normalised.low(3).any().named("sticky"))
 }
 
-/// a + b of numbers that are zero or normal and not negative: the sum is normalised by at most one place, and the
-/// exponents alone tell which is to be aligned.
+/// a + b of numbers that are zero or normal and not negative. The sum is normalised by at most one place, and the
+/// exponents alone decide which number is aligned.
 pub fn add_magnitudes<'g>(a: Signal<'g>, b: Signal<'g>, domain: Domain) -> Signal<'g> {
     let (a, b) = (Operand::unpack(a, domain, "a"), Operand::unpack(b, domain, "b"));
-    // Both differences, of which the borrow tells which is the right one.
+    // Both differences. The borrow tells which one is right.
     let width = domain.exponent_bits() + 1;
     let a_less_b = a.exponent.extend(width) - b.exponent.extend(width);
     let b_is_larger = a_less_b.msb().named("b_is_larger");
@@ -173,7 +173,7 @@ pub fn add_magnitudes<'g>(a: Signal<'g>, b: Signal<'g>, domain: Domain) -> Signa
     let small_significand = choose(a.true_significand(), b.true_significand(), "small_significand");
     let (aligned, below) = shift_right_sticky(small_significand.append_zeros(1), align_distance, "align");
 
-    // What lies below the larger significand passes by the adder.
+    // The bits below the larger significand bypass the adder.
     let width = domain.significand_bits() + 1;
     let sum = (augend.extend(width) + aligned.drop_low(1).extend(width)).named("sum");
     let carry = sum.msb().named("carry");
@@ -187,7 +187,7 @@ pub fn add_magnitudes<'g>(a: Signal<'g>, b: Signal<'g>, domain: Domain) -> Signa
         sticky: (below | (carry & first)).named("sticky"),
         doubled: Some(carry),
     };
-    // Of two zeros all this is zero.
+    // If both are zero, all of this is zero.
     let special = Special { nan: carry.same(0), infinity: carry.same(0), zero: carry.same(0) };
     result(domain, a.sign & b.sign, unrounded, special)
 }

@@ -1,4 +1,4 @@
-//! Ways to the same bits.
+//! Architectures that compute the same bits.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,15 +9,16 @@ use crate::hdl::DelayModel;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Architecture {
-    /// A table of parabolas and a correcting step, in multiplier blocks: the fewest cycles. Where there is none, as for
-    /// subnormals, [`Architecture::Recurrence`].
+    /// A table of parabolas and a correcting step, in multiplier blocks: the fewest cycles. If it does not exist, as
+    /// for subnormals, it is [`Architecture::Recurrence`].
     Table,
-    /// A carry chain a digit: no multiplier block.
+    /// One carry chain per digit, and no multiplier block.
     Recurrence,
 }
 
 impl Architecture {
-    /// The one for a target: the table where there are multiplier blocks with registers, unless they are to be spared.
+    /// The architecture for a target: the table if it has multiplier blocks with registers, unless they should be
+    /// saved.
     pub fn of(model: &DelayModel) -> Self {
         if model.multiplier_registers > 0 && !model.spares_multipliers { Self::Table } else { Self::Recurrence }
     }
@@ -30,7 +31,7 @@ impl Architecture {
         }
     }
 
-    /// Whether the operator has it for these values. Every operator has that of the recurrence, whatever it is made of.
+    /// True if the operator has this architecture for these values. Every operator counts as having the recurrence.
     pub fn is_possible(self, operator: Operator, domain: impl Into<Domain>) -> bool {
         self == Self::Recurrence || corrected::is_possible(operator, domain.into())
     }

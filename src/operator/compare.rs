@@ -1,4 +1,4 @@
-//! Comparisons of two numbers. −0 equals +0; with a NaN nothing holds (IEEE 754-2019, clause 5.11).
+//! Comparisons of two numbers. −0 equals +0. With a NaN, every comparison is false (IEEE 754-2019, clause 5.11).
 
 use super::Domain;
 use super::parts::Operand;
@@ -21,7 +21,7 @@ fn order<'g>(a: Signal<'g>, b: Signal<'g>, domain: Domain) -> (Signal<'g>, Signa
     let (a, b) = (Operand::unpack(a, domain, "a"), Operand::unpack(b, domain, "b"));
     let b_is_smaller = b.magnitude().less_than(a.magnitude()).named("b_magnitude_is_smaller");
     let same = a.magnitude().equals(b.magnitude()).named("same_magnitude");
-    // Two flushed subnormals are equal; of one, and a normal number, the magnitudes tell the truth.
+    // Two flushed subnormals are equal. For one subnormal and a normal number, the magnitudes decide correctly.
     let both_zero = (a.is_zero() & b.is_zero()).named("both_zero");
 
     let across = !a.sign & b.sign;

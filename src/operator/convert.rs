@@ -5,7 +5,7 @@ use super::parts::{Fields, Operand, Special, Unrounded, pack, result, round};
 use crate::hdl::Signal;
 use crate::number::Format;
 
-/// `a`, which is in `from`, in `to`: rounded once, or exact where `to` has the room.
+/// Converts `a` from `from` to `to`: rounded once, or exact if `to` has enough bits.
 pub fn convert(a: Signal<'_>, from: Domain, to: Format) -> Signal<'_> {
     let a = Operand::unpack(a, from, "a");
     let (exponent, significand) = a.normalised_for(to.bias());
@@ -24,7 +24,7 @@ pub fn convert(a: Signal<'_>, from: Domain, to: Format) -> Signal<'_> {
     let special = Special { nan: a.is_nan(), infinity: a.is_infinity(), zero: a.is_zero() };
     let to = Domain::from(to);
     if from.keeps_subnormals() && exponent.min() > 0 {
-        // Zero's significand is zero, and its exponent is not too large: it only has to go.
+        // Zero has the significand zero and an exponent that is not too large, so only the exponent must be cleared.
         let fields = round(to, unrounded, to.rounding());
         let fields = Fields { exponent: fields.exponent.gate(!special.zero), ..fields };
         return pack(to, a.sign, fields, Special { zero: a.sign.same(0), ..special });

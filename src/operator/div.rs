@@ -12,9 +12,8 @@ pub fn div<'g>(a: Signal<'g>, b: Signal<'g>, domain: Domain) -> Signal<'g> {
     let (a_exponent, dividend) = a.normalised();
     let (b_exponent, divisor) = b.normalised();
 
-    // Two significands in [1, 2) have a quotient in (1/2, 2): one digit before the point, and as many behind it as
-    // make significand and guard bit when the first is 0.
-    // Rounding toward zero needs no guard bit.
+    // The quotient of two significands in [1, 2) is in (1/2, 2). So there is one digit before the point, and as many
+    // after it as significand and guard bit need if the first digit is 0. Rounding toward zero needs no guard bit.
     let toward_zero = domain.rounding() == Rounding::TowardZero;
     let guard_bits = u32::from(!toward_zero);
     let precision = domain.significand_bits();
@@ -37,8 +36,9 @@ pub fn div<'g>(a: Signal<'g>, b: Signal<'g>, domain: Domain) -> Signal<'g> {
         .plus_bit(at_least_one)
         .named("quotient_exponent");
 
-    // A quotient of p-bit significands never has exactly p + 1 bits: its product with the divisor would have more
-    // than p. So a normal result is never a tie, and only a subnormal one asks whether anything is left.
+    // A quotient of p-bit significands never has exactly p + 1 bits, because its product with the divisor would have
+    // more than p. So a normal result is never a tie, and only a subnormal one needs to know whether there is a
+    // remainder.
     let sticky =
         if domain.keeps_subnormals() { step.is_inexact(divisor) | last_digit } else { sign.graph().constant(1, 1) };
     let unrounded = Unrounded {
@@ -53,12 +53,12 @@ pub fn div<'g>(a: Signal<'g>, b: Signal<'g>, domain: Domain) -> Signal<'g> {
     result(domain, sign, unrounded, special)
 }
 
-/// One digit of a quotient, without restoring: what subtracting the divisor leaves stays as it is, negative or not, and
-/// after a negative one the divisor is added instead. The signs are those that restoring would see, so the digits are
-/// the quotient's own, complemented; a digit costs one carry chain and nothing else.
+/// One digit of a quotient, without restoring. The partial remainder is kept even if it is negative, and after a
+/// negative one the divisor is added instead. The signs are the same as with restoring, so the digits are the
+/// complemented digits of the quotient. A digit costs only one carry chain.
 #[derive(Clone, Copy)]
 pub struct Step<'g> {
-    /// What is left: at least −divisor and less than it, in two's complement with one bit more than it.
+    /// The partial remainder: at least −divisor and less than it, in two's complement with one bit more than it.
     pub partial: Signal<'g>,
     /// True if it is negative: the divisor does not fit, and the digit is 0.
     pub negative: Signal<'g>,
@@ -71,13 +71,13 @@ impl<'g> Step<'g> {
         Self { partial, negative: partial.msb() }
     }
 
-    /// The next digit: of twice what is left.
+    /// The next digit, from twice the partial remainder.
     pub fn next(self, divisor: Signal<'g>, index: u32) -> Self {
         let doubled = self.partial.low(divisor.width()).append_zeros(1);
         Self::after(doubled.minus_or_plus(divisor.extend(doubled.width()), self.negative), index)
     }
 
-    /// Whether anything is left at all: a negative partial remainder is the divisor short of what is.
+    /// True if there is a remainder. A negative partial remainder is the true one minus the divisor.
     pub fn is_inexact(self, divisor: Signal<'g>) -> Signal<'g> {
         let restored = self.partial + divisor.extend(self.partial.width()).gate(self.negative);
         restored.any()

@@ -1,4 +1,4 @@
-//! The words an operator is made for: a format, and which of its values never come.
+//! The words that an operator is made for: a format, and the values in it that never occur.
 
 use std::fmt;
 
@@ -11,10 +11,10 @@ pub enum Values {
     /// Every word.
     #[default]
     Any,
-    /// Neither infinities nor NaN; subnormals as the format has them.
+    /// Neither infinities nor NaN. The format decides about subnormals.
     Finite,
-    /// Zero, with an empty fraction, and normal numbers; and the exact result, if it is not zero, rounds to a normal
-    /// number of the result's format without overflow. What comes out for other operands is some word.
+    /// Zero, with an empty fraction, and normal numbers. The exact result, if it is not zero, rounds to a normal number
+    /// of the result's format without overflow. For other operands the result is arbitrary.
     Normal,
 }
 
@@ -33,7 +33,7 @@ impl From<Format> for Domain {
 }
 
 impl fmt::Display for Domain {
-    /// Writes the format, with `_finite` or `_normal` behind it where not every word comes.
+    /// Writes the format, followed by `_finite` or `_normal` if not every word occurs.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let values = match self.values {
             Values::Any => "",
@@ -55,7 +55,7 @@ impl Domain {
         self.format
     }
 
-    /// The values of it that come.
+    /// The values that occur.
     pub const fn values(self) -> Values {
         self.values
     }
@@ -70,7 +70,7 @@ impl Domain {
         matches!(self.values, Values::Normal)
     }
 
-    /// Whether a subnormal may come that counts.
+    /// True if a subnormal may occur and is not flushed.
     pub(crate) const fn keeps_subnormals(self) -> bool {
         self.format.keeps_subnormals() && !self.is_normal()
     }
@@ -83,7 +83,7 @@ impl Domain {
         }
     }
 
-    /// The same values, of results that are rounded to nearest.
+    /// The same values, with results that are rounded to nearest.
     pub(crate) const fn to_nearest(self) -> Self {
         Self { format: self.format.with_rounding(number::Rounding::Nearest), ..self }
     }

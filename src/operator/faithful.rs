@@ -1,7 +1,7 @@
 //! Reciprocal and square root within one unit of the last place: a table of parabolas, two products and two sums.
 //!
-//! [`Faithful`] has the table and the integers that the hardware computes. A result that is a number of the format
-//! comes out exact.
+//! [`Faithful`] has the table and the integers that the hardware computes. A result that is a number of the format is
+//! exact.
 
 use super::parts::{Operand, Signed, Unrounded, product_of};
 use super::{Domain, recip, sqrt};
@@ -10,13 +10,13 @@ use crate::number::{Faithful, Function, Piece};
 
 /// 1 / a.
 pub fn recip(a: Signal<'_>, domain: Domain) -> Signal<'_> {
-    // Less than one unit wrong is all that is asked of a subnormal result too.
+    // A subnormal result, too, only has to be less than one unit wrong.
     let domain = domain.to_nearest();
     let a = Operand::unpack(a, domain, "a");
     let (a_exponent, significand) = a.normalised();
     let fraction = significand.low(domain.fraction_bits()).named("significand_fraction");
     let value = value(Function::Reciprocal, domain, fraction, None, Cut::Half);
-    // Of a power of two the value is 2, which leaves no fraction under an exponent that is one more.
+    // For a power of two, the value is 2, which leaves no fraction and an exponent that is one more.
     let is_power = fraction.is_zero().named("is_power_of_two");
     let exponent = recip::exponent(domain, a_exponent);
     recip::finish(domain, a, unrounded(domain, exponent.plus_bit(is_power).named("result_exponent"), value))
@@ -32,14 +32,14 @@ pub fn sqrt(a: Signal<'_>, domain: Domain) -> Signal<'_> {
     sqrt::finish(domain, a, unrounded(domain, exponent, value))
 }
 
-/// The value's leading one is known, and what is below its last place was rounded off by the table.
+/// The value's leading one is known, and the table rounded off the bits below its last place.
 fn unrounded<'g>(domain: Domain, exponent: Signed<'g>, value: Signal<'g>) -> Unrounded<'g> {
     let zero = value.graph().constant(1, 0);
     let significand = zero.same(1).concat(value.low(domain.fraction_bits())).named("significand");
     Unrounded { exponent, significand, guard: zero, sticky: zero, doubled: None }
 }
 
-/// What is contained in a value before it is cut off.
+/// The constant that a value includes before it is truncated.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Cut {
     /// Half a unit of the last place: [`Faithful::value`].
@@ -71,7 +71,7 @@ pub fn value<'g>(
     if t_bits == 0 {
         return begin.drop_low(table.guard_bits());
     }
-    // Both are wanted at once: one table.
+    // Both are needed at the same time: one table.
     let (slopes, curves) = (words(|piece| piece.c1), words(|piece| piece.c2));
     let (slope_bits, curve_bits) = (bits(&slopes), bits(&curves));
     let both: Vec<u128> = slopes.iter().zip(&curves).map(|(slope, curve)| slope << curve_bits | curve).collect();

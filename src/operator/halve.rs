@@ -1,4 +1,4 @@
-//! Half of a number: the exponent less one, and at the lower end of the range the significand moved instead.
+//! Half of a number: the exponent minus one or, at the lower end of the range, the significand shifted.
 
 use super::Domain;
 use super::parts::{Fields, Operand, Special, pack};
@@ -19,11 +19,11 @@ pub fn halve(a: Signal<'_>, domain: Domain) -> Signal<'_> {
         doubled: None,
         rounding: domain.rounding(),
         overflow: never,
-        // Where results are normal, a smallest exponent never comes.
+        // If results are normal, the smallest exponent never occurs.
         underflow: if domain.is_normal() { never } else { !is_normal },
     };
     let fields = if domain.keeps_subnormals() {
-        // Half of a subnormal or of the smallest binade: the last bit falls off, and it may be a tie.
+        // Half of a subnormal or of a number in the smallest binade loses its last bit, and may be a tie.
         let moved = is_normal.select(a.fraction, a.hidden.concat(a.fraction).drop_low(1)).named("half_fraction");
         let guard = (a.fraction.bit(0) & !is_normal).named("guard");
         Fields { exponent: less_one.gate(is_normal), fraction: moved, guard, underflow: never, ..exact }

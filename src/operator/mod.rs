@@ -1,5 +1,5 @@
-//! Floating-point hardware for any [`Format`]: one file an operator, each a graph of bit operations that rounds once,
-//! as the format says, and equals its twin in [`crate::number::Soft`] bit for bit.
+//! Floating-point hardware for any [`Format`]. Each file has one operator, as a graph of bit operations that rounds
+//! once, as the format says, and equals its twin in [`crate::number::Soft`] bit for bit.
 //!
 //! Operators are made combinational ([`build`]) and cut into stages for a clock afterwards ([`pipelined`]).
 
@@ -75,7 +75,7 @@ pub enum Operator {
     AtMost,
     /// One bit: the rounded √a is greater than b.
     RootExceeds,
-    /// a² − (b² + c² + d²) in another format, from exact squares in a window; NaN where that leaves a doubt.
+    /// a² − (b² + c² + d²) in another format, from exact squares in a window; NaN if the result is in doubt.
     SquareExcess {
         /// The format of the result.
         to: Format,
@@ -169,13 +169,13 @@ impl Operator {
     }
 }
 
-/// The names of inputs; an operator has the first ones.
+/// The names of inputs. An operator uses the first ones.
 pub const INPUTS: [&str; 4] = ["a", "b", "c", "d"];
 
 /// The operator as a combinational module: its [`INPUTS`], and the output `result`. It is made for the values in
 /// `domain`: for every word of a format, or fewer.
 ///
-/// Of several architectures it has that of [`Architecture::Recurrence`].
+/// If there are several architectures, it has [`Architecture::Recurrence`].
 ///
 /// # Errors
 /// Returns the first error that the graph recorded.
@@ -183,7 +183,7 @@ pub fn build(operator: Operator, domain: impl Into<Domain>) -> Result<Arc<Module
     build_as(operator, domain, Architecture::Recurrence)
 }
 
-/// [`build`] in a certain architecture, where the operator has it for such values.
+/// As [`build`], in a given architecture if the operator has it for these values.
 ///
 /// # Errors
 /// Returns the first error that the graph recorded.
@@ -232,8 +232,8 @@ pub fn build_as(
     graph.finish()
 }
 
-/// The operator in the architecture for the model's target ([`Architecture::of`]), cut into stages for `clock_mhz`; its
-/// latency is in the module.
+/// The operator in the architecture for the model's target ([`Architecture::of`]), cut into stages for `clock_mhz`. The
+/// module has its latency.
 ///
 /// # Errors
 /// Returns the first error that the graph recorded, or an error if the cut cannot meet the clock.

@@ -1,4 +1,4 @@
-//! Product and square: significands multiplied whole, normalised by at most one place, rounded.
+//! Product and square: the full product of the significands, normalised by at most one place, and rounded.
 
 use super::Domain;
 use super::parts::{Operand, Signed, Special, Unrounded, product, result, settled_bits, square};
@@ -28,16 +28,17 @@ pub fn squared(a: Signal<'_>, domain: Domain) -> Signal<'_> {
 /// Two significands in [1, 2) have a product in [1, 4).
 fn unrounded<'g>(domain: Domain, a: Signed<'g>, b: Signed<'g>, product: Signal<'g>) -> Unrounded<'g> {
     let at_least_two = product.msb().named("product_at_least_two");
-    // Significand and guard bit are taken from one of two places; below the lower one everything is sticky either way.
+    // Significand and guard bit are taken from one of two places. Below the lower one, everything is sticky in both
+    // cases.
     let taken = domain.significand_bits() + 1;
     let below = product.width() - taken - 1;
     let normalised = at_least_two.select(product.high(taken), product.slice(below, taken)).named("normalised");
-    // What no row is added to is there early, and is looked through by itself.
+    // Bits to which no row is added are available early, and are examined separately.
     let settled = settled_bits(domain.significand_bits()).min(below);
     let rest = [(0, settled), (settled, below - settled)].into_iter().filter(|(_, width)| *width > 0);
     let passed = at_least_two & product.bit(below);
     let sticky = rest.map(|(low, width)| product.slice(low, width).any()).reduce(|one, other| one | other);
-    // The bias is 2^n - 1: the one comes in as a carry, and of 2^n only the top bits know.
+    // The bias is 2^n − 1. The one comes in as a carry, and 2^n affects only the top bits.
     let exponent = a.plus_and_one(b).named("exponent_sum").minus_bias_and_one(domain.bias()).named("product_exponent");
     Unrounded {
         exponent,

@@ -1,14 +1,14 @@
 //! Compares the rounded root of one number with another number, without computing the root.
 //!
-//! RN(√a) > b exactly when a > (b + ½ulp(b))², or equal and b odd: the middle between b and the next number has one
-//! bit more than b, and its square is taken whole. Toward zero the next number itself stands in the middle's place, and
-//! a ≥ its square decides.
+//! RN(√a) > b exactly if a > (b + ½ulp(b))², or if both are equal and b is odd. The middle between b and the next
+//! number has one bit more than b, and its square is exact. For rounding toward zero, the next number replaces the
+//! middle, and a ≥ its square decides.
 
 use super::Domain;
 use super::parts::{Operand, Rounding, Signed, leading_zeros, shift_left, square};
 use crate::hdl::Signal;
 
-/// √a, rounded, > b; false with a NaN or where a has no root, true where b is negative and a has one.
+/// √a, rounded, > b. False if an operand is a NaN or a has no root, and true if b is negative and a has a root.
 pub fn root_exceeds<'g>(a: Signal<'g>, b: Signal<'g>, domain: Domain) -> Signal<'g> {
     let (a, b) = (Operand::unpack(a, domain, "a"), Operand::unpack(b, domain, "b"));
     let a_exceeds = finite_exceeds(&a, &b, domain).named("finite_exceeds");
@@ -29,7 +29,7 @@ fn finite_exceeds<'g>(a: &Operand<'g>, b: &Operand<'g>, domain: Domain) -> Signa
     let precision = domain.significand_bits();
     let high = normalised.high(precision).named("square_high");
 
-    // How far a's exponent is above that of a square below 2.
+    // The difference of a's exponent and that of a square below 2.
     let lead = a_exponent.minus(exponent.twice()).offset(i64::from(domain.bias())).named("exponent_lead");
     let above = at_least_two.select(lead.at_least(2), lead.at_least(1)).named("exponent_is_above");
     let level = at_least_two.select(lead.is(1), lead.is(0)).named("exponent_is_level");
@@ -39,7 +39,7 @@ fn finite_exceeds<'g>(a: &Operand<'g>, b: &Operand<'g>, domain: Domain) -> Signa
         let level = a_significand.equals(high) & rest.is_zero();
         significand_above = (significand_above | level).named("significand_is_not_below");
     } else if !subnormal_squares_vanish(domain) {
-        // The square of an odd number is odd, so a tie needs a middle that ends in zeros: that of a subnormal.
+        // The square of an odd number is odd, so a tie needs a middle that ends in zeros, as of a subnormal.
         let rest = normalised.low(normalised.width() - precision);
         let tie = a_significand.equals(high) & rest.is_zero();
         significand_above = significand_above | (tie & b.fraction.bit(0)).named("tie_above_odd");
@@ -47,17 +47,17 @@ fn finite_exceeds<'g>(a: &Operand<'g>, b: &Operand<'g>, domain: Domain) -> Signa
     certain | above | (level & significand_above)
 }
 
-/// Whether the square of every middle below the smallest normal number is less than the smallest positive number.
+/// True if the square of every middle below the smallest normal number is less than the smallest positive number.
 fn subnormal_squares_vanish(domain: Domain) -> bool {
     !domain.keeps_subnormals() || domain.min_exponent() <= -(domain.fraction_bits() as i32)
 }
 
-/// The middle between a number and the next one up, or the next one: biased exponent, and significand with its leading
-/// bit set.
+/// The middle between a number and the next one up, or the next number itself: biased exponent, and significand with
+/// its leading bit set.
 struct Middle<'g> {
     exponent: Signed<'g>,
     significand: Signal<'g>,
-    /// The middle is so small that its square is below any positive number.
+    /// True if the middle is so small that its square is below any positive number.
     certain: Signal<'g>,
 }
 
@@ -86,7 +86,7 @@ impl<'g> Middle<'g> {
         }
     }
 
-    /// The next number, with a zero behind its significand to be as wide as a middle.
+    /// The next number, with a zero after its significand, so that it is as wide as a middle.
     fn next(b: &Operand<'g>, domain: Domain) -> Self {
         let zero = b.fraction.graph().constant(1, 0);
         let next = b.magnitude().plus(1).named("b_next");

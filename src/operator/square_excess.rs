@@ -1,4 +1,4 @@
-//! a² − (b² + c² + d²) in a window of exact squares, or NaN where that leaves a doubt.
+//! a² − (b² + c² + d²) in a window of exact squares, or NaN if the result is in doubt.
 
 use super::Domain;
 use super::parts::{
@@ -7,7 +7,7 @@ use super::parts::{
 use crate::hdl::Signal;
 use crate::number::{Format, WINDOW_BITS, WINDOW_INEXACT_BITS, WINDOW_LEADING_BITS, WINDOW_LOST_BITS};
 
-/// The excess of `a` over the others, which are in `domain`, in `to`. Their format flushes subnormals.
+/// The excess of `a` over the others, converted from `domain` to `to`. Their format flushes subnormals.
 pub fn square_excess<'g>(operands: [Signal<'g>; 4], domain: Domain, to: Format) -> Signal<'g> {
     let mut names = ["a", "b", "c", "d"].into_iter();
     let operands = operands.map(|word| Operand::unpack(word, domain, names.next().unwrap_or("a")));
@@ -22,8 +22,7 @@ pub fn square_excess<'g>(operands: [Signal<'g>; 4], domain: Domain, to: Format) 
     let below = (excess.same(0) - excess).named("shortfall");
     let magnitude = negative.select(below.low(width - 1), excess.low(width - 1)).named("excess_magnitude");
 
-    // What is in doubt: the sign where the magnitude is below the bound of the errors; of a positive excess also the
-    // leading bits.
+    // In doubt are the sign, if the magnitude is below the error bound, and also the leading bits of a positive excess.
     let inexact = (a.inexact | b.inexact | c.inexact | d.inexact).named("inexact");
     let lost = (a.lost | b.lost | c.lost | d.lost).named("lost");
     let doubtful = |bits: u32, name: &str| {
@@ -64,11 +63,11 @@ fn larger<'g>(a: Signal<'g>, b: Signal<'g>) -> Signal<'g> {
 
 /// An operand's square in the window.
 struct Windowed<'g> {
-    /// Its bits from the window's last place up.
+    /// The bits from the window's last place up.
     kept: Signal<'g>,
-    /// Whether it has others.
+    /// True if bits below the window were lost.
     lost: Signal<'g>,
-    /// Whether the operand's last bit is set, so that it may not be what is meant.
+    /// True if the operand's last bit is set, so that it may differ from the exact value.
     inexact: Signal<'g>,
 }
 

@@ -4,19 +4,19 @@ use super::Operator;
 use crate::number::{Format, Number, Soft, Window};
 
 impl Operator {
-    /// The word its hardware gives for operands in `format`: what [`Soft`] computes. `b` counts only if it has two, and
-    /// serves for the third and fourth too.
+    /// The word that the hardware gives for operands in `format`: the result of [`Soft`]. `b` is used only if the
+    /// operator has two operands. It is then also the third and fourth operand.
     ///
     /// # Panics
-    /// If a word has more bits than the format.
+    /// Panics if a word has more bits than the format.
     pub fn twin(self, format: Format, a: u128, b: u128) -> u128 {
         self.twin_of(format, [a, b, b, b])
     }
 
-    /// [`Operator::twin`] with an operand for each input; those it has not do not count.
+    /// As [`Operator::twin`], with an operand for each input. Operands that the operator does not have are ignored.
     ///
     /// # Panics
-    /// If a word that counts has more bits than the format.
+    /// Panics if a word that is used has more bits than the format.
     pub fn twin_of(self, format: Format, operands: [u128; 4]) -> u128 {
         let operand = |index: usize| Soft::from_bits(format, operands[index.min(self.operands() - 1)]);
         let (x, y) = (operand(0), operand(1));

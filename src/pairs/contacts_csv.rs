@@ -1,4 +1,4 @@
-//! Contacts as CSV: number and flow of a pair, position, normal, depth, whether it is invalid.
+//! Contacts as CSV: the number and flow of a pair, position, normal, depth, and 1 for an invalid pair.
 
 use super::{FileError, table};
 use crate::query::{ContactRecord, Flow, NUMBERS};
@@ -10,7 +10,7 @@ const FLOW: usize = 1;
 const FIRST: usize = 2;
 const INVALID: usize = FIRST + NUMBERS;
 
-/// The columns: the pair's number and flow, the contact's numbers, whether it is invalid.
+/// The columns: the pair's number and flow, the contact's numbers, and 1 for an invalid pair.
 const COLUMNS: [&str; INVALID + 1] = {
     let mut columns = ["pair"; INVALID + 1];
     (columns[FLOW], columns[INVALID]) = ("flow", "invalid");
@@ -66,7 +66,7 @@ fn contact(row: &table::Row<'_>) -> Result<ContactRecord, FileError> {
     Ok(contact)
 }
 
-/// Flags that no kernel writes are written as far as the columns go: bits 2:1 as the flow, bit 3 as invalid.
+/// Flags that no kernel writes are written as far as the columns allow: bits 2:1 as the flow, bit 3 as invalid.
 pub fn write(out: impl Write, contacts: impl Iterator<Item = (u32, ContactRecord)>) -> io::Result<()> {
     let mut out = csv::Writer::from_writer(out);
     out.write_record(COLUMNS)?;

@@ -1,8 +1,8 @@
-//! What is wrong with a CSV file that a common tool wrote, and the option of that tool which cures it.
+//! Errors in CSV files that common tools write, with the option of the tool that avoids each.
 
 use csv::StringRecord;
 
-/// A header that pandas or NumPy writes unless it is told otherwise. `None` if it is wrong in no known way.
+/// The error for a header that pandas or NumPy writes by default. `None` if its fault is unknown.
 pub fn of_header(record: &StringRecord, columns: &[&str]) -> Option<String> {
     let first = record.get(0).unwrap_or_default();
     let header = columns.join(",");
@@ -30,13 +30,13 @@ pub fn of_header(record: &StringRecord, columns: &[&str]) -> Option<String> {
     None
 }
 
-/// A row that holds no pair.
+/// The error for a row that holds no pair.
 pub fn of_row(record: &StringRecord) -> Option<String> {
     let first = record.get(0).unwrap_or_default();
     first.starts_with('#').then(|| "comments are not supported: leave this line out".to_owned())
 }
 
-/// A field that should be a number.
+/// The error for a field that should be a number.
 pub fn of_number(text: &str) -> String {
     if text.is_empty() {
         return "empty; write a number, or nan if it is unknown (pandas: na_rep=\"nan\")".to_owned();

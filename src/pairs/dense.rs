@@ -1,4 +1,4 @@
-//! The candidate pairs of crowded scenes: what a broad phase hands on.
+//! The candidate pairs of crowded scenes, as a broad phase finds them.
 
 use super::source::{Source, UNIT};
 use crate::query::PairRecord;
@@ -6,9 +6,9 @@ use crate::query::PairRecord;
 /// Spheres of a scene.
 const SPHERES: usize = 1000;
 
-/// `count` candidates of one scene after the other: a thousand spheres with centres anywhere in a cube of side 8 around
-/// the origin and radii from ¼ to ½. A candidate is a pair whose bounding boxes touch. The first n pairs are the same
-/// for every count of at least n.
+/// `count` candidates from one scene after another. A scene has a thousand spheres, with centres anywhere in a cube of
+/// side 8 around the origin and radii from ¼ to ½. A candidate is a pair whose bounding boxes touch. The first n pairs
+/// are the same for every count of at least n.
 pub fn pairs(count: u64, seed: u64) -> Vec<PairRecord> {
     let mut source = Source::new(seed ^ 0x64_656E_7365);
     let mut pairs = Vec::new();
@@ -29,7 +29,7 @@ pub fn pairs(count: u64, seed: u64) -> Vec<PairRecord> {
 
 impl Source {
     fn in_a_box(&mut self) -> [f32; 4] {
-        // 24 random bits are a binary32 number from 0 to 1 exactly.
+        // 24 random bits make an exact binary32 number from 0 to 1.
         let mut unit = || (self.bits() >> 8) as f32 / (1 << 24) as f32;
         let [x, y, z] = [(); 3].map(|()| unit() * 8.0 - 4.0);
         [x, y, z, self.positive(UNIT - 2, UNIT - 2)]

@@ -14,7 +14,7 @@ pub struct Category {
     pub(super) make: fn(&mut Source) -> PairRecord,
 }
 
-/// Every category of two spheres. Pair i of `hard:N` is of the (i mod 17)th.
+/// Every category of two spheres. Pair i of `hard:N` belongs to category i mod 17.
 pub const CATEGORIES: [Category; 17] = {
     const fn of(number: u64, name: &'static str, about: &'static str, make: fn(&mut Source) -> PairRecord) -> Category {
         Category { query: Query::SphereSphere, name, about, number, make }
@@ -41,19 +41,19 @@ pub const CATEGORIES: [Category; 17] = {
 };
 
 impl Category {
-    /// Its name, in lower case.
+    /// The name, in lower case.
     pub const fn name(&self) -> &'static str {
         self.name
     }
 
-    /// What is hard about it, in a few words.
+    /// What makes the pairs hard, in a few words.
     pub const fn about(&self) -> &'static str {
         self.about
     }
 
     /// `count` pairs, all valid. The first n of them are the same for every count of at least n.
     pub fn pairs(self, count: u64, seed: u64) -> impl Iterator<Item = PairRecord> {
-        // Categories are independent of one another: each has a stream of its own.
+        // Categories are independent of one another, because each has its own stream.
         let mut source = Source::new(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(self.number));
         let (query, make) = (self.query, self.make);
         // A number near the largest may become an infinity: such a pair is drawn again.
@@ -89,7 +89,7 @@ impl Source {
             pair.0[i + 4] = if self.flip() { pair.0[i] + ulps } else { pair.0[i] - ulps };
         }
         if self.below(4) == 0 {
-            // Radii as small as the step: then it decides.
+            // With radii as small as the step, the step decides.
             for i in [3, 7] {
                 pair.0[i] = self.positive(UNIT - 26, UNIT - 22).to_bits();
             }
@@ -132,7 +132,8 @@ impl Source {
         if self.flip() { pair((p1, r1), (p2, r2)) } else { pair((p2, r2), (p1, r1)) }
     }
 
-    /// A Pythagorean quadruple below 2^20 (Euler's: of four integers below 2^9), turned and signed at random.
+    /// A Pythagorean quadruple below 2^20 (by Euler's formula from four integers below 2^9), rotated and with random
+    /// signs.
     fn quadruple(&mut self) -> ([i32; 3], i32) {
         let [m, n, p, q] = [(); 4].map(|()| self.below(512) as i32);
         let legs = [m * m + n * n - p * p - q * q, 2 * (m * q + n * p), 2 * (n * q - m * p)];
@@ -141,7 +142,7 @@ impl Source {
         (step, m * m + n * n + p * p + q * q)
     }
 
-    /// Spheres on integer points times a power of two, their radii `r1` and the other made of the distance.
+    /// Spheres on integer points times a power of two, with the radii `r1` and the rest of the distance.
     fn on_quadruple(&mut self, radii: impl Fn(&mut Self, i32) -> [i32; 2]) -> PairRecord {
         let unit = f32::from_bits((UNIT - 60 + self.below(80)) << 23);
         let (step, distance) = self.quadruple();
@@ -180,7 +181,7 @@ impl Source {
             pair.0[i + 4] = pair.0[i];
         }
         if self.flip() {
-            // Touching, as nearly as binary32 has it.
+            // Touching, as nearly as binary32 can represent it.
             let [x1, x2, r1] = [axis, axis + 4, 3].map(|i| f32::from_bits(pair.0[i]));
             pair.0[7] = ((x1 - x2).abs() - r1).max(0.0).to_bits();
         }
@@ -231,7 +232,7 @@ impl Source {
         let bits = 1 + self.below(277) as i32;
         let lowest = (bits - 150).max(-126);
         let high = lowest + self.below((128 - lowest) as u32) as i32;
-        // Of all numbers below 2^(high + 1) the largest.
+        // The largest of all numbers below 2^(high + 1).
         let large = f32::from_bits(((high + 127) as u32) << 23 | 0x7F_FFFF);
         let unit = power_of_two(high + 1 - bits);
         // A contact as deep as the unit, a touch, and a miss by a unit.
@@ -303,7 +304,7 @@ mod tests {
         }
     }
 
-    /// With this seed a category once gave an infinity among its 60 000.
+    /// With this seed, a category once produced an infinity among its 60 000 pairs.
     #[test]
     fn what_overflows_is_drawn_again() {
         for category in CATEGORIES {

@@ -1,4 +1,4 @@
-//! How pairs of each query are made.
+//! The functions that make pairs of each query.
 
 use super::hard::{self, Category};
 use super::source::Source;
@@ -7,7 +7,7 @@ use crate::query::{PairRecord, Query};
 
 /// The functions that make the pairs of a query.
 pub(super) struct Makers {
-    /// For random pairs: the i-th is made by the (i mod n)th of n.
+    /// For random pairs: function i mod n makes pair i.
     pub random: &'static [fn(&mut Source) -> PairRecord],
     /// For hard pairs, likewise.
     pub hard: &'static [Category],

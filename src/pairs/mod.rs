@@ -1,4 +1,4 @@
-//! Pairs by name (`diamond:10`, `random:1000`, `hard:1000`) and from files, and contacts to files: CSV and `.npy`.
+//! Pairs by name (`diamond:10`, `random:1000`, `hard:1000`) and from files, and contacts in files: CSV and `.npy`.
 
 mod array;
 mod contacts_csv;

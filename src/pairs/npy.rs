@@ -23,7 +23,7 @@ fn parse<const W: usize>(bytes: &[u8], descr: &str) -> Result<Vec<[u32; W]>, Pro
     if header.fortran_order && count > 1 {
         return Err(Problem("fortran_order", "expected False, found True (see numpy.ascontiguousarray)".to_owned()));
     }
-    // The shape is believed only where the file bears it out.
+    // The shape is used only if the size of the file agrees with it.
     let record_bytes = 4 * W as u64;
     if count.checked_mul(record_bytes) != Some(data.len() as u64) {
         let there = data.len();

@@ -6,7 +6,7 @@ const MAGIC: &[u8] = b"\x93NUMPY";
 /// The most bytes of text. An n × 8 array has 118 of them.
 const LONGEST: usize = 1024;
 
-/// What a header says of an array.
+/// The header of an array.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Header {
     /// Type of the elements, as in `<f4`.
@@ -17,7 +17,7 @@ pub struct Header {
     pub shape: Vec<u64>,
 }
 
-/// What is wrong, and in which part of the header.
+/// The part of the header that is wrong, and the error.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem(pub &'static str, pub String);
 
@@ -102,7 +102,7 @@ impl Header {
     }
 }
 
-/// The rest of a text; spaces are ignored.
+/// The rest of a text. Spaces are ignored.
 struct Scanner<'a>(&'a str);
 
 impl<'a> Scanner<'a> {

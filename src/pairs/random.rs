@@ -4,7 +4,7 @@ use super::makers;
 use super::source::{LARGEST, Source, UNIT};
 use crate::query::{PAIR_WORDS, PairRecord, Query, Rule};
 
-/// How a pair of spheres is made; pair i is made the (i mod 10)th way, so that ten pairs have every flow in them.
+/// The functions that make a pair of spheres. Function i mod 10 makes pair i, so ten pairs include every flow.
 pub(super) const KINDS: [fn(&mut Source) -> PairRecord; 10] = [
     Source::ordinary,
     Source::one_scale,
@@ -20,7 +20,7 @@ pub(super) const KINDS: [fn(&mut Source) -> PairRecord; 10] = [
 
 /// `count` pairs. The first n of them are the same for every count of at least n.
 ///
-/// Nothing but integers and correctly rounded operations is used, so every machine makes the same pairs.
+/// Only integers and correctly rounded operations are used, so every machine makes the same pairs.
 pub fn pairs(query: Query, count: u64, seed: u64) -> Vec<PairRecord> {
     let kinds = makers::of(query).random;
     let mut source = Source::new(seed);
@@ -28,7 +28,7 @@ pub fn pairs(query: Query, count: u64, seed: u64) -> Vec<PairRecord> {
 }
 
 impl Source {
-    /// Numbers around 1: contact or not, about evenly.
+    /// Numbers around 1: contact or not, about equally often.
     pub(super) fn ordinary(&mut self) -> PairRecord {
         self.spheres((UNIT - 4, UNIT), (UNIT - 2, UNIT))
     }
@@ -64,7 +64,7 @@ impl Source {
         const STEPS: [([i32; 3], u32); 6] =
             [([1, 0, 0], 1), ([3, 4, 0], 5), ([1, 2, 2], 3), ([2, 3, 6], 7), ([8, 9, 12], 17), ([20, 21, 0], 29)];
         let (step, distance) = STEPS[self.below(6) as usize];
-        // Past the middle of the range either side the squares leave it, and exactness with them.
+        // Beyond the middle of the range on either side, the squares leave the range and are no longer exact.
         let unit = f32::from_bits((UNIT - 40 + self.below(80)) << 23);
         let turn = self.below(3) as usize;
         let centre = [(); 3].map(|()| self.below(2001) as i32 - 1000);
@@ -77,7 +77,7 @@ impl Source {
         PairRecord::from_spheres(sphere(centre, r1), sphere(other, distance - r1))
     }
 
-    /// One centre for both: Flow 2, but for a sign of zero or an ulp now and then.
+    /// The same centre for both: Flow 2, except for a sign of zero or an ulp now and then.
     fn coincident(&mut self) -> PairRecord {
         let mut pair = self.spheres((0, LARGEST), (0, LARGEST - 1));
         for axis in 0..3 {
@@ -93,7 +93,7 @@ impl Source {
         pair
     }
 
-    /// Every exponent as likely as any other.
+    /// Every exponent is equally likely.
     fn any_exponents(&mut self) -> PairRecord {
         self.spheres((0, LARGEST), (0, LARGEST))
     }
@@ -117,12 +117,12 @@ impl Source {
         self.spheres((UNIT + 60, LARGEST), (UNIT + 60, LARGEST))
     }
 
-    /// Any words at all.
+    /// Any words.
     pub(super) fn any_words(&mut self) -> PairRecord {
         PairRecord([(); PAIR_WORDS].map(|()| self.bits()))
     }
 
-    /// An ordinary pair but for one word: a NaN, an infinity or a negative radius.
+    /// An ordinary pair except for one word: a NaN, an infinity or a negative radius.
     fn invalid(&mut self) -> PairRecord {
         let pair = self.ordinary();
         self.spoil(Query::SphereSphere, pair)

@@ -73,12 +73,12 @@ fn whole(text: &str) -> Option<String> {
 }
 
 impl Set {
-    /// Whether `text` can only be meant as the name of a set, right or wrong, and not as a file.
+    /// True if `text` can only be the name of a set, right or wrong, and not a file.
     pub(crate) fn is_name(text: &str) -> bool {
         text.split_once(':').is_some_and(|(kind, _)| KINDS.contains(&kind))
     }
 
-    /// The set that `text` may be meant for, if its kind is nearly right.
+    /// The set that `text` may stand for, if its kind is nearly right.
     pub(super) fn meant(text: &str) -> Option<String> {
         let (kind, size) = text.split_once(':')?;
         let likeness = |known: &&str| strsim::jaro(known, &kind.to_lowercase());

@@ -4,7 +4,7 @@ use super::hard::Category;
 use super::source::{LARGEST, Source, UNIT};
 use crate::query::{PairRecord, Query};
 
-/// How a random pair is made; pair i is made the (i mod 8)th way.
+/// The functions that make random pairs. Function i mod 8 makes pair i.
 pub(super) const KINDS: [fn(&mut Source) -> PairRecord; 8] = [
     Source::before_a_plane,
     Source::near_a_plane,
@@ -16,7 +16,7 @@ pub(super) const KINDS: [fn(&mut Source) -> PairRecord; 8] = [
     Source::invalid_and_a_plane,
 ];
 
-/// Every hard category. Pair i of `hard:N` is of the (i mod 12)th.
+/// Every hard category. Pair i of `hard:N` belongs to category i mod 12.
 pub(super) const CATEGORIES: [Category; 12] = {
     const fn of(number: u64, name: &'static str, about: &'static str, make: fn(&mut Source) -> PairRecord) -> Category {
         Category { query: Query::SpherePlane, name, about, number, make }
@@ -47,7 +47,7 @@ fn pair([x, y, z]: [f32; 3], r: f32, [nx, ny, nz]: [f32; 3], d: f32) -> PairReco
 }
 
 impl Source {
-    /// A vector of length 1, but for rounding.
+    /// A vector of length 1, except for rounding.
     fn unit(&mut self) -> [f32; 3] {
         let v = [(); 3].map(|()| self.signed(UNIT - 6, UNIT));
         let length = ((v[0] * v[0] + v[1] * v[1]) + v[2] * v[2]).sqrt();
@@ -66,7 +66,7 @@ impl Source {
         [(); 3].map(|()| self.signed(low, high))
     }
 
-    /// Numbers around 1: contact or not, about evenly.
+    /// Numbers around 1: contact or not, about equally often.
     fn before_a_plane(&mut self) -> PairRecord {
         let n = self.unit();
         pair(self.centre(UNIT - 4, UNIT), self.positive(UNIT - 2, UNIT), n, self.signed(UNIT - 3, UNIT))
@@ -79,7 +79,7 @@ impl Source {
         self.touching(n, c, scale)
     }
 
-    /// A plane that the sphere touches, but for a few ulp of its distance.
+    /// A plane that the sphere touches, except for a few ulp of its distance.
     fn touching(&mut self, n: [f32; 3], c: [f32; 3], scale: u32) -> PairRecord {
         let r = self.positive(scale - 5, scale - 1);
         let d = along(n, c) - r;
@@ -88,7 +88,7 @@ impl Source {
         pair(c, r, n, f32::from_bits(d.to_bits() & 0x8000_0000 | bits))
     }
 
-    /// Integers times a power of two: tangent, or one ulp of the distance to a side.
+    /// Integers times a power of two: tangent, or one ulp of the distance away from it.
     fn on_an_axis(&mut self) -> PairRecord {
         let unit = f32::from_bits((UNIT - 100 + self.below(200)) << 23);
         let (n, axis) = self.axis_vector();
@@ -108,7 +108,7 @@ impl Source {
         pair(c, self.positive(UNIT - 1, UNIT), n, along(n, c) + self.signed(UNIT - 3, UNIT + 1))
     }
 
-    /// The centre is a multiple of a vector in the plane, and a little more.
+    /// The centre is a multiple of a vector in the plane, plus a small offset.
     fn far_along_its_plane(&mut self) -> PairRecord {
         let (n, far) = (self.unit(), self.positive(UNIT + 8, UNIT + 30));
         let turn = self.below(3) as usize;
@@ -135,7 +135,7 @@ impl Source {
     fn small_at_a_plane(&mut self) -> PairRecord {
         let (n, c) = (self.unit(), self.centre(UNIT - 2, UNIT + 2));
         let r = self.positive(UNIT - 24, UNIT - 1);
-        // From half a radius inside to as much outside, where binary32 has it.
+        // From half a radius inside to as much outside, as nearly as binary32 can represent it.
         let reach = self.below(1 << 10) as f32 / 1024.0 + 0.5;
         pair(c, r, n, along(n, c) - r * reach)
     }
@@ -167,11 +167,11 @@ impl Source {
         pair(c, self.positive(low - 2, low), n, self.signed(low - 2, low + 1))
     }
 
-    /// Numbers beside the largest.
+    /// Numbers next to the largest one.
     fn huge_and_a_plane(&mut self) -> PairRecord {
         let n = self.unit();
         let c = self.centre(LARGEST - 2, LARGEST);
-        // Both sides of the plane, though nothing near it.
+        // On both sides of the plane, but never near it.
         let d = self.signed(LARGEST - 3, LARGEST);
         pair(c, self.positive(LARGEST - 3, LARGEST), n, d)
     }
@@ -192,7 +192,7 @@ impl Source {
         pair(c, r, n, f32::from_bits(bits))
     }
 
-    /// Every exponent as likely as any other, but for the normal's.
+    /// Every exponent is equally likely, except for the normal's.
     fn any_exponents_and_a_plane(&mut self) -> PairRecord {
         let n = self.unit();
         pair(self.centre(0, LARGEST), self.positive(0, LARGEST), n, self.signed(0, LARGEST))
@@ -231,7 +231,7 @@ mod tests {
             let real = truths.iter().filter(|truth| truth.flow() == Flow::Real).count();
             assert!(truths.iter().all(|truth| truth.flow() != Flow::Invalid), "{}", category.name());
             assert!((40..360).contains(&real), "{}: {real} of 400 touch", category.name());
-            // The promise of a normal is kept as well as binary32 can.
+            // The promise of a normal is kept as well as binary32 can keep it.
             for pair in &pairs {
                 let [_, _, _, _, nx, ny, nz, _] = pair.values().map(f64::from);
                 assert!(((nx * nx + ny * ny + nz * nz).sqrt() - 1.0).abs() < 3e-7, "{}: {pair:?}", category.name());

@@ -3,7 +3,7 @@
 use super::{FileError, cure};
 use std::path::Path;
 
-/// A row: where it begins in the file's text, and its fields in the order of the columns asked for.
+/// A row: its place in the file's text, and its fields in the order of the requested columns.
 pub struct Row<'a> {
     file: &'a Path,
     text: &'a [u8],
@@ -82,7 +82,7 @@ fn header(
     Ok(places)
 }
 
-/// What the CSV reader itself refuses: text that is not UTF-8.
+/// The error of the CSV reader itself, for text that is not UTF-8.
 fn broken(file: &Path, text: &[u8], error: csv::Error) -> FileError {
     let line = line_at(text, error.position().map_or(0, csv::Position::byte));
     let problem = match error.kind() {
@@ -92,8 +92,8 @@ fn broken(file: &Path, text: &[u8], error: csv::Error) -> FileError {
     FileError::Line { file: file.to_owned(), line, problem }
 }
 
-/// The line, from 1, of the row that begins at `begin`. (The reader's own count is early by the empty lines before
-/// a row, of which the second half of a CR LF is one.)
+/// The line, from 1, of the row that begins at `begin`. (The reader's own count is too low by the empty lines before a
+/// row. The second half of a CR LF counts as an empty line.)
 fn line_at(text: &[u8], begin: u64) -> u64 {
     let (before, rest) = text.split_at((begin as usize).min(text.len()));
     let empty = rest.iter().take_while(|byte| matches!(byte, b'\r' | b'\n'));
@@ -116,8 +116,8 @@ impl Row<'_> {
         }
     }
 
-    /// Column `i` as the binary32 number nearest to its decimals. NaN and infinities can be written; a decimal
-    /// beyond the largest number cannot be meant.
+    /// Column `i` as the binary32 number nearest to its decimals. NaN and infinities can be written as such. A decimal
+    /// beyond the largest number is an error.
     pub fn number(&self, i: usize) -> Result<f32, FileError> {
         let text = self.text(i);
         let value = text.parse::<f32>().map_err(|_| self.error(i, cure::of_number(text)))?;

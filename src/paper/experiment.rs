@@ -1,4 +1,4 @@
-//! The experiment: ODE measured, the AFU simulated, and both joined.
+//! The experiment: measures ODE, simulates the AFU, and joins both.
 
 use super::measure::measure;
 use super::simulate::{SimulateError, Task, simulate};
@@ -13,7 +13,7 @@ use crate::verify::{Bench, VerifyError};
 use serde::Serialize;
 use std::path::Path;
 
-/// The request.
+/// The settings of an experiment.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// The extent: how many numbers of collisions are tried.
@@ -26,9 +26,9 @@ pub struct Plan {
     pub flow: Flow,
     /// The most collisions: nColMax.
     pub n_col_max: usize,
-    /// Executions of each collision that ODE's average is of.
+    /// The number of executions of each collision over which ODE's time is averaged.
     pub executions: u32,
-    /// Transactions that the AFU's average is of.
+    /// The number of transactions over which the AFU's time is averaged.
     pub transactions: u32,
     /// The AFU.
     pub config: Config,
@@ -59,13 +59,13 @@ pub enum PaperError {
     /// ODE could not do its part.
     #[error(transparent)]
     Ode(#[from] ode::Error),
-    /// No model of the AFU.
+    /// There is no model of the AFU.
     #[error(transparent)]
     Verify(#[from] VerifyError),
     /// A point could not be simulated.
     #[error(transparent)]
     Simulate(#[from] SimulateError),
-    /// The folder is not ours, or could not be written.
+    /// The folder is not ours, or cannot be written.
     #[error(transparent)]
     Folder(#[from] folder::Error),
 }
@@ -77,11 +77,11 @@ struct Manifest<'a> {
     settings: &'a Settings,
 }
 
-/// Carries out `plan`. What the folder's store holds is not simulated again; what is measured is measured each time.
+/// Runs `plan`. Simulated points in the folder's store are reused, but times are measured again.
 ///
 /// # Errors
-/// Returns an error if ODE, the model or a job fails; if the folder is not ours or holds another study (`force` takes
-/// it all the same); if it cannot be written.
+/// Returns an error if ODE, the model or a job fails. Returns an error if the folder is not ours or holds another
+/// study, unless `force` is set, and if it cannot be written.
 pub fn run(plan: &Plan, folder: &Path, force: bool, mut progress: impl FnMut(Work)) -> Result<Experiment, PaperError> {
     folder::check_study(folder, SCHEMA, force)?;
     let Plan { size, config, link, .. } = plan;

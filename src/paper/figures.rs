@@ -1,4 +1,4 @@
-//! The figures. Solid lines are measured here, dashed ones simulated, dotted ones the paper's text.
+//! The figures. Solid lines are measured here, dashed ones are simulated, and dotted ones are from the paper's text.
 
 use super::{Experiment, Joined};
 use crate::count::counted;
@@ -24,7 +24,7 @@ pub fn figure7(results: &Experiment) -> Plot {
     totals(results, &title, &results.figure7(), ("ms", 1e-6))
 }
 
-/// Both figures divided by the number of collisions: where the set-up is won back, and what is left.
+/// Both figures divided by the number of collisions: where the set-up is recovered, and which time remains.
 pub fn per_collision(results: &Experiment) -> Plot {
     let axes = (Axis::new("collisions in a transaction", Scale::Log), Axis::new("ns per collision", Scale::Log));
     let all: Vec<&Joined> = results.points.iter().collect();

@@ -8,14 +8,14 @@ use crate::ode::{Benchmark, Error, Ode, Recording};
 pub struct Measured {
     /// The collisions.
     pub recording: Recording,
-    /// A point for each number of collisions asked for.
+    /// A point for each requested number of collisions.
     pub points: Vec<OdePoint>,
     /// Instruction set of the f32 kernel.
     pub level: &'static str,
 }
 
-/// Runs the benchmark, then times the first so many of its collisions for each of `counts`, in `passes` passes.
-/// `done` is called with the number of points measured so far.
+/// Runs the benchmark. Then times its first collisions, as many as each of `counts` says, in `passes` passes. `done` is
+/// called with the number of points measured so far.
 ///
 /// # Errors
 /// Returns the errors of [`Benchmark::run`] and [`Recording::figures`].

@@ -1,7 +1,7 @@
-//! The paper's experiment, run again: collisions recorded in ODE's diamond, timed on this machine, and sent through the
-//! simulated AFU; its Figures 6 and 7, and its text checked by arithmetic.
+//! Repeats the paper's experiment: collisions are recorded in ODE's diamond, timed on this machine, and sent through
+//! the simulated AFU. The results are the paper's Figures 6 and 7, and an arithmetic check of its text.
 //!
-//! [`run`] carries out a [`Plan`], and [`write`](write()) writes its results.
+//! [`run`] runs a [`Plan`], and [`write`](write()) writes its results.
 
 mod claims;
 mod experiment;

@@ -17,10 +17,10 @@ struct Document<'a> {
     points: &'a [Joined],
 }
 
-/// Writes the figures, their points, results.json and report.html into a folder; each is replaced whole.
+/// Writes the figures, their points, results.json and report.html into a folder. Each file is replaced as a whole.
 ///
 /// # Errors
-/// Returns an error if the file system refuses.
+/// Returns an error if a file cannot be written.
 pub fn write(results: &Experiment, folder: &Path) -> Result<(), folder::Error> {
     let claims = claims(&Published::PAPER);
     let figures = [

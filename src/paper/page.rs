@@ -1,4 +1,4 @@
-//! `report.html`: the figures and what they come to.
+//! `report.html`: the figures and their meaning.
 
 use maud::{Markup, html};
 
@@ -6,7 +6,7 @@ use super::{Claim, Experiment, Joined, Published, Settings, Summary, figure6, fi
 use crate::report::page::{self, table};
 use crate::report::table::{counted, grouped};
 
-/// The page.
+/// The text of the page.
 pub fn page(results: &Experiment, claims: &[Claim], paper: &Published) -> String {
     let body = html! {
         p { "The experiment of “A hardware accelerator implementation for real-time collision detection” (Alves et al.), "

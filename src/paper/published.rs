@@ -1,13 +1,13 @@
 //! The figures of the paper's text.
 
-/// The figures in the paper's text. It has no table, and its plots no values.
+/// The figures in the paper's text. The paper has no table, and its plots have no values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Published {
-    /// ns per collision by ODE (section VI, of Figure 7).
+    /// ns per collision by ODE (section VI, about Figure 7).
     pub ode_ns: f64,
-    /// ns per collision by the AFU (section VI, of Figure 7).
+    /// ns per collision by the AFU (section VI, about Figure 7).
     pub afu_ns: f64,
-    /// Collisions above which the AFU is always better (section VI, of Figure 6).
+    /// Collisions above which the AFU is always better (section VI, about Figure 6).
     pub crossover: f64,
     /// The speed-up, in percent (abstract, sections VI and VII).
     pub speed_up_percent: f64,
@@ -23,7 +23,7 @@ pub struct Published {
 }
 
 impl Published {
-    /// The paper's.
+    /// The figures of the paper.
     pub const PAPER: Self = Self {
         ode_ns: 102.0,
         afu_ns: 86.0,
@@ -35,12 +35,12 @@ impl Published {
         h_max: 3,
     };
 
-    /// ns that the AFU gains at each collision.
+    /// ns that the AFU saves on each collision.
     pub(crate) fn gain_ns(&self) -> f64 {
         self.ode_ns - self.afu_ns
     }
 
-    /// The time around a transaction that makes the two equal at the crossover, in ns.
+    /// The time around a transaction, in ns, that makes both equal at the crossover.
     pub(crate) fn set_up_ns(&self) -> f64 {
         self.crossover * self.gain_ns()
     }

@@ -7,12 +7,12 @@ use super::{Published, Size};
 /// The schema of `results.json`.
 pub const SCHEMA: &str = "contact-afu/paper/1";
 
-/// The request, and the tools that answered it.
+/// The settings, and the tools that were used.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Settings {
-    /// The command that does it again.
+    /// The command that repeats the experiment.
     pub command: String,
-    /// The processor that measured times are of.
+    /// The processor on which times were measured.
     pub processor: String,
     /// Layers of the diamond: hMax.
     pub h_max: u32,
@@ -22,11 +22,11 @@ pub struct Settings {
     pub t_col: String,
     /// The most collisions: nColMax.
     pub n_col_max: usize,
-    /// Executions of each collision that ODE's average is of.
+    /// The number of executions of each collision over which ODE's time is averaged.
     pub executions: u32,
-    /// Transactions that the AFU's average is of, up to 1000 collisions; above, one.
+    /// The number of transactions over which the AFU's time is averaged, up to 1000 collisions. Above, it is one.
     pub transactions: u32,
-    /// Steps that the recorded collisions are from.
+    /// The number of steps from which the collisions were recorded.
     pub steps: usize,
     /// Number of steps after which the diamond is rebuilt.
     pub steps_of_a_run: usize,
@@ -44,7 +44,7 @@ pub struct Settings {
     pub clock_mhz: f64,
     /// The link model.
     pub link: String,
-    /// Around each transaction, before and after together: ns, from the link model.
+    /// Time around each transaction, before and after together, in ns, from the link model.
     pub set_up_ns: f64,
     /// Seed of the link.
     pub seed: u64,
@@ -52,16 +52,16 @@ pub struct Settings {
     pub rtl_sha256: String,
 }
 
-/// Times for a number of collisions, measured on this machine, all in ns for all of them.
+/// Times for a number of collisions, measured on this machine. Each is in ns for all of them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OdePoint {
     /// Number of collisions.
     pub collisions: usize,
-    /// ODE by the paper's rule: each collision executed several times, averages added.
+    /// ODE by the paper's rule: each collision is executed several times, and the averages are added.
     pub rule_ns: f64,
     /// ODE's calls in a loop that is timed as a whole: the shortest pass.
     pub loop_ns: f64,
-    /// The same, the median.
+    /// The same loop: the median pass.
     pub loop_median_ns: f64,
     /// The f32 kernel in batch, in its own layout: the shortest pass.
     pub batch_ns: f64,
@@ -69,7 +69,7 @@ pub struct OdePoint {
     pub records_ns: f64,
 }
 
-/// A number of collisions through the simulated AFU.
+/// The result of a number of collisions through the simulated AFU.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AfuPoint {
     /// Number of collisions in the transaction.
@@ -78,17 +78,17 @@ pub struct AfuPoint {
     pub transactions: u32,
     /// Cycles, averaged over the transactions.
     pub cycles: f64,
-    /// The fewest.
+    /// The fewest cycles of a transaction.
     pub least_cycles: u64,
-    /// The most.
+    /// The most cycles of a transaction.
     pub most_cycles: u64,
-    /// The cycles that the link's bandwidth allows at least.
+    /// The link limit: the minimum number of cycles.
     pub limit_cycles: f64,
     /// Contacts that the AFU counted.
     pub contacts: u64,
 }
 
-/// Both for one number of collisions.
+/// Measured and simulated results for one number of collisions.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Joined {
     /// Number of collisions.
@@ -105,15 +105,15 @@ pub struct Joined {
     pub records_ns: f64,
     /// The AFU, simulated: cycles of the RTL over the link.
     pub afu_cycles: f64,
-    /// The fewest of a transaction.
+    /// The fewest cycles of a transaction.
     pub afu_least_cycles: u64,
-    /// The most of a transaction.
+    /// The most cycles of a transaction.
     pub afu_most_cycles: u64,
     /// Transactions in the average.
     pub afu_transactions: u32,
-    /// The cycles at the clock, ns.
+    /// The time of these cycles at the clock, ns.
     pub afu_ns: f64,
-    /// That with the link's set-up and tear-down, ns.
+    /// The same with the link's set-up and tear-down, ns.
     pub afu_total_ns: f64,
     /// The link limit, ns.
     pub link_limit_ns: f64,
@@ -125,21 +125,21 @@ pub struct Joined {
     pub paper_afu_ns: f64,
 }
 
-/// All of it.
+/// All results.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Experiment {
     /// The request.
     pub settings: Settings,
     /// The numbers of collisions.
     pub size: Size,
-    /// In increasing order of collisions.
+    /// The points, in increasing order of collisions.
     pub points: Vec<Joined>,
 }
 
 /// The summary at the largest number of collisions.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Summary {
-    /// That number.
+    /// The number of collisions.
     pub collisions: usize,
     /// ns per collision: ODE by the paper's rule, measured.
     pub ode_rule_ns: f64,
@@ -151,19 +151,19 @@ pub struct Summary {
     pub records_ns: f64,
     /// The AFU with set-up, simulated.
     pub afu_ns: f64,
-    /// Contacts that the AFU found among them: it gets numbers rounded to binary32.
+    /// Contacts that the AFU found among them. It gets numbers rounded to binary32.
     pub afu_contacts: u64,
     /// The link limit.
     pub link_limit_ns: f64,
-    /// The share of it that is reached, without set-up.
+    /// The share of the link limit that is reached, without set-up.
     pub link_share: f64,
-    /// ODE in a loop over AFU.
+    /// The time of ODE in a loop over the AFU's.
     pub speed_up_over_loop: f64,
-    /// ODE by the paper's rule over AFU.
+    /// The time of ODE by the paper's rule over the AFU's.
     pub speed_up_over_rule: f64,
-    /// The f32 kernel in batch over AFU.
+    /// The time of the f32 kernel in batch over the AFU's.
     pub speed_up_over_batch: f64,
-    /// The least number of collisions tried from which on the AFU is always faster than ODE in a loop; none if never.
+    /// The smallest number of collisions from which the AFU is always faster than ODE in a loop; `None` if never.
     pub crossover_over_loop: Option<usize>,
     /// The same against the paper's rule.
     pub crossover_over_rule: Option<usize>,
@@ -172,7 +172,7 @@ pub struct Summary {
 }
 
 impl Experiment {
-    /// Joins what was measured with what was simulated, where both are there.
+    /// Joins measured and simulated points that have the same number of collisions.
     pub fn new(settings: Settings, size: Size, ode: &[OdePoint], afu: &[AfuPoint], paper: &Published) -> Self {
         let join = |ode: &OdePoint| {
             let afu = afu.iter().find(|afu| afu.collisions == ode.collisions)?;
@@ -239,7 +239,7 @@ impl Experiment {
         })
     }
 
-    /// From which number of collisions on the AFU always takes less than `other`.
+    /// The number of collisions from which the AFU always takes less than `other`.
     fn crossover(&self, other: impl Fn(&Joined) -> f64) -> Option<usize> {
         let wins = self.points.iter().rev().take_while(|point| point.afu_total_ns < other(point));
         wins.last().map(|point| point.collisions)
@@ -299,7 +299,7 @@ pub(super) mod tests {
         assert_eq!((summary.collisions, summary.ode_loop_ns), (90_000, 50.0));
         assert!((summary.afu_ns - (10.0 + 4000.0 / 90_000.0)).abs() < 1e-9);
         assert!((summary.link_share - 0.95).abs() < 1e-9);
-        // At 100 they are equal, which is no win.
+        // At 100 both are equal, which does not count as faster.
         assert_eq!((summary.crossover_over_loop, summary.crossover_over_rule), (Some(200), Some(100)));
         assert_eq!(summary.crossover_over_batch, None);
     }

@@ -1,6 +1,6 @@
-//! The AFU's part: every point a transaction of its own through the Verilated AFU.
+//! The AFU's part: each point is a separate transaction through the Verilated AFU.
 //!
-//! No point is modelled: a link whose latency varies leaves no formula that is right to the cycle.
+//! No point is calculated, because no formula is exact to the cycle for a link of varying latency.
 
 use std::cmp::Reverse;
 use std::collections::VecDeque;
@@ -13,7 +13,8 @@ use crate::query::PairRecord;
 use crate::store::{Key, Store, StoreError, sha256};
 use crate::verify::{Bench, VerifyError};
 
-/// Above this number of collisions a point is one transaction: transactions differ by a few cycles in thousands.
+/// Above this number of collisions, a point is one transaction, because transactions differ by a few cycles in
+/// thousands.
 const LARGE: usize = 1000;
 
 /// A simulation.
@@ -25,7 +26,7 @@ pub struct Task<'a> {
     pub link: &'a LinkModel,
     /// The collisions; a point uses the first ones.
     pub pairs: &'a [PairRecord],
-    /// Seed of the first transaction's link; the others follow.
+    /// Seed of the first transaction's link. Each further transaction has the next one.
     pub seed: u64,
     /// Transactions of a point of up to 1000 collisions.
     pub transactions: u32,
@@ -34,10 +35,10 @@ pub struct Task<'a> {
 /// Why a point could not be simulated.
 #[derive(Debug, thiserror::Error)]
 pub enum SimulateError {
-    /// The AFU's job did not come to its end.
+    /// The AFU's job did not finish.
     #[error(transparent)]
     Verify(#[from] VerifyError),
-    /// A point could not be read or kept.
+    /// A point could not be read or stored.
     #[error(transparent)]
     Store(#[from] StoreError),
     /// The AFU's contacts differ from those of the reference kernel.
@@ -53,7 +54,7 @@ pub enum SimulateError {
 }
 
 impl Task<'_> {
-    /// The key of a point: everything that decides it.
+    /// The key of a point: everything that affects it.
     fn key(&self, collisions: usize) -> Result<Key, StoreError> {
         let (rtl, config) = (self.bench.rtl_sha256(), self.bench.config());
         let words = self.first(collisions).iter().flat_map(|pair| pair.0);
@@ -101,17 +102,17 @@ impl Task<'_> {
     }
 }
 
-/// Rounded, so that a file gives back the very same number.
+/// Rounds, so that reading the file gives exactly the same number.
 fn thousandths(cycles: f64) -> f64 {
     (cycles * 1000.0).round() / 1000.0
 }
 
-/// A point for each of `counts`: one that `store` holds, or simulated now, on every processor, and kept there.
-/// `progress` is called at the beginning and after each, with the pairs that are done, of how many.
+/// A point for each of `counts`. A point comes from `store`, or is simulated on all processors and stored. `progress`
+/// is called at the beginning and after each point, with the numbers of pairs done and of all pairs.
 ///
 /// # Errors
-/// Returns an error if a job does not end, if a contact is not the reference kernel's, or if a point cannot be read or
-/// kept.
+/// Returns an error if a job does not finish, if a contact differs from the reference kernel's, or if a point cannot be
+/// read or stored.
 pub fn simulate(
     task: &Task,
     counts: &[usize],
@@ -127,7 +128,7 @@ pub fn simulate(
             None => open.push((count, key)),
         }
     }
-    // The largest first, so that no processor is left with one at the end.
+    // The largest first, so that at the end no processor works alone on a large one.
     open.sort_unstable_by_key(|(count, _)| Reverse(*count));
     let whole: usize = open.iter().map(|(count, _)| task.cost(*count)).sum();
     let open = Mutex::new(VecDeque::from(open));
@@ -141,7 +142,7 @@ pub fn simulate(
             scope.spawn(move || {
                 while let Some((count, key)) = next() {
                     if sender.send(store.get_or_make(&key, || task.point(count))).is_err() {
-                        break; // nobody waits any more
+                        break; // the receiver is gone
                     }
                 }
             });

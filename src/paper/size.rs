@@ -3,9 +3,9 @@
 /// The numbers of collisions of the two figures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Size {
-    /// The paper's: 10 to 1000 by 10, and 1000 to 90 000 by 1000.
+    /// The paper's numbers: 10 to 1000 in steps of 10, and 1000 to 90 000 in steps of 1000.
     Full,
-    /// Eleven of the one and four of the other: a run under a minute.
+    /// Eleven numbers of the first figure and four of the second, for a run under a minute.
     Quick,
 }
 

@@ -1,4 +1,5 @@
-//! The cycle of each value of a kernel: as soon as possible, with operands that meet delayed to the same cycle.
+//! The cycle of each value of a kernel: as early as possible, with operands delayed so that they meet in the same
+//! cycle.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -8,26 +9,27 @@ use super::range::{Ranges, Unit};
 use crate::hdl::{BuildErrors, Module};
 use crate::operator::Operator;
 
-/// How many levels of glue may stand one behind the other before a register comes between: a level is a two-way
-/// choice or a gate, and operators' outputs and inputs are registers.
+/// The most levels of glue between registers. A level is a two-way selection or a gate. Operators' outputs and inputs
+/// are registers.
 pub(super) const LONGEST_GLUE: u32 = 3;
 
-/// A time table of a kernel. Cycle 0 is that of the inputs.
+/// A time table of a kernel. In cycle 0, the inputs arrive.
 pub(super) struct Schedule {
     /// The module of each operator in use.
     pub modules: BTreeMap<Unit, Arc<Module>>,
-    /// The unit of each value that is an operator's.
+    /// The unit of each value that is an operator's result.
     pub units: Vec<Option<Unit>>,
-    /// When each value's operands meet. Nothing for what is dead, and for constants, which are there always.
+    /// The cycle in which each value's operands meet; `None` for dead code and for constants, which are always
+    /// available.
     pub start: Vec<Option<u32>>,
-    /// When each value is there; nothing as above.
+    /// The cycle in which each value is available; `None` as above.
     pub ready: Vec<Option<u32>>,
-    /// When all outputs are there.
+    /// The cycle in which all outputs are available.
     pub latency: u32,
 }
 
 impl Schedule {
-    /// Times for `kernel` with operators made by `pipelined`.
+    /// The times for `kernel`, with operators built by `pipelined`.
     pub fn new(
         kernel: &Kernel,
         mut pipelined: impl FnMut(Unit) -> Result<Arc<Module>, BuildErrors>,
@@ -63,7 +65,7 @@ impl Schedule {
                             this.modules.entry(unit).or_insert(module)
                         }
                     };
-                    // An operator's inputs come straight from registers.
+                    // An operator's inputs come directly from registers.
                     (registered.unwrap_or(0), module.latency)
                 }
                 Source::Select | Source::And | Source::Or | Source::Not => {
@@ -89,7 +91,7 @@ impl Schedule {
         Ok(this)
     }
 
-    /// What becomes wider by being converted waits as it was: the conversion is made when it is first needed.
+    /// A value that a conversion widens waits unconverted. It is converted when it is first needed.
     fn convert_late(&mut self, kernel: &Kernel) {
         for (index, value) in kernel.values.iter().enumerate() {
             let (Source::Operator(Operator::Convert { to }, from), Some(start), Some(ready)) =

@@ -9,40 +9,40 @@ use crate::kernel::{Arithmetic, Filtered, contact, exact};
 use crate::number::{Format, Number};
 use crate::query::{Fields, Flow, GROUPS, Query, Rule};
 
-/// The parameters that decide a kernel's bits and stages.
+/// The parameters that affect a kernel's bits and stages.
 #[derive(Clone, Debug)]
 pub struct Settings {
     /// The query.
     pub query: Query,
-    /// The kernel, and what it computes in.
+    /// The kernel and its arithmetic.
     pub arithmetic: Arithmetic,
     /// The format of the pair's and the contact's words.
     pub record: Format,
-    /// The outputs asked for.
+    /// The requested outputs.
     pub fields: Fields,
-    /// The one radius of all spheres, if they have one: there are then no inputs for radii.
+    /// The radius of all spheres, if they have the same. Then there are no inputs for radii.
     pub radius: Option<f32>,
     /// The clock that operators are cut for, in MHz.
     pub clock_mhz: f64,
     /// Cycles from one pair to the next: 1, or more with fewer operators.
     pub interval: u32,
-    /// Whether `valid` comes a cycle after the pair, from logic that has to look at all of it. Not at an interval above
-    /// 1.
+    /// True if `valid` arrives one cycle after the pair, because its logic examines the whole pair. Not at an interval
+    /// above 1.
     pub valid_is_late: bool,
     /// The target's delay model.
     pub model: DelayModel,
 }
 
-/// The module of a query's kernel: the words of a pair as inputs, by their names, with `valid`; `hit`, `grazing` (where
-/// centres can coincide) and the fields asked for as outputs, by the names of their words in
+/// The module of a query's kernel. The inputs are the words of a pair, by their names, and `valid`. The outputs are
+/// `hit`, `grazing` (if centres can coincide) and the requested fields, by the names of their words in
 /// [`GROUPS`](crate::query::GROUPS), [`Module::latency`] cycles later.
 ///
-/// `valid` is a Boolean of the kernel like any other, and not reset; where [`Settings::valid_is_late`] it comes a
+/// `valid` is a Boolean of the kernel like any other, and is not reset. With [`Settings::valid_is_late`] it arrives one
 /// cycle after the pair. It may be set only if the pair's words keep their rules. Without it, or without a hit, all
-/// outputs are zero. The kernel of exact squares has an output `unsettled` too, which may be set without a hit.
+/// outputs are zero. The kernel of exact squares also has an output `unsettled`, which may be set without a hit.
 ///
-/// At an interval above 1 it is [`Kernel::pipeline_every`](super::Kernel::pipeline_every): `take` announces the inputs,
-/// which stay for the interval; and the output `invalid_pair` is the complement of `valid`.
+/// At an interval above 1, the module is [`Kernel::pipeline_every`](super::Kernel::pipeline_every). `take` announces
+/// the inputs, which stay for the interval. The output `invalid_pair` is the complement of `valid`.
 ///
 /// # Errors
 /// Returns the first error that a graph recorded, or an error if an operator cannot be cut for the clock.
@@ -54,7 +54,7 @@ pub fn contact_kernel(settings: &Settings) -> Result<Arc<Module>, BuildErrors> {
     }
 }
 
-/// Whether the values of the kernel never come near the ends of the exponent range, so that its operators are those of
+/// True if the values of the kernel never come near the ends of the exponent range, so that its operators are those of
 /// [`crate::operator::Values::Normal`].
 ///
 /// # Errors

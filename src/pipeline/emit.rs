@@ -1,4 +1,4 @@
-//! A kernel with times as a module: operators as instances, and delays where a value has to wait.
+//! Turns a scheduled kernel into a module: operators are instances, with delays for values that wait.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -10,8 +10,9 @@ use crate::hdl::{BuildErrors, DelayModel, Graph, Module, Node, NodeId, Op, Signa
 use crate::operator::{INPUTS, pipelined};
 
 impl Kernel {
-    /// The kernel as a pipeline that takes new inputs in every cycle, with operators cut for `clock_mhz`: all outputs
-    /// come out of registers, in the same cycle. What no output needs is left out; inputs stay as ports.
+    /// The kernel as a pipeline that takes new inputs in every cycle, with operators cut for `clock_mhz`. All outputs
+    /// come from registers, in the same cycle. Values that no output needs are not built, but all inputs remain as
+    /// ports.
     ///
     /// # Errors
     /// Returns the first error that a graph recorded, or an error if an operator cannot be cut for the clock.
@@ -66,8 +67,8 @@ impl<'g> Emitter<'_, 'g> {
         Ok(())
     }
 
-    /// The value delayed to `cycle`, at or after the one in which it is computed. The graph makes one chain of a
-    /// value's delays, but for those that fill a block memory.
+    /// The value delayed to `cycle`, at or after the cycle in which it is computed. The graph makes one chain of a
+    /// value's delays, except for those that fill a block memory.
     fn at(&mut self, id: ValueId, cycle: u32) -> Result<Option<Signal<'g>>, BuildErrors> {
         let Some(signal) = self.signals[id.index()] else { return Ok(None) };
         if let Some(known) = self.waiting.get(&(id, cycle)) {
@@ -85,7 +86,7 @@ impl<'g> Emitter<'_, 'g> {
         Ok(Some(waiting))
     }
 
-    /// The value of operands that meet in cycle `start`.
+    /// The value, from operands that meet in cycle `start`.
     fn compute(&mut self, id: ValueId, start: u32) -> Result<Option<Signal<'g>>, BuildErrors> {
         let value = self.kernel.value(id);
         let operands = value.operands.iter().map(|id| self.at(*id, start)).collect::<Result<Option<Vec<_>>, _>>()?;
@@ -126,9 +127,10 @@ pub(super) fn chosen<'g>(source: Source, operands: &[Signal<'g>]) -> Option<Sign
     })
 }
 
-/// Writes down which cycle each node belongs to, for the names of delays.
+/// Records the cycle of each node, for the names of delays.
 fn note_stages(module: &mut Module) {
-    // What feeds an instance or a delay may stand behind it, so it takes as many rounds as there are ranks of them.
+    // A node that feeds an instance or a delay may come after it, so this takes as many rounds as there are ranks of
+    // them.
     let mut changed = true;
     while std::mem::take(&mut changed) {
         for index in 0..module.nodes.len() {

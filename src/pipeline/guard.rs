@@ -1,14 +1,14 @@
-//! Finds results that no output shows when they are wrong, because a selection replaces them.
+//! Finds wrong results that no output shows, because a selection replaces them.
 
 use std::collections::{BTreeMap, HashMap};
 
 use super::kernel::{Kernel, Kind, Source, ValueId};
 use crate::operator::Operator;
 
-/// Booleans that are supposed.
+/// Booleans with assumed values.
 type Supposed = BTreeMap<ValueId, bool>;
 
-/// Answers whether outputs hide what is wrong.
+/// Says whether outputs hide wrong values.
 pub(super) struct Guards {
     /// No output depends on a promised input while the promise's condition is false.
     pub hide_broken_promises: bool,
@@ -22,8 +22,8 @@ impl Guards {
         Self { hide_broken_promises: hidden.unwrap_or(false) }
     }
 
-    /// Whether no output depends on a quotient when its divisor is zero, as far as the kernel asks for that: by a
-    /// comparison of the divisor with zero.
+    /// True if no output depends on a quotient whose divisor is zero, as far as the kernel tests this by comparing the
+    /// divisor with zero.
     pub fn hide_division_by_zero(&self, kernel: &Kernel, quotient: ValueId) -> bool {
         let Some(&divisor) = kernel.value(quotient).operands.last() else { return false };
         let is_zero = |value: &super::kernel::Value| {
@@ -63,7 +63,7 @@ fn depends(
         match truth(kernel, condition, supposed) {
             Some(true) => depends(kernel, yes, wrong, supposed, known),
             Some(false) => depends(kernel, no, wrong, supposed, known),
-            // Either way, with what follows from it.
+            // Both cases, each with its consequences.
             None => {
                 depends(kernel, condition, wrong, supposed, known)
                     || [(true, yes), (false, no)].into_iter().any(|(chosen, branch)| {
@@ -80,7 +80,7 @@ fn depends(
     answer
 }
 
-/// A Boolean, as far as it follows from what is supposed.
+/// The value of a Boolean, if it follows from the assumptions.
 fn truth(kernel: &Kernel, id: ValueId, supposed: &Supposed) -> Option<bool> {
     if let Some(&truth) = supposed.get(&id) {
         return Some(truth);

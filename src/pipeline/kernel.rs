@@ -1,4 +1,4 @@
-//! A graph of operators: what a kernel computes, without time.
+//! A graph of operators: the computation of a kernel, without times.
 
 use std::collections::HashMap;
 use std::panic::Location;
@@ -7,7 +7,7 @@ use crate::hdl::Error;
 use crate::number::{Format, Roots, Soft};
 use crate::operator::Operator;
 
-/// A value's index in its kernel. Operands have lower indices than what is computed of them.
+/// A value's index in its kernel. Operands have lower indices than their results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(super) struct ValueId(pub u32);
 
@@ -40,7 +40,7 @@ impl Kind {
     }
 }
 
-/// The source of a value. Everything but operators is glue: one level of plain logic, without a register of its own.
+/// The source of a value. Everything but operators is glue: one level of plain logic, without its own register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Source {
     /// An input, by its number, which keeps two inputs apart.
@@ -63,12 +63,12 @@ pub(super) struct Value {
     pub name: Option<String>,
 }
 
-/// That an input is neither infinite nor NaN while a condition holds.
+/// The promise that an input is neither infinite nor NaN while a condition holds.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Promise {
     pub value: ValueId,
     pub condition: ValueId,
-    /// And not below zero.
+    /// True if the input is also not below zero.
     pub not_negative: bool,
 }
 
@@ -80,7 +80,7 @@ pub struct Kernel {
     pub(super) values: Vec<Value>,
     pub(super) inputs: Vec<(String, ValueId)>,
     pub(super) outputs: Vec<(String, ValueId)>,
-    /// Inputs that come some cycles after the others.
+    /// Inputs that arrive some cycles after the others.
     pub(super) late: Vec<(ValueId, u32)>,
     pub(super) promises: Vec<Promise>,
     pub(super) errors: Vec<Error>,
@@ -110,7 +110,7 @@ impl Kernel {
         self.errors.push(Error { module: self.name.clone(), message, place });
     }
 
-    /// The value that is computed so: an equal one if there is one already.
+    /// A value with this source. An equal one is reused if it exists.
     fn shared(&mut self, source: Source, kind: Kind, operands: Vec<ValueId>) -> ValueId {
         let next = ValueId(self.values.len() as u32);
         let id = *self.known.entry((source, operands.clone(), kind)).or_insert(next);
@@ -152,7 +152,7 @@ impl Kernel {
         format!("{what}: {}", operands.iter().map(one).collect::<Vec<_>>().join(" and "))
     }
 
-    /// An operator's result; a cheaper one's, or a constant, where that is the same.
+    /// An operator's result. A cheaper operator's, or a constant, if that is the same.
     pub(super) fn operator(&mut self, operator: Operator, operands: &[ValueId]) -> Result<ValueId, String> {
         let kind = self.value(operands[0]).kind;
         let Kind::Number(format) = kind else { return Err(self.mixes(operator.name(), operands)) };
@@ -206,7 +206,7 @@ impl Kernel {
         }
     }
 
-    /// `source` is [`Source::And`] or [`Source::Or`].
+    /// The result of `source`, which is [`Source::And`] or [`Source::Or`].
     pub(super) fn logic(&mut self, source: Source, a: ValueId, b: ValueId) -> ValueId {
         let absorbing = u128::from(source == Source::Or);
         match (self.as_constant(a), self.as_constant(b)) {
@@ -229,9 +229,9 @@ impl Kernel {
         }
     }
 
-    /// Why an operator of this kernel needs logic for infinities, NaN, subnormals, overflow or underflow: the first one
-    /// that does, and what it may meet. Nothing where none does: the format is then wide enough for every input that
-    /// was promised to be finite.
+    /// Why an operator of this kernel needs logic for infinities, NaN, subnormals, overflow or underflow: the first
+    /// such operator, and the cases that may occur. `None` if no operator does, since the format is wide enough for
+    /// every input that was promised to be finite.
     pub fn not_normal(&self) -> Option<String> {
         super::range::Ranges::of(self).short
     }

@@ -1,5 +1,5 @@
-//! Kernels as pipelines: mathematics read with [`Wire`] becomes a graph of operators, which is balanced into a module
-//! that takes new operands in every cycle, or every few cycles with fewer operators, and never stalls.
+//! Kernels as pipelines. Mathematics read with [`Wire`] becomes a graph of operators. Balancing turns it into a module
+//! that takes new operands in every cycle (or every few cycles with fewer operators) and never stalls.
 
 mod balance;
 mod contact;

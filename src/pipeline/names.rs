@@ -1,4 +1,4 @@
-//! Names of values and instances: those that were given, and for the others what they are made of or go into.
+//! Names of values and instances: the given ones, and derived ones for the others.
 
 use std::collections::HashSet;
 
@@ -56,7 +56,7 @@ impl Names {
     }
 }
 
-/// An unnamed choice is named after what it goes into.
+/// An unnamed selection is named after its destination.
 fn name_choices(kernel: &Kernel, signals: &mut [Option<String>]) {
     for index in (0..kernel.values.len()).rev() {
         let (user, Some(name)) = (&kernel.values[index], signals[index].clone()) else { continue };
@@ -75,7 +75,7 @@ fn name_choices(kernel: &Kernel, signals: &mut [Option<String>]) {
     }
 }
 
-/// The port's name is that of the value as it leaves; before that it is early.
+/// The port's name belongs to the value as it leaves. Before that, the value has a suffix.
 fn name_outputs(kernel: &Kernel, signals: &mut [Option<String>]) {
     for (port, id) in &kernel.outputs {
         let signal = &mut signals[id.index()];
@@ -106,7 +106,7 @@ fn derive(operator: Operator, a: Option<String>, b: Option<String>) -> Option<St
         (Operator::AtMost, Some(b)) => format!("{a}_at_most_{b}"),
         (Operator::RootExceeds, Some(b)) => format!("root_{a}_above_{b}"),
     };
-    // A constant's name is its digits, with which no name of Verilog begins.
+    // The name of a constant is its digits, and a name in Verilog cannot begin with a digit.
     let name = if name.starts_with(|c: char| c.is_ascii_digit()) { format!("number_{name}") } else { name };
     (name.len() <= LONGEST).then_some(name)
 }

@@ -1,5 +1,5 @@
-//! The smallest and largest values of a kernel, derived on its graph; and which operators therefore need
-//! no logic for infinities, NaN, subnormals, overflow and underflow.
+//! The smallest and largest values of a kernel, derived on its graph. They show which operators need no logic for
+//! infinities, NaN, subnormals, overflow and underflow.
 
 use super::guard::Guards;
 use super::kernel::{Kernel, Kind, Source, ValueId};
@@ -9,18 +9,18 @@ use crate::operator::{Domain, Operator, Values};
 /// The known range of a number that is neither infinite nor NaN. Bounds are powers of two, which rounding keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Range {
-    /// It is a multiple of 2^unit.
+    /// The value is a multiple of 2^unit.
     unit: i32,
-    /// At least 2^smallest, if it is not zero.
+    /// The value is at least 2^smallest, if it is not zero.
     smallest: i32,
-    /// At most 2^largest.
+    /// The value is at most 2^largest.
     largest: i32,
-    /// It is never below zero.
+    /// The value is never below zero.
     not_negative: bool,
     may_be_zero: bool,
 }
 
-/// Stands for an exponent no sum of a few can leave: that of zero.
+/// Stands for the exponent of zero. No sum of a few exponents can leave this range.
 const FAR: i32 = 1 << 24;
 
 impl Range {
@@ -157,7 +157,7 @@ impl Ranges {
     }
 }
 
-/// What an input's promise says, if nobody sees the input when it is broken.
+/// The range that an input's promise guarantees, if no output depends on the input while the promise is broken.
 fn promised(kernel: &Kernel, guards: &Guards, index: usize, format: Format) -> Option<Range> {
     let promise = kernel.promises.iter().find(|promise| promise.value.index() == index)?;
     guards.hide_broken_promises.then(|| Range::finite(format, promise.not_negative))

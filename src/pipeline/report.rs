@@ -22,17 +22,17 @@ pub struct OperatorUse {
 pub struct KernelReport {
     /// Cycles from inputs to outputs.
     pub latency: u32,
-    /// The clock, in MHz, that the slowest operator attains by the delay model it was cut with.
+    /// The clock in MHz that the slowest operator reaches, by the delay model with which it was cut.
     pub clock_mhz: Option<f64>,
     /// The operators in use, by name.
     pub operators: Vec<OperatorUse>,
-    /// Bits kept in delays between operators: width times cycles, summed; at an interval above 1 those of registers and
-    /// memories.
+    /// Bits in delays between operators: the sum of width times cycles. At an interval above 1, the bits in registers
+    /// and memories.
     pub delay_bits: u64,
 }
 
 impl KernelReport {
-    /// Reads it off a kernel's module.
+    /// The report on a kernel's module.
     pub fn of(kernel: &Module) -> Self {
         let mut operators: Vec<OperatorUse> = Vec::new();
         for instance in &kernel.instances {

@@ -1,4 +1,4 @@
-//! The kernel that is being read, in this thread; and its ports.
+//! The kernel that this thread is reading, and its ports.
 
 use std::cell::RefCell;
 use std::panic::Location;
@@ -30,8 +30,8 @@ impl Handle {
 /// Reads a kernel: `body` takes inputs from the ports, computes with them and gives outputs to the ports.
 ///
 /// # Errors
-/// Every bad operation, together: mixed formats, wires of another kernel, constants that are no numbers of their
-/// format.
+/// Returns all bad operations together: mixed formats, wires of another kernel, constants that their format cannot
+/// represent.
 pub fn trace(name: &str, body: impl FnOnce(&Ports)) -> Result<Kernel, BuildErrors> {
     let serial = SERIAL.fetch_add(1, Ordering::Relaxed) + 1;
     let outer = CURRENT.replace(Some((serial, Kernel::new(name))));
@@ -41,7 +41,7 @@ pub fn trace(name: &str, body: impl FnOnce(&Ports)) -> Result<Kernel, BuildError
     match traced {
         Some((_, kernel)) if kernel.errors.is_empty() => Ok(kernel),
         Some((_, kernel)) => Err(BuildErrors(kernel.errors)),
-        // Only if `body` had swapped the thread's kernel, which nothing outside this file can.
+        // Only if `body` replaced the thread's kernel, which is impossible outside this file.
         None => Err(BuildErrors(Vec::new())),
     }
 }
@@ -59,8 +59,8 @@ impl Drop for Restore {
     }
 }
 
-/// Makes a value of `operands` in the kernel being read. A poisoned operand gives poison; an operand of another
-/// kernel, or an error of `make`, is recorded and gives poison.
+/// Makes a value of `operands` in the present kernel. If an operand is poisoned, so is the value. An operand of another
+/// kernel, or an error of `make`, is recorded and poisons the value.
 pub(super) fn make(
     what: &str,
     operands: &[Handle],
@@ -92,7 +92,7 @@ pub struct Ports {
 }
 
 impl Ports {
-    /// Adds a line to what the module's header says it is.
+    /// Adds a line to the description in the module's header.
     pub fn about(&self, line: impl Into<String>) {
         CURRENT.with_borrow_mut(|current| {
             if let Some((_, kernel)) = current {
@@ -113,7 +113,7 @@ impl Ports {
         Bit(input(name, Kind::Bit, Location::caller()))
     }
 
-    /// One that comes some cycles after the others.
+    /// A Boolean input that arrives some cycles after the others.
     #[track_caller]
     pub(crate) fn input_bit_after(&self, name: &str, cycles: u32) -> Bit {
         Bit(make(name, &[], Location::caller(), |kernel, _| {
@@ -123,8 +123,8 @@ impl Ports {
         }))
     }
 
-    /// Promises that `inputs` are neither infinite nor NaN while `condition` holds, and not below zero either where
-    /// `not_negative`. The promise is used only if no output depends on such an input while `condition` does not hold.
+    /// Promises that `inputs` are neither infinite nor NaN while `condition` holds, and with `not_negative` also not
+    /// below zero. The promise is used only if no output depends on such an input while `condition` does not hold.
     #[track_caller]
     pub fn promise_finite(&self, condition: Bit, inputs: &[Wire], not_negative: bool) {
         for input in inputs {

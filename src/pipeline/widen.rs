@@ -1,14 +1,14 @@
-//! Sums of converted numbers as sums that convert: a conversion that nothing else needs is then not made.
+//! Turns sums of converted numbers into sums that convert, so that a conversion that nothing else needs is not built.
 
 use super::kernel::{Kernel, Source, ValueId};
 use crate::number::Format;
 use crate::operator::{Operator, is_direct};
 
 impl Kernel {
-    /// The same kernel with sums straight from what was converted for them, where a sum can do that
+    /// The same kernel with sums directly from the unconverted numbers, if a sum can convert them
     /// ([`Operator::WideningAdd`]).
     ///
-    /// Not for shared operators: there one converter serves all, and one adder more is dear.
+    /// Not for shared operators, because there one converter serves all, and one more adder is expensive.
     pub(super) fn with_widening_sums(&self) -> Self {
         let mut kernel = self.clone();
         for index in 0..kernel.values.len() {

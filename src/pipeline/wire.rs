@@ -1,4 +1,4 @@
-//! Numbers and Booleans that are wires: computing with them writes a kernel down.
+//! Numbers and Booleans that are wires. Computing with them records a kernel.
 
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, DivAssign, Mul, MulAssign, Not, Sub, SubAssign};
 use std::panic::Location;
@@ -8,8 +8,8 @@ use super::trace::{Handle, make};
 use crate::number::{Boolean, Format, Number, Soft, Window};
 use crate::operator::Operator;
 
-/// A number in hardware. It belongs to the kernel that is read by [`super::trace`]; a bad operation is recorded
-/// there and gives a poisoned wire, on which further operations do nothing.
+/// A number in hardware. It belongs to the kernel that [`super::trace`] reads. A bad operation is recorded there and
+/// returns a poisoned wire, on which further operations do nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wire(pub(super) Handle);
 
@@ -102,7 +102,7 @@ impl Number for Wire {
         Self(operate(Operator::Convert { to: format }, &[self.0]))
     }
 
-    /// The first name given to a value stays; a constant needs none.
+    /// The first name given to a value is kept. A constant needs none.
     #[track_caller]
     fn named(self, name: &str) -> Self {
         Self(make("name", &[self.0], Location::caller(), |kernel, ids| {

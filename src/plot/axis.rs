@@ -1,26 +1,27 @@
-//! Axes: their range, where a value lies on them, and which values get a tick.
+//! Axes: their range, the place of a value on them, and the values with a tick.
 
 /// How values are spread over an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
     /// Equal steps for equal differences.
     Linear,
-    /// Equal steps for equal ratios; what is not above zero has no place.
+    /// Equal steps for equal ratios. Values that are not above zero have no place.
     Log,
 }
 
-/// An axis: its name with the unit, its scale, and its range where that is not to follow the data.
+/// An axis: its label with the unit, its scale, and its range unless it follows the data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// Beside the axis.
+    /// The text beside the axis.
     pub label: String,
     /// Linear or logarithmic.
     pub scale: Scale,
-    /// Least and largest value shown; without one, ticks around all data (of a linear axis from 0, if none is less).
+    /// The smallest and largest value shown. `None` covers all data with ticks (a linear axis starts from 0 if no value
+    /// is less).
     pub range: Option<[f64; 2]>,
 }
 
-/// The fewest steps between ticks that an axis is divided in.
+/// The minimum number of steps between ticks on an axis.
 const STEPS: f64 = 5.0;
 
 impl Axis {
@@ -35,7 +36,7 @@ impl Axis {
         Self { range: Some([least, most]), ..self }
     }
 
-    /// Whether a value has a place on the axis.
+    /// True if a value has a place on the axis.
     pub(super) fn holds(&self, value: f64) -> bool {
         value.is_finite() && (self.scale == Scale::Linear || value > 0.0)
     }
@@ -60,12 +61,12 @@ pub(super) struct Fitted {
     scale: Scale,
     least: f64,
     most: f64,
-    /// Values and what is written beside them.
+    /// Values with the text beside them.
     pub(super) ticks: Vec<(f64, String)>,
 }
 
 impl Fitted {
-    /// Leaves out every other tick until there is room between any two neighbours: their places and words.
+    /// Removes every other tick until any two neighbours, given by place and text, have room.
     pub(super) fn thin(&mut self, has_room: impl Fn([(f64, &str); 2]) -> bool) {
         loop {
             let placed: Vec<(f64, &str)> = self.ticks.iter().map(|(v, text)| (self.place(*v), text.as_str())).collect();
@@ -85,7 +86,7 @@ impl Fitted {
         [self.least, self.most]
     }
 
-    /// Where a value lies: 0 at the least, 1 at the most.
+    /// The place of a value: 0 at the smallest, 1 at the largest.
     pub(super) fn place(&self, value: f64) -> f64 {
         let on = |v: f64| if self.scale == Scale::Log { v.log10() } else { v };
         (on(value) - on(self.least)) / (on(self.most) - on(self.least))
@@ -146,7 +147,7 @@ fn number(value: f64, places: usize) -> String {
     rest.map_or(grouped.clone(), |rest| format!("{grouped}.{rest}"))
 }
 
-/// A tick of a logarithmic axis: in full where that is short, else as a power of ten.
+/// A tick of a logarithmic axis: in full if that is short, otherwise as a power of ten.
 fn power(value: f64) -> String {
     if (1e-3..1e6).contains(&value) {
         let places = if value < 1.0 { (-value.log10() - 1e-9).ceil() as usize } else { 0 };

@@ -1,13 +1,13 @@
-//! What is drawn between the axes.
+//! The data drawn between the axes.
 
 /// How points are joined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Line {
-    /// Solid: for what was measured.
+    /// Solid: for measured values.
     Solid,
-    /// Dashed: for what was simulated.
+    /// Dashed: for simulated values.
     Dashed,
-    /// Dotted: for what others say.
+    /// Dotted: for values from others.
     Dotted,
 }
 
@@ -36,8 +36,8 @@ pub struct Series {
 }
 
 impl Series {
-    /// Points in colour `colour`, a number that begins again after six. Points that have no place on an axis (not
-    /// finite, or not above zero on a logarithmic one) are left out, and part the line.
+    /// Points in the colour `colour`, a number that repeats after six. Points that have no place on an axis (not
+    /// finite, or not above zero on a logarithmic one) are left out and interrupt the line.
     pub fn new(name: &str, colour: usize, points: impl IntoIterator<Item = (f64, f64)>) -> Self {
         Self {
             name: name.to_owned(),
@@ -61,8 +61,8 @@ impl Series {
         Self { marker: Some((marker, false)), ..self }
     }
 
-    /// With a name for each point, in their order: beside it where there is room, and as `data-point` of its sign,
-    /// which a reader can point at.
+    /// With a name for each point, in their order. The name is beside the point if there is room, and is the
+    /// `data-point` of its sign, for the pointer.
     #[must_use]
     pub fn named(self, names: impl IntoIterator<Item = String>) -> Self {
         Self { names: names.into_iter().collect(), ..self }

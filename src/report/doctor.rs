@@ -1,4 +1,4 @@
-//! What `afu doctor` says.
+//! The report of `afu doctor`.
 
 use serde::Serialize;
 
@@ -14,13 +14,13 @@ pub struct Report<'a> {
 }
 
 impl<'a> Report<'a> {
-    /// Of these tools.
+    /// The report about these tools.
     pub fn new(tools: &'a [Tool]) -> Self {
         Self { schema: "contact-afu/doctor/1", version: env!("CARGO_PKG_VERSION"), features: &FEATURES, tools }
     }
 }
 
-/// The findings for people: one paragraph per feature and per tool, for versions are long.
+/// The findings for people: one paragraph per feature and per tool, because versions are long.
 pub fn text(tools: &[Tool]) -> String {
     let mut lines = Vec::new();
     for feature in &FEATURES {

@@ -51,19 +51,19 @@ pub enum Error {
     },
 }
 
-/// A temporary folder beside its final place, renamed when complete.
+/// A temporary folder, renamed when complete.
 ///
-/// Dropped before [`Folder::commit`], it leaves nothing behind.
+/// If it is dropped before [`Folder::commit`], it leaves nothing behind.
 pub struct Folder {
     aside: TempDir,
     target: PathBuf,
 }
 
 impl Folder {
-    /// Begins a folder that will stand at `target`.
+    /// Begins a folder whose final place is `target`.
     ///
     /// # Errors
-    /// Returns an error if `target` exists and neither is empty nor carries a manifest of ours, unless `force`.
+    /// Returns an error if `target` exists, is not empty and has no manifest of ours, unless `force` is set.
     pub fn begin(target: &Path, force: bool) -> Result<Self, Error> {
         check(target, force)?;
         let parent = match target.parent() {
@@ -79,7 +79,7 @@ impl Folder {
     /// Adds a file; `path` is relative and may name folders.
     ///
     /// # Errors
-    /// Returns an error if the path is not plain, or the file system refuses.
+    /// Returns an error if the path is not plain, or if the file cannot be written.
     pub fn write(&self, path: &str, bytes: &[u8]) -> Result<(), Error> {
         let plain = |c: std::path::Component<'_>| matches!(c, std::path::Component::Normal(_));
         if path.is_empty() || !Path::new(path).components().all(plain) {
@@ -92,10 +92,10 @@ impl Folder {
         fs::write(&file, bytes).map_err(at(&shown))
     }
 
-    /// Puts the folder in its place, instead of what stood there.
+    /// Moves the folder to its place, and replaces what was there.
     ///
     /// # Errors
-    /// Returns an error if the file system refuses; what stood there then stands there still.
+    /// Returns an error if the folder cannot be moved. What was in its place is then still there.
     pub fn commit(self) -> Result<(), Error> {
         let Self { aside, target } = self;
         share(aside.path()).map_err(at(&target))?;
@@ -121,10 +121,10 @@ impl Folder {
     }
 }
 
-/// Whether results may be put at `target`: nothing there, an empty folder, or one of ours.
+/// Succeeds if results may be written to `target`: it does not exist, is an empty folder, or is one of ours.
 ///
 /// # Errors
-/// [`Error::Foreign`] or [`Error::NotAFolder`] when they may not.
+/// Returns [`Error::Foreign`] or [`Error::NotAFolder`] if they may not.
 pub fn check(target: &Path, force: bool) -> Result<(), Error> {
     match fs::read_dir(target) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
@@ -140,13 +140,13 @@ pub fn check(target: &Path, force: bool) -> Result<(), Error> {
     }
 }
 
-/// Whether results of this schema may be put at `target`: as [`check`] has it, and no results of another study there.
+/// As [`check`], but also requires that `target` holds no results of another study than this schema's.
 ///
 /// # Errors
 /// Returns the errors of [`check`], or [`Error::Other`].
 pub fn check_study(target: &Path, schema: &str, force: bool) -> Result<(), Error> {
     check(target, force)?;
-    // Within a study the number alone differs.
+    // Schemas of the same study differ only in the number.
     let study = |schema: &str| schema.trim_end_matches(|c: char| c.is_ascii_digit()).to_owned();
     match manifest::schema(target) {
         Some(there) if !force && study(&there) != study(schema) => {
@@ -160,14 +160,15 @@ pub fn check_study(target: &Path, schema: &str, force: bool) -> Result<(), Error
 /// Replaces one file whole with a value as indented JSON and a line end.
 ///
 /// # Errors
-/// Returns an error if the value has no JSON, or the file system refuses; the old file is then as it was.
+/// Returns an error if the value cannot be written as JSON, or if the file cannot be written. The old file is then
+/// unchanged.
 pub(crate) fn replace_json(path: &Path, value: &impl Serialize) -> Result<(), Error> {
     let mut text = serde_json::to_vec_pretty(value).map_err(as_text(path))?;
     text.push(b'\n');
     replace_file(path, &text)
 }
 
-/// Replaces one file whole with the CSV that `write` writes.
+/// Replaces one file as a whole with the CSV that `write` writes.
 ///
 /// # Errors
 /// Returns the errors of [`replace_json`].
@@ -185,18 +186,18 @@ fn as_text<E: std::fmt::Display>(path: &Path) -> impl FnOnce(E) -> Error + use<E
     move |error| Error::Text { path, message: error.to_string() }
 }
 
-/// Makes a folder, and those above it, where they are not there.
+/// Creates a folder and its parents if they do not exist.
 ///
 /// # Errors
-/// Returns an error if the file system refuses.
+/// Returns an error if a folder cannot be created.
 pub fn create(target: &Path) -> Result<(), Error> {
     fs::create_dir_all(target).map_err(at(target))
 }
 
-/// Replaces one file whole ([`files::replace`]).
+/// Replaces one file as a whole ([`files::replace`]).
 ///
 /// # Errors
-/// Returns an error if the file system refuses; the old file is then as it was.
+/// Returns an error if the file cannot be written. The old file is then unchanged.
 pub fn replace_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     files::replace(path, |out| out.write_all(bytes)).map_err(at(path))
 }
@@ -206,7 +207,7 @@ fn at(path: &Path) -> impl FnOnce(io::Error) -> Error + use<> {
     move |error| Error::Io { path, error }
 }
 
-/// Temporary folders are private to their maker; a result is for everybody.
+/// Temporary folders are private to their owner, but results are for everybody.
 fn share(folder: &Path) -> io::Result<()> {
     readable(folder, 0o755)
 }

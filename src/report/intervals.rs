@@ -1,4 +1,4 @@
-//! `docs/interval.md`: what an SCPU takes of a device at each interval, as a table and a picture.
+//! `docs/interval.md`: the area of an SCPU at each interval, as a table and a picture.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use super::table::figure;
 use crate::plot::{Axis, Line, Marker, Plot, Scale, Series};
 use crate::synth::{Area, Figures};
 
-/// What was measured of an SCPU at one interval.
+/// The figures of an SCPU at one interval.
 #[derive(Default)]
 struct Row<'a> {
     counted: Option<&'a Figures>,
@@ -44,7 +44,7 @@ N SCPUs take N/II pairs per cycle, and never more than one line of pairs per cyc
 
 ";
 
-/// The page, of an SCPU's figures in any order: counted ones, and routed ones where there are.
+/// The page with the figures of an SCPU, which may be in any order: counted ones, and routed ones if there are any.
 pub fn page(all: &[Figures]) -> String {
     let rows = rows(all);
     let mut page = ABOUT.to_owned();
@@ -95,7 +95,7 @@ pub fn page(all: &[Figures]) -> String {
     page
 }
 
-/// Shares of the area at interval 1, over the interval.
+/// The area as a share of that at interval 1, over the interval.
 pub fn picture(all: &[Figures]) -> Plot {
     let rows = rows(all);
     let counted = |row: &Row<'_>| row.counted.or(row.routed).map(|of| of.area);

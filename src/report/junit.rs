@@ -1,4 +1,4 @@
-//! The report of `afu cosim` as JUnit: a test case a job, for CI systems to show.
+//! The report of `afu cosim` as JUnit, which CI systems show: one test case per job.
 
 use std::time::Duration;
 

@@ -1,4 +1,4 @@
-//! What people and other programs read: tables, JSON, JUnit, and folders that are there whole or not at all.
+//! Output for people and other programs: tables, JSON, JUnit, and folders that appear whole or not at all.
 
 #[cfg(feature = "cosim")]
 pub mod cosim;

@@ -7,7 +7,7 @@ pub use crate::count::{counted, grouped};
 const RULE: LineStyle = LineStyle::none().fill('─').junction('─');
 const STYLE: TableStyle = TableStyle::new().top_border(RULE).header_separator(RULE).bottom_border(RULE);
 
-/// A table with a heading line; the first column is text, the others are figures.
+/// A table with a heading line. The first column is text, the others are figures.
 pub fn table<R, C>(heading: &[&str], rows: R) -> String
 where
     R: IntoIterator<Item = C>,

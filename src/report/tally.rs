@@ -42,13 +42,13 @@ pub struct Tally {
     pub cycles: u64,
     /// The link limit: the minimum number of cycles for the lines that were transferred.
     pub limit_cycles: f64,
-    /// Cycles from the first line of pairs to the first line of contacts; of several jobs, the first one's.
+    /// Cycles from the first line of pairs to the first line of contacts. Of several jobs, the first one's.
     pub latency_cycles: Option<u64>,
     /// Bytes of the lines read.
     pub bytes_read: u64,
     /// Bytes of the lines written.
     pub bytes_written: u64,
-    /// Seconds the simulation took.
+    /// Seconds of simulation.
     pub host_seconds: f64,
 }
 

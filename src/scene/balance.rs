@@ -1,22 +1,23 @@
-//! Whether a run's energy rose by more than its effects can give.
+//! Checks whether a run's energy rose by more than its effects can explain.
 
 use serde::Serialize;
 
-/// The energy of a run at its ends, kinetic and in the field of gravity, and what it may have gained.
+/// The energy of a run at its start and end, kinetic and in the field of gravity, and the energy that it may have
+/// gained.
 ///
-/// Of all effects the pull alone gives energy: its work is summed over the steps. Damping, friction, sleep and a bounce
-/// of up to 1 take it or keep it, and gravity only moves it between the two kinds. Three roundings are allowed for: a
-/// step in which a body turns around in the field of gravity moves it by a step's way too far, bodies that lie on each
-/// other sink in and are lifted, and contacts come in the plan's arithmetic.
+/// Of all effects, only the pull adds energy, and its work is summed over the steps. Damping, friction, sleep and a
+/// bounce of up to 1 remove or keep energy, and gravity only converts it. Three errors are allowed for. A step in which
+/// a body turns around in the field of gravity moves it too far by the way of one step. Bodies that lie on each other
+/// sink in and are lifted. Contacts have the plan's arithmetic.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Balance {
-    /// Before the first step.
+    /// The energy before the first step.
     pub start: f64,
-    /// After the last.
+    /// The energy after the last step.
     pub end: f64,
     /// The work of the pull.
     pub work: f64,
-    /// What roundings may have added.
+    /// The energy that these errors may have added.
     pub allowance: f64,
 }
 
@@ -27,7 +28,7 @@ impl Balance {
         (excess > 0.0).then_some(excess)
     }
 
-    /// What to say at the end of a run that gained energy from nowhere.
+    /// The warning at the end of a run that gained unexplained energy.
     pub fn warning(&self) -> Option<String> {
         self.excess()?;
         let Self { start, end, work, .. } = *self;

@@ -29,7 +29,7 @@ pub struct Ball {
 /// The spheres of groups, in their order.
 ///
 /// # Errors
-/// Returns an error if a file of bodies cannot be read, or has what is no sphere.
+/// Returns an error if a file of bodies cannot be read, or has an invalid sphere.
 pub fn balls(scene: &Scene, groups: &[Group]) -> Result<Vec<Ball>, SceneError> {
     let mut all = Vec::new();
     for (number, group) in groups.iter().enumerate() {
@@ -75,7 +75,7 @@ fn random(count: u64, [low, high]: [[f64; 3]; 2], seed: u64) -> Vec<[f64; 3]> {
     (0..count).map(|_| std::array::from_fn(|axis| low[axis] + (high[axis] - low[axis]) * unit())).collect()
 }
 
-/// The most spheres of a file.
+/// The most spheres in a file.
 const MOST: usize = 1_000_000;
 
 /// A CSV of x,y,z or x,y,z,r with a header, or a PLY file's vertices (ASCII).
@@ -120,7 +120,7 @@ fn file(scene: &Scene, group: &Group, path: &Path, radius: f64) -> Result<Vec<([
     Ok(spheres)
 }
 
-/// Names of columns, lines before the first row, and rows at most.
+/// Names of columns, lines before the first row, and the maximum number of rows.
 type Columns = (Vec<String>, usize, usize);
 
 fn csv_columns(text: &str, wrong: &dyn Fn(usize, String) -> SceneError) -> Result<Columns, SceneError> {

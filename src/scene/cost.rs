@@ -1,4 +1,4 @@
-//! What an AFU costs, as far as its generator knows, and as Yosys counts it.
+//! The cost of an AFU, as its generator knows it and as Yosys counts it.
 
 use std::collections::BTreeMap;
 
@@ -10,10 +10,10 @@ use crate::config::{Config, Profile};
 use crate::pipeline::KernelReport;
 use crate::synth::{Options, Target, Unit, synthesise};
 
-/// What an AFU takes.
+/// The cost of an AFU.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Cost {
-    /// Operators of an SCPU by module name, and how many there are.
+    /// Operators of an SCPU, by module name, with their number.
     pub operators: BTreeMap<String, usize>,
     /// Modules of the whole AFU, each counted once.
     pub modules: usize,
@@ -23,13 +23,13 @@ pub struct Cost {
     pub bytes_sent: f64,
     /// Bytes over the link for a contact that comes back.
     pub bytes_returned: f64,
-    /// Whether pairs that do not touch come back too.
+    /// True if pairs that do not touch come back too.
     pub returns_misses: bool,
     /// LUTs of an SCPU on an ECP5, counted by Yosys; `None` if they were not counted.
     pub luts: Option<u64>,
     /// DSP blocks of an SCPU, likewise.
     pub dsps: Option<u64>,
-    /// Host time of a step, all but the engine's part, nanoseconds; nothing where it was not measured.
+    /// Host time of a step without the engine's part, in nanoseconds; `None` if it was not measured.
     pub host_step_ns: Option<f64>,
 }
 
@@ -56,10 +56,10 @@ impl Cost {
         })
     }
 
-    /// Has Yosys count an SCPU for an ECP5.
+    /// Lets Yosys count the cells of an SCPU for an ECP5.
     ///
     /// # Errors
-    /// Returns an error if Yosys is not there, or refuses.
+    /// Returns an error if Yosys is missing or fails.
     pub fn count(&mut self, config: &Config) -> Result<(), SceneError> {
         let options = Options { target: Target::Ecp5, seeds: Vec::new() };
         let area = synthesise(&Unit::scpu(config)?, &options, |_| {})?.area;
@@ -67,19 +67,19 @@ impl Cost {
         Ok(())
     }
 
-    /// Bytes that `pairs` pairs of which `contacts` touch take over the link, up and down.
+    /// Bytes over the link, in both directions, for `pairs` pairs of which `contacts` touch.
     pub fn bytes(&self, pairs: u64, contacts: u64) -> f64 {
         let back = if self.returns_misses { pairs } else { contacts };
         self.bytes_sent * pairs as f64 + self.bytes_returned * back as f64
     }
 }
 
-/// The profile with the fewest fraction bits whose depths err no more than `bound`, relative to the largest coordinate
-/// or radius of the pair.
+/// The profile with the fewest fraction bits whose error in depth is at most `bound`, relative to the largest
+/// coordinate or radius of the pair.
 ///
-/// A coordinate or radius is rounded once on its way in, and no result is made of more than sixteen roundings, each of
-/// half a unit of something no larger than a few of them. A normal's error is that divided by the distance, in the same
-/// measure, and a position's lies along: of spheres that nearly coincide only `exact` knows the direction.
+/// A coordinate or radius is rounded once on its way in. No result includes more than sixteen roundings, each of half a
+/// unit of a number that is at most a few times as large. A normal's error is this error divided by the distance, and a
+/// position's error includes the normal's. For spheres that nearly coincide, only `exact` has the right direction.
 pub(super) fn narrowest(bound: f64) -> Profile {
     const ROUNDINGS: f64 = 16.0;
     let errs = |fraction: i32| ROUNDINGS * 0.5 * 2.0_f64.powi(-fraction);
@@ -96,7 +96,7 @@ mod tests {
     use crate::pairs::Set;
     use crate::query::{Fields, Flow, PairRecord, Query};
 
-    /// The bound is kept by depths, and by normals times the distance, on pairs of many sizes; and it is not idle.
+    /// Depths, and normals times the distance, keep the bound on pairs of many sizes, and the bound is not idle.
     #[test]
     fn an_error_bound_picks_a_format_that_keeps_it() {
         let pairs: Vec<PairRecord> = Set::Random(20_000).pairs(3).into_iter().filter(ordinary).collect();
@@ -130,7 +130,7 @@ mod tests {
         (0..3).map(|axis| (v[axis] - v[axis + 4]).powi(2)).sum::<f64>().sqrt()
     }
 
-    /// Nothing near the ends of binary32.
+    /// True if no number is near the ends of binary32.
     fn ordinary(pair: &PairRecord) -> bool {
         pair.is_valid(Query::SphereSphere) && (1e-30..1e30).contains(&size(pair))
     }

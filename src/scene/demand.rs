@@ -1,8 +1,8 @@
-//! The one table of what calls for what.
+//! The only table of what each line of a scene calls for.
 
 use super::file::{Given, Scene, Want};
 
-/// Something that a scene's text can say, and that calls for something.
+/// A statement in a scene's text that calls for something.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Demand {
     /// An entry of `want`.
@@ -50,11 +50,11 @@ pub enum Part {
     Gravity,
     /// A force on every body in every step.
     Pull,
-    /// Contact joints: bodies that touch part.
+    /// Contact joints: bodies that touch separate.
     Response,
-    /// Their bounce mode.
+    /// The bounce mode of contact joints.
     Bounce,
-    /// Their friction.
+    /// The friction of contact joints.
     Friction,
     /// Bodies turn.
     Spin,
@@ -64,29 +64,29 @@ pub enum Part {
     Floor,
     /// Six planes, and their collider.
     Walls,
-    /// ODE's auto-disable; two bodies that sleep are not sent.
+    /// ODE's auto-disable. Two sleeping bodies are not sent.
     Sleeping,
-    /// The decision.
+    /// The field `hit`.
     Hit,
-    /// The field.
+    /// The field `depth`.
     Depth,
-    /// The field.
+    /// The field `normal`.
     Normal,
-    /// The field.
+    /// The field `position`.
     Position,
     /// The square root.
     Root,
     /// The division.
     Division,
-    /// Radii in records, and the sum of two.
+    /// Radii in records, and the sum of two radii.
     Radii,
     /// The numbers that the AFU computes in.
     Arithmetic,
     /// Records of pairs that do not touch.
     Misses,
-    /// How many SCPUs.
+    /// The number of SCPUs.
     Scpus,
-    /// The file of every body's way.
+    /// The file with every body's trajectory.
     Trajectories,
     /// The file of every contact.
     Contacts,
@@ -94,15 +94,15 @@ pub enum Part {
     Energy,
 }
 
-/// What calls for what: physics, in one place, a part with its name in tables. A part is on when something here calls
-/// for it; [`Part::Radii`], [`Part::Arithmetic`], [`Part::Misses`] and [`Part::Scpus`] have values rather, on which the
-/// lines that call for them have their say (see [`super::Plan`]).
+/// The rules, all in one place: each part with its name in tables and the demands that call for it. A part is on if
+/// something here calls for it. [`Part::Radii`], [`Part::Arithmetic`], [`Part::Misses`] and [`Part::Scpus`] have values
+/// instead, which depend on the lines that call for them (see [`super::Plan`]).
 pub(super) const RULES: &[(Part, &str, &[Demand])] = &[
-    // Something must move them; what they do when they meet does not.
+    // Something must move the bodies. The effects of contacts alone do not.
     (Part::Motion, "motion", MOVING),
     (Part::Gravity, "gravity", &[Demand::Gravity]),
     (Part::Pull, "pull", &[Demand::Pull]),
-    // Either makes bodies that touch part.
+    // Either one makes touching bodies separate.
     (Part::Response, "contact joints", &[Demand::Bounce, Demand::Friction]),
     (Part::Bounce, "bounce", &[Demand::Bounce]),
     (Part::Friction, "friction", &[Demand::Friction]),
@@ -112,10 +112,11 @@ pub(super) const RULES: &[(Part, &str, &[Demand])] = &[
     (Part::Walls, "walls", &[Demand::Walls]),
     (Part::Sleeping, "sleeping", &[Demand::Sleeping]),
     (Part::Hit, "hit", &[TOUCHING, DEPTH, NORMALS, POINTS, Demand::Bounce, Demand::Friction, Demand::Spin]),
-    // Along the normal, and by how much.
+    // A contact acts along the normal, by the depth.
     (Part::Depth, "depth", &[DEPTH, Demand::Bounce, Demand::Friction]),
     (Part::Normal, "normal", &[NORMALS, Demand::Bounce, Demand::Friction]),
-    // A force along the normal of two spheres goes through both centres: without friction and spin it has no lever arm.
+    // A force along the normal of two spheres goes through both centres, so without friction and spin it has no lever
+    // arm.
     (Part::Position, "position", LEVER),
     // The decision alone needs no root: RN(√q) > s exactly when q > (s + ½ulp(s))².
     (Part::Root, "square root", &[DEPTH, NORMALS, POINTS, Demand::Bounce, Demand::Friction, Demand::Spin]),
@@ -130,7 +131,7 @@ pub(super) const RULES: &[(Part, &str, &[Demand])] = &[
     (Part::Energy, "energy", &[Demand::Wanted(Want::Energy)]),
 ];
 
-/// What sets bodies going.
+/// Demands that set bodies in motion.
 pub(super) const MOVING: &[Demand] = &[Demand::Gravity, Demand::Pull, Demand::Velocity, Demand::Turning];
 const LEVER: &[Demand] = &[POINTS, Demand::Friction, Demand::Spin];
 const TOUCHING: Demand = Demand::Wanted(Want::Touching);
@@ -143,19 +144,19 @@ impl Part {
         RULES.iter().find(|(part, ..)| *part == self)
     }
 
-    /// As tables have it.
+    /// The name in tables.
     pub fn name(self) -> &'static str {
         self.rule().map_or("", |(_, name, _)| name)
     }
 
-    /// What calls for it.
+    /// The demands that call for it.
     pub(crate) fn demands(self) -> &'static [Demand] {
         self.rule().map_or(&[], |(.., demands)| demands)
     }
 }
 
 impl Demand {
-    /// The lines of a scene that say it.
+    /// The lines of a scene with this demand.
     pub fn lines(self, scene: &Scene) -> Vec<usize> {
         fn line<T>(given: &Option<Given<T>>) -> Vec<usize> {
             given.as_ref().and_then(|given| given.line).into_iter().collect()

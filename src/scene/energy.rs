@@ -26,7 +26,7 @@ impl Balance {
 struct Sum {
     kinetic: f64,
     potential: f64,
-    /// What the field of gravity may have been given too much.
+    /// The energy of the field that may be in excess.
     field: f64,
 }
 

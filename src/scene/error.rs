@@ -1,9 +1,9 @@
-//! What can be wrong with a scene.
+//! Errors of scenes.
 
-/// Why there is no scene, or no run of it.
+/// Why a scene is invalid or cannot be run.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
-    /// A value that makes no sense, at its line.
+    /// The value in this line is invalid.
     #[error("{file}:{line}: {key}: {why}")]
     Value {
         /// The scene's file.
@@ -12,41 +12,41 @@ pub enum SceneError {
         line: usize,
         /// The key.
         key: String,
-        /// What is wrong, and what to do.
+        /// The error, and what to do.
         why: String,
     },
-    /// Not TOML, or not of a scene's form.
+    /// The file is not TOML, or has not the form of a scene.
     #[error("{file}:{line}: {why}")]
     Form {
         /// The scene's file.
         file: String,
         /// The line, from 1.
         line: usize,
-        /// What TOML's reader says.
+        /// The message of the TOML reader.
         why: String,
     },
-    /// A file that cannot be read.
+    /// The file cannot be read.
     #[error("{file}: {error}")]
     Read {
         /// The file.
         file: String,
-        /// What the file system says.
+        /// The error of the file system.
         error: std::io::Error,
     },
-    /// An effect that is not one, as `--with` and `--without` have it.
+    /// `--with` or `--without` names an unknown effect.
     #[error("no effect is called `{0}`: use {1}")]
     Effect(String, String),
-    /// The AFU that the scene calls for cannot be made.
+    /// The AFU that the scene calls for cannot be generated.
     #[error(transparent)]
     Afu(#[from] crate::afu::BuildError),
-    /// Yosys.
+    /// Yosys failed.
     #[error(transparent)]
     Synth(#[from] crate::synth::SynthError),
-    /// ODE.
+    /// ODE failed.
     #[cfg(feature = "ode")]
     #[error(transparent)]
     Ode(#[from] crate::ode::Error),
-    /// What computes the contacts.
+    /// The engine that computes the contacts failed.
     #[error("the contacts: {0}")]
     Engine(#[source] crate::kernel::EngineError),
 }

@@ -1,4 +1,4 @@
-//! What a scene says. Every value remembers its line.
+//! The content of a scene's file. Every value keeps its line.
 
 use std::path::PathBuf;
 
@@ -6,13 +6,13 @@ use serde::Deserialize;
 
 use crate::config::Profile;
 
-/// The largest coordinate, radius, mass or speed: what ODE's broad phase can hold, as `ode` has it too.
+/// The largest coordinate, radius, mass or speed. It is the same as in `ode`, the limit of ODE's broad phase.
 pub(super) const LARGEST: f64 = 134_217_728.0;
 
 /// A value, and the line that gives it; no line if it is the default.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Given<T> {
-    /// Itself.
+    /// The value.
     pub value: T,
     /// Its line in the file, from 1.
     pub line: Option<usize>,
@@ -24,26 +24,26 @@ impl<T> Given<T> {
     }
 }
 
-/// What is wanted of a scene.
+/// A result that a scene asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Want {
-    /// Which pairs touch.
+    /// The pairs that touch.
     Touching,
-    /// How deep.
+    /// The depth of contacts.
     Depth,
-    /// The direction that parts them.
+    /// The direction in which touching bodies separate.
     Normals,
-    /// Where they touch.
+    /// The positions of contacts.
     ContactPoints,
-    /// Where every body is after every step.
+    /// The position of every body after every step.
     Trajectories,
     /// Energy and momentum after every step.
     Energy,
 }
 
 impl Want {
-    /// As files have it.
+    /// The name in files.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Touching => "touching",
@@ -56,28 +56,28 @@ impl Want {
     }
 }
 
-/// How bodies may lie before the first step.
+/// The positions that bodies may have before the first step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 pub enum Start {
     /// Apart, above the floor and between the walls.
     #[default]
     #[serde(rename = "apart")]
     Apart,
-    /// As the scene has them.
+    /// As the scene gives them.
     #[serde(rename = "as given")]
     AsGiven,
 }
 
-/// A force to a centre.
+/// A force towards a centre.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Pull {
-    /// Of the force, mass · length / time².
+    /// The strength of the force, mass · length / time².
     pub strength: f64,
-    /// Where to, as seen from where each body is at the start.
+    /// The centre, seen from each body's place at the start.
     #[serde(default)]
     pub centre: [f64; 3],
-    /// The steps in which it acts, from the first.
+    /// The number of steps, from the first, in which it acts.
     #[serde(default = "always")]
     pub steps: u64,
 }
@@ -86,14 +86,14 @@ fn always() -> u64 {
     u64::MAX
 }
 
-/// What acts on the bodies; nothing unless named.
+/// The effects on the bodies. Each is off unless it is given.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Effects {
     /// An acceleration, length / time².
     pub gravity: Option<Given<[f64; 3]>>,
-    /// A force to a centre.
+    /// A force towards a centre.
     pub pull: Option<Given<Pull>>,
-    /// Bodies that meet part again: with this share of the speed they met with, 0 to 1.
+    /// Bodies that meet separate with this share of their approach speed, 0 to 1.
     pub bounce: Option<Given<f64>>,
     /// Coulomb's coefficient of contacts, from 0.
     pub friction: Option<Given<f64>>,
@@ -109,10 +109,10 @@ pub struct Effects {
     pub sleeping: Option<Given<f64>>,
 }
 
-/// How a group's bodies lie.
+/// The arrangement of a group's bodies.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
-    /// The paper's: the points of an octahedron.
+    /// The paper's diamond: the points of an octahedron.
     Diamond {
         /// Layers from the centre to a tip.
         layers: u64,
@@ -131,14 +131,14 @@ pub enum Shape {
         /// The seed of the places.
         seed: u64,
     },
-    /// One upon the other, along z.
+    /// One on top of the other, along z.
     Stack {
         /// The number of bodies.
         count: u64,
     },
-    /// Centres.
+    /// A list of centres.
     List {
-        /// One per body.
+        /// One centre per body.
         centres: Vec<[f64; 3]>,
     },
     /// Centres from a CSV (x,y,z or x,y,z,r) or PLY file.
@@ -148,14 +148,14 @@ pub enum Shape {
     },
 }
 
-/// Bodies that are alike.
+/// Bodies with the same properties.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Group {
-    /// How they lie.
+    /// Their arrangement.
     pub shape: Shape,
-    /// Distance between neighbours' surfaces, where the shape has neighbours.
+    /// Distance between neighbours' surfaces, if the shape has neighbours.
     pub gap: f64,
-    /// Where the shape's centre, or its first body, lies.
+    /// The place of the shape's centre, or of its first body.
     pub at: [f64; 3],
     /// Their radius, a length.
     pub radius: Given<f64>,
@@ -165,7 +165,7 @@ pub struct Group {
     pub velocity: Option<Given<[f64; 3]>>,
     /// Angular velocity, radians / time.
     pub turning: Option<Given<[f64; 3]>>,
-    /// Every line that says something of the group.
+    /// Every line about the group.
     pub lines: Vec<usize>,
 }
 
@@ -178,30 +178,30 @@ pub struct Scene {
     pub text: Vec<String>,
     /// Its name.
     pub name: Given<String>,
-    /// What is wanted, each with its line.
+    /// The results that it asks for, each with its line.
     pub want: Vec<(Want, usize)>,
-    /// Steps.
+    /// The number of steps.
     pub steps: Given<u64>,
-    /// A step's time.
+    /// The time of a step.
     pub time_step: Given<f64>,
-    /// The arithmetic by name.
+    /// The arithmetic, by name.
     pub accuracy: Option<Given<Profile>>,
-    /// The arithmetic by the relative error it may make.
+    /// The arithmetic, by its largest relative error.
     pub max_error: Option<Given<f64>>,
-    /// SCPUs.
+    /// The number of SCPUs.
     pub scpus: Given<u32>,
-    /// How bodies may lie at first.
+    /// The positions that bodies may have at the start.
     pub start: Given<Start>,
-    /// What acts.
+    /// The effects.
     pub effects: Effects,
     /// The bodies.
     pub bodies: Vec<Group>,
-    /// What they are tried against instead of each other.
+    /// Bodies that they are tested against, instead of each other.
     pub queries: Vec<Group>,
 }
 
 impl Shape {
-    /// How many there are, as far as the scene's text says: those of a file are counted when it is read.
+    /// The number of bodies, as far as the scene's text gives it. Bodies in a file are counted when it is read.
     pub fn count(&self) -> u64 {
         match self {
             // Octahedral numbers of the first and second kind: the points with |x| + |y| + |z| < layers.

@@ -1,13 +1,13 @@
-//! One effect after another: touching alone, then what each line of a scene adds.
+//! One effect after another: first only touching, then the additions of each line of a scene.
 
 use super::SceneError;
 use super::file::{Effects, Scene, Want};
 
-/// A scene with more and more of what it calls for, by the name of what was added last. The first asks for touching
-/// alone, the last is the scene's own.
+/// A scene with more and more of its demands, each named after the last addition. The first asks only for touching, and
+/// the last is the whole scene.
 ///
 /// # Errors
-/// None that [`Scene::switched`] does not give.
+/// Returns the errors of [`Scene::switched`].
 pub fn ladder(scene: &Scene) -> Result<Vec<(String, Scene)>, SceneError> {
     let of_fields = [Want::Depth, Want::Normals, Want::ContactPoints];
     let mut bare = scene.clone();
@@ -21,7 +21,7 @@ pub fn ladder(scene: &Scene) -> Result<Vec<(String, Scene)>, SceneError> {
             rungs.push((want.name().to_owned(), bare.clone()));
         }
     }
-    // Effects that call for no part of the AFU add nothing to it, and the table shows that.
+    // Effects that need no part of the AFU add nothing to it, and the table shows this.
     let names = Scene::effect_names();
     for (place, name) in names.iter().enumerate() {
         if scene.switched(name, false)?.effects == scene.effects {

@@ -1,9 +1,9 @@
-//! Scenes: bodies, the effects that act on them and what is wanted of them; and of that, what must be built and run.
+//! Scenes: bodies, the effects on them and the wanted results, from which follows what must be built and run.
 //!
 //! A [`Scene`] is read from TOML ([`Scene::read`]). Its [`Plan`] says for every effect, every field of a contact and
-//! every part of the hardware whether it is on, and which lines call for it: see `demand::RULES`. What nothing calls
-//! for costs nothing: it is not in the Verilog, not in a record, and its part of ODE is never called. `run`
-//! then runs the scene with what the plan has, and nothing else.
+//! every part of the hardware whether it is on, and which lines call for it (see `demand::RULES`). A part that nothing
+//! calls for costs nothing: it is not in the Verilog and not in a record, and its part of ODE is never called. `run`
+//! then runs the scene with only the parts of the plan.
 
 mod balance;
 mod bodies;

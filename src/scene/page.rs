@@ -1,4 +1,4 @@
-//! A run as a page: the scene moving or its contacts, the plan, and what each effect cost.
+//! A run as a page: the moving scene or its contacts, the plan, and the cost of each effect.
 
 use maud::{Markup, PreEscaped, html};
 
@@ -10,7 +10,7 @@ use super::viewer;
 use crate::plot::{Axis, Line, Marker, Plot, Scale, Series};
 use crate::report::page::{self, scripted, table};
 
-/// The page of a run; `ladder` is the cost with one effect after another, from [`Cost`]s by name.
+/// The page of a run. `ladder` has the [`Cost`]s, by name, with one effect after another.
 pub fn page(results: &SceneRun, ladder: &[(String, Cost)]) -> String {
     let body = html! {
         style { (PreEscaped(viewer::STYLE)) }
@@ -32,7 +32,7 @@ pub fn page(results: &SceneRun, ladder: &[(String, Cost)]) -> String {
     scripted(&format!("Scene: {}", results.name), &body, viewer::SCRIPT)
 }
 
-/// What is on, as a table; what is off is folded away.
+/// A table of the parts that are on. The others are folded away.
 fn plan(rows: &[Row]) -> Markup {
     let line = |row: &Row| vec![row.name.clone(), row.value.clone(), row.called_for_by().join("; ")];
     let on: Vec<Vec<String>> = rows.iter().filter(|row| row.on).map(line).collect();

@@ -1,4 +1,4 @@
-//! What the viewer draws, as data: places and orientations as 16-bit numbers, who touches whom, the room around.
+//! The viewer's data: positions and orientations as 16-bit numbers, contacts, and the room around.
 
 use serde::Serialize;
 
@@ -6,10 +6,10 @@ use super::results::SceneRun;
 use crate::query::{ContactRecord, FLAGS};
 use crate::report::page::base64;
 
-/// The most frames, and the most bytes in all of them.
+/// The most frames, and the most bytes in all frames together.
 const FRAMES: usize = 600;
 const BYTES: usize = 3_000_000;
-/// The most bodies drawn of a scene in which nothing moves, beside those of the contacts listed.
+/// The most bodies drawn for a scene without motion, in addition to those of the listed contacts.
 const DRAWN: usize = 20_000;
 /// The most contacts listed.
 pub(super) const LISTED: usize = 1000;
@@ -28,11 +28,11 @@ pub(super) struct Picture {
     queries_from: usize,
     low: [f64; 3],
     span: f64,
-    /// How many frames there are, and the steps from one to the next.
+    /// The number of frames, and the number of steps from one to the next.
     pub frames: usize,
     pub every: usize,
     time_step: f64,
-    /// u16 × 3 per body and frame, from `low`, in shares of `span`: little-endian, in base 64.
+    /// u16 × 3 per body and frame, from `low`, as shares of `span`: little-endian, in base 64.
     places: String,
     /// i16 × 3 per body and frame: the vector part of a unit quaternion.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -41,7 +41,7 @@ pub(super) struct Picture {
     walls: Option<[[f64; 3]; 2]>,
     /// u32 × 3 each: frame, first body, second body.
     meetings: String,
-    /// Step, first, second, and the fields.
+    /// Step, first body, second body, and the fields.
     contacts: Vec<(u64, usize, usize, Vec<f32>)>,
     fields: Vec<&'static str>,
 }
@@ -68,7 +68,7 @@ impl Picture {
                 }
             }
         }
-        // A meeting in a step shows in the first frame after it.
+        // A meeting in a step is shown in the first frame after it.
         let frame_of = |step: u64| (step as usize + 1).div_ceil(every);
         let meetings = run.meetings.iter().filter(|meeting| frame_of(meeting.step) < frames.len());
         let meetings: Vec<u8> = meetings
@@ -101,13 +101,13 @@ impl Picture {
         }
     }
 
-    /// The data as a JSON text that can stand in a `script` element: nothing in it can end that element.
+    /// The data as JSON text that is safe inside a `script` element, because it cannot end that element.
     pub(super) fn json(&self) -> String {
         serde_json::to_string(self).map_or_else(|_| "null".to_owned(), |text| text.replace('<', "\\u003c"))
     }
 }
 
-/// The bodies drawn, in order, or `None` if all are: those of the contacts listed, and of the others each so many-th.
+/// The bodies drawn, in order, or `None` if all are: those of the listed contacts, and a regular sample of the others.
 fn drawn(run: &SceneRun) -> Option<Vec<usize>> {
     let all = run.radii.len();
     if all <= DRAWN {

@@ -1,4 +1,4 @@
-//! Of a scene's text, what must be built and run, and which line calls for it.
+//! Derives from a scene's text what must be built and run, and which line calls for it.
 
 use super::cost::Cost;
 use super::demand::{Demand, MOVING, Part, RULES};
@@ -11,39 +11,39 @@ use crate::query::Fields;
 /// A line that calls for something.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Call {
-    /// Its number, from 1.
+    /// The number of the line, from 1.
     pub line: usize,
-    /// Its text.
+    /// The text of the line.
     pub text: String,
 }
 
 /// A row of a plan.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// What it is about: a [`Part`]'s name, or a group of bodies.
+    /// A [`Part`]'s name, or a group of bodies.
     pub name: String,
-    /// Whether it is built and run.
+    /// True if it is built and run.
     pub on: bool,
-    /// How much of it, where that can be said.
+    /// Its value, if it has one.
     pub value: String,
-    /// The lines that call for it; empty if it is off, or on by default.
+    /// The lines that call for it. Empty if it is off, or on by default.
     pub calls: Vec<Call>,
 }
 
-/// What a scene takes.
+/// What must be built and run for a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// Row by row.
+    /// The rows.
     pub rows: Vec<Row>,
     /// The AFU.
     pub config: Config,
 }
 
-/// What `--with` and `--without` can name: an effect, and the value it has where a scene does not say one.
+/// The effects that `--with` and `--without` can name, each with the value for scenes that give none.
 const EFFECTS: [&str; 9] = ["gravity", "pull", "bounce", "friction", "spin", "damping", "floor", "walls", "sleeping"];
 
 impl Plan {
-    /// Whether something sets the bodies of a scene going.
+    /// True if something sets the bodies of a scene in motion.
     pub fn moves(scene: &Scene) -> bool {
         MOVING.iter().any(|demand| !demand.lines(scene).is_empty())
     }
@@ -63,7 +63,7 @@ impl Plan {
         let radius = one_radius(scene)?;
         let profile = profile(scene);
         let fields = Fields { depth: on(Part::Depth), normal: on(Part::Normal), position: on(Part::Position) };
-        // Records of one bit cannot say that a pair is unsettled, and the host must be told of those.
+        // Records of one bit cannot mark a pair as unsettled, but the host must know these pairs.
         let exact = profile.is_exact();
         let fields = if exact && fields == Fields::HIT { Fields { depth: true, ..fields } } else { fields };
         let config = Config {
@@ -74,7 +74,7 @@ impl Plan {
             radius,
             ..Config::default()
         };
-        // As few operators as still take a full line of pairs a cycle.
+        // The fewest operators that still take a full line of pairs per cycle.
         let interval = Spec::from(config.clone()).longest_interval(f64::INFINITY);
         let config = Config { interval, ..config };
         let mut rows: Vec<Row> = RULES
@@ -107,22 +107,22 @@ impl Plan {
         Ok(Self { rows, config })
     }
 
-    /// A row by its part.
+    /// The row of a part.
     pub fn row(&self, part: Part) -> Option<&Row> {
         self.rows.iter().find(|row| row.name == part.name())
     }
 
-    /// Whether a part is on.
+    /// True if a part is on.
     pub fn has(&self, part: Part) -> bool {
         self.row(part).is_some_and(|row| row.on)
     }
 
-    /// The AFU that has everything: what the scene would take if nobody had asked what it calls for.
+    /// The AFU with every part, for comparison with the scene's own.
     pub fn everything(&self) -> Config {
         Config { contact: Fields::ALL, results: Results::All, radius: None, ..self.config.clone() }
     }
 
-    /// What the AFU costs, without the tools that count LUTs.
+    /// The cost of the AFU, without the tools that count LUTs.
     ///
     /// # Errors
     /// Returns an error if there is no such AFU.
@@ -132,12 +132,12 @@ impl Plan {
 }
 
 impl Scene {
-    /// The scene with an effect that it does not name, at a usual value, or without one that it does.
+    /// The scene with one effect added at a usual value, or with one of its effects removed.
     ///
     /// # Errors
     /// Returns an error if there is no such effect.
     pub fn switched(&self, effect: &str, on: bool) -> Result<Self, SceneError> {
-        // The line of what no line calls for.
+        // The line of a demand that no line makes.
         const ASKED: Option<usize> = Some(0);
         fn set<T>(to: &mut Option<Given<T>>, on: bool, usual: T) {
             *to = if on { to.take().or(Some(Given { value: usual, line: ASKED })) } else { None };
@@ -176,7 +176,7 @@ fn call(scene: &Scene, line: usize) -> Call {
     Call { line, text }
 }
 
-/// The radius, rounded to binary32 as records have it, if all spheres have the same.
+/// The radius, rounded to binary32 as in records, if all spheres have the same one.
 fn one_radius(scene: &Scene) -> Result<Option<f32>, SceneError> {
     let groups = || scene.bodies.iter().chain(&scene.queries);
     let first = groups().next().map_or(1.0, |group| group.radius.value as f32);
@@ -189,7 +189,7 @@ fn one_radius(scene: &Scene) -> Result<Option<f32>, SceneError> {
     Ok(groups().all(|group| group.radius.value as f32 == first).then_some(first))
 }
 
-/// The arithmetic: the one that is named, or the narrowest that is known to err no more than it may.
+/// The arithmetic: the named one, or the narrowest that is known to keep the error bound.
 fn profile(scene: &Scene) -> Profile {
     if let Some(named) = &scene.accuracy {
         return named.value.clone();
@@ -207,7 +207,7 @@ fn run(scene: &Scene, calls: Vec<Call>) -> Row {
     Row { name: "run".to_owned(), on: true, value, calls }
 }
 
-/// What a scene says of a part.
+/// The value that a scene gives to a part.
 fn value(scene: &Scene, part: Part) -> String {
     fn text<T: std::fmt::Debug>(given: &Option<Given<T>>) -> String {
         given.as_ref().map_or_else(String::new, |given| format!("{:?}", given.value))

@@ -1,4 +1,4 @@
-//! A scene's file: TOML, version 1.
+//! Reads a scene's file: TOML, version 1.
 
 use std::path::{Path, PathBuf};
 
@@ -8,9 +8,9 @@ use toml::Spanned;
 use super::SceneError;
 use super::file::{Effects, Given, Group, LARGEST, Pull, Scene, Shape, Start, Want};
 
-/// The version this program reads: the key `scene`.
+/// The version that this program reads: the key `scene`.
 const VERSION: i64 = 1;
-/// Bodies of a scene that moves, and spheres of a query.
+/// The most bodies of a moving scene, and the most spheres of a query.
 const MOST_MOVING: u64 = 20_000;
 const MOST: u64 = 1_000_000;
 
@@ -74,7 +74,7 @@ enum Count {
     Axes([u64; 3]),
 }
 
-/// Where a scene's text comes from, and what is wrong at one of its lines.
+/// A scene's text with its file, for errors at its lines.
 struct Source<'a> {
     file: &'a str,
     text: &'a str,
@@ -94,7 +94,7 @@ impl Source<'_> {
         SceneError::Value { file: self.file.to_owned(), line: line.unwrap_or(1), key: key.to_owned(), why: why.into() }
     }
 
-    /// A number, or three, of which none is beyond what ODE and records can hold.
+    /// A number, or three, within the limits of ODE and of records.
     fn number(&self, key: &str, value: Option<Spanned<f64>>, least: f64) -> Result<Option<Given<f64>>, SceneError> {
         let Some(given) = value.map(|value| self.given(value)) else { return Ok(None) };
         if (least..=LARGEST).contains(&given.value) {
@@ -138,7 +138,7 @@ impl Scene {
     /// Reads a scene.
     ///
     /// # Errors
-    /// One, naming file, line and key.
+    /// Returns an error that names file, line and key.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
         let file = path.display().to_string();
         let text = std::fs::read_to_string(path).map_err(|error| SceneError::Read { file: file.clone(), error })?;
@@ -152,7 +152,7 @@ impl Scene {
         Ok(scene)
     }
 
-    /// The scene of a text; `file` is for errors.
+    /// Reads a scene from a text. Errors name the file as `file`.
     ///
     /// # Errors
     /// Returns the errors of [`Scene::read`].
@@ -216,7 +216,7 @@ impl Scene {
         Ok(scene)
     }
 
-    /// What makes no sense as a whole.
+    /// Fails if the values contradict each other.
     fn check(&self, source: &Source) -> Result<(), SceneError> {
         if self.bodies.is_empty() {
             return Err(source.wrong(None, "bodies", "there are none: give at least one [[bodies]]"));

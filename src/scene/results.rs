@@ -1,4 +1,4 @@
-//! What a run of a scene gives.
+//! The results of a scene's run.
 
 use serde::Serialize;
 
@@ -9,10 +9,10 @@ use crate::config::Config;
 /// The schema of a scene's JSON.
 pub const SCHEMA: &str = "contact-afu/scene/1";
 
-/// Two bodies that touched, after so many steps. Fields that nothing called for are zero.
+/// Two touching bodies, in one step. Fields that nothing called for are zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touching {
-    /// Steps done before.
+    /// The number of steps done before.
     pub step: u64,
     /// The bodies' numbers.
     pub bodies: [usize; 2],
@@ -32,9 +32,9 @@ pub struct Meeting {
 /// Energy and momentum after a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Energy {
-    /// Kinetic energy, of travel and of spin: mass · length² / time².
+    /// Kinetic energy, of translation and rotation: mass · length² / time².
     pub kinetic: f64,
-    /// In the field of gravity, relative to the origin; 0 without gravity.
+    /// Energy in the field of gravity, relative to the origin; 0 without gravity.
     pub potential: f64,
     /// Mass · length / time.
     pub momentum: [f64; 3],
@@ -43,34 +43,35 @@ pub struct Energy {
 /// The counts of a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Summary {
-    /// Bodies, queries among them.
+    /// The number of bodies, including queries.
     pub bodies: usize,
-    /// Steps done.
+    /// The number of steps done.
     pub steps: u64,
-    /// Pairs of bodies that there are.
+    /// The number of all pairs of bodies.
     pub all_pairs: u64,
-    /// Pairs sent to the engine: those that could reach each other, and did not both sleep. Of all steps.
+    /// Pairs sent to the engine in all steps: those that could touch and were not both asleep.
     pub pairs: u64,
-    /// Pairs of two bodies that slept, in reach of each other or not. They are not sent. Of all steps.
+    /// Pairs of two sleeping bodies in all steps, whether or not they could touch. They are not sent.
     pub asleep: u64,
-    /// Contacts among them.
+    /// Contacts among the pairs sent.
     pub contacts: u64,
-    /// Contacts with walls, ODE's.
+    /// Contacts with walls, from ODE.
     pub wall_contacts: u64,
-    /// Clock cycles of the simulated AFU, all jobs; `None` for the reference engine.
+    /// Clock cycles of the simulated AFU over all jobs; `None` for the reference engine.
     pub cycles: Option<u64>,
-    /// Bytes over the link, by the layout.
+    /// Bytes over the link, from the layout.
     pub bytes: f64,
-    /// The same had everything been on.
+    /// Bytes over the link if everything were on.
     pub bytes_with_everything: f64,
-    /// The median step's time on this host without the engine's part, nanoseconds; of a query the engine's time.
+    /// The median time of a step on this host without the engine's part, in nanoseconds. For a query, the engine's
+    /// time.
     pub step_ns: f64,
-    /// The energy at first and in the end, and what came in; `None` for a query.
+    /// The energy at the start and at the end, and the energy added; `None` for a query.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub balance: Option<Balance>,
 }
 
-/// A run.
+/// A run of a scene.
 #[derive(Clone, Debug)]
 pub struct SceneRun {
     /// The scene's name.
@@ -79,11 +80,11 @@ pub struct SceneRun {
     pub rows: Vec<Row>,
     /// The AFU.
     pub config: Config,
-    /// What it costs.
+    /// The cost of the AFU.
     pub cost: Cost,
-    /// What one with everything costs.
+    /// The cost of an AFU with everything.
     pub everything: Cost,
-    /// Who computed the contacts.
+    /// The engine that computed the contacts.
     pub engine: String,
     /// The counts.
     pub summary: Summary,
@@ -99,12 +100,12 @@ pub struct SceneRun {
     pub groups: Vec<usize>,
     /// The number of bodies that are not queries.
     pub queries_from: usize,
-    /// Position of every body, at first and after each step; only at first if trajectories are not wanted.
+    /// Position of every body, at the start and after each step. Only at the start if trajectories are not wanted.
     pub places: Vec<Vec<[f64; 3]>>,
-    /// Orientation of every body, if spin is on and trajectories are wanted: the vector part of a unit quaternion
-    /// whose scalar part is not negative.
+    /// Orientation of every body, if spin is on and trajectories are wanted: the vector part of a unit quaternion whose
+    /// scalar part is not negative.
     pub turns: Vec<Vec<[f32; 3]>>,
-    /// Who began to touch whom in which step; empty if trajectories are not wanted.
+    /// The bodies that met, and when; empty if trajectories are not wanted.
     pub meetings: Vec<Meeting>,
     /// Contacts, if wanted.
     pub contacts: Vec<Touching>,
@@ -141,7 +142,7 @@ impl<'a> From<&'a Row> for PlanRow<'a> {
 }
 
 impl SceneRun {
-    /// Takes what does not change in a run from its bodies.
+    /// Copies the properties of the bodies that do not change in a run.
     pub(super) fn describe(&mut self, balls: &[Ball], queries_from: usize) {
         self.radii = balls.iter().map(|ball| ball.radius).collect();
         self.queries_from = queries_from;

@@ -1,4 +1,5 @@
-//! Scenes that move: ODE's steps, with an engine in the place of its collider of two spheres, and what the plan has.
+//! Moving scenes: ODE's steps, with an engine that replaces its collider of two spheres, and with only the plan's
+//! effects.
 
 use std::collections::HashMap;
 use std::time::{Duration, Instant};
@@ -12,15 +13,16 @@ use crate::kernel::{Engine, EngineError};
 use crate::ode::{Collider, Ode, Sleep, Sphere, Surface, World};
 use crate::query::{ContactRecord, Fields, PairRecord};
 
-/// Two bodies meet when they touch and did not in so many steps before. Bodies that lie on each other touch on and off.
+/// Two bodies meet if they touch and did not touch in this number of steps before. Bodies that lie on each other touch
+/// on and off.
 const APART: u64 = 20;
 
-/// Runs a scene: each step's pairs through `engine`, which has the plan's fields. After each step `progress` gets the
-/// number of those done.
+/// Runs a scene. Each step's pairs go through `engine`, which computes the plan's fields. After each step, `progress`
+/// is called with the number of steps done.
 ///
 /// # Errors
-/// Returns an error if bodies cannot be read or begin inside one another ([`check_start`]), ODE refuses them or loses
-/// one, or the engine fails.
+/// Returns an error if bodies cannot be read or overlap at the start ([`check_start`]), if ODE refuses or loses a body,
+/// or if the engine fails.
 pub fn run(
     scene: &Scene,
     plan: &Plan,
@@ -53,7 +55,7 @@ pub fn run(
                 world.add_force(sphere, force)?;
             }
         }
-        // Without anything that asks for it, nobody looks who touches whom.
+        // Contacts are computed only if something asks for them.
         let touches = if plan.has(Part::Hit) { world.contacts_by(&mut engine)? } else { Vec::new() };
         if plan.has(Part::Response) {
             for touch in &touches {
@@ -110,7 +112,7 @@ pub fn run(
     Ok(results)
 }
 
-/// The bodies, and those effects that the plan has.
+/// The bodies, and the effects of the plan.
 fn set_up(world: &mut World, scene: &Scene, plan: &Plan, bodies: &[Ball]) -> Result<Vec<Sphere>, SceneError> {
     let effects = &scene.effects;
     if let Some(gravity) = effects.gravity.as_ref().filter(|_| plan.has(Part::Gravity)) {
@@ -133,7 +135,7 @@ fn set_up(world: &mut World, scene: &Scene, plan: &Plan, bodies: &[Ball]) -> Res
             world.add_wall(unit(-1.0), -high[axis])?;
         }
     }
-    // A bounce of 1 keeps energy only if no overlap is pushed apart on top of it.
+    // A bounce of 1 conserves energy only if overlaps are not pushed apart in addition.
     if effects.bounce.as_ref().is_some_and(|bounce| bounce.value == 1.0) {
         world.set_stiffness(0.0, 0.0)?;
     }
@@ -152,15 +154,15 @@ fn set_up(world: &mut World, scene: &Scene, plan: &Plan, bodies: &[Ball]) -> Res
     Ok(spheres)
 }
 
-/// The pull on every body: from where it is at the start to the centre, as in the paper's diamond.
+/// The pull on every body, from its place at the start towards the centre, as in the paper's diamond.
 struct Forces {
     each: Vec<[f64; 3]>,
     steps: u64,
 }
 
 impl Forces {
-    /// The work that they do in a time. That of a step is the mean of those before and after it: Newton's second law,
-    /// as ODE discretises it, has then no other term.
+    /// The power of the forces. The work of a step is the mean of the powers before and after it, times the step's
+    /// time. For Newton's second law in ODE's discretisation, this is exact.
     fn power(&self, world: &World, spheres: &[Sphere]) -> f64 {
         let power = |(&sphere, force): (&Sphere, &[f64; 3])| {
             let velocity = world.velocity(sphere);
@@ -204,14 +206,15 @@ fn record(results: &mut SceneRun, plan: &Plan, scene: &Scene, world: &World, bod
     }
 }
 
-/// A unit quaternion by its vector part: it and its opposite are the same orientation, so the scalar part can be kept
-/// from being negative.
+/// The vector part of a unit quaternion. A quaternion and its opposite are the same orientation, so the scalar part can
+/// be kept from being negative.
 fn turn([scalar, x, y, z]: [f64; 4]) -> [f32; 3] {
     let sign = if scalar < 0.0 { -1.0 } else { 1.0 };
     [x, y, z].map(|part| (part * sign) as f32)
 }
 
-/// The engine, its time told apart from the host's, its pairs counted, and what it does not compute filled in.
+/// The engine, with its time measured apart from the host's, its pairs counted, and fields that it does not compute
+/// filled in.
 struct Timed<'a> {
     inner: &'a mut dyn Engine,
     fields: Fields,
@@ -226,8 +229,8 @@ impl Engine for Timed<'_> {
         self.spent += begun.elapsed();
         self.pairs += pairs.len() as u64;
         if !self.fields.position {
-            // A force along the normal goes through both centres, so it has no lever arm there, and the position
-            // changes nothing.
+            // A force along the normal goes through both centres, so it has no lever arm there, and the position has no
+            // effect.
             for (contact, pair) in contacts.iter_mut().zip(pairs).filter(|(contact, _)| contact.is_contact()) {
                 *contact = contact.at_first_centre(pair);
             }

@@ -1,5 +1,5 @@
-//! How the bodies of a scene that moves lie at first. Overlapping bodies are pushed apart, and so gain energy that
-//! nothing in the scene gives them.
+//! Checks the positions of a moving scene's bodies at the start. Overlapping bodies are pushed apart, and so gain
+//! energy that nothing in the scene explains.
 
 use super::bodies::{Ball, balls};
 use super::demand::Part;
@@ -7,7 +7,7 @@ use super::file::Start;
 use super::plan::Plan;
 use super::{Scene, SceneError};
 
-/// The part of a radius that bodies may overlap without a word: roundings of places that touch.
+/// The overlap, as a share of a radius, that is accepted, because the places of touching bodies are rounded.
 const SLACK: f64 = 1e-6;
 
 /// A body of the scene, and the line of its group.
@@ -16,11 +16,11 @@ struct Placed {
     line: usize,
 }
 
-/// How many overlaps of a kind, and the first.
+/// The number of overlaps of a kind, and the first one.
 #[derive(Default)]
 struct Overlaps {
     count: u64,
-    /// Numbers of bodies, and how deep.
+    /// The numbers of the bodies, and the depth.
     first: Option<([usize; 2], f64)>,
 }
 
@@ -33,11 +33,11 @@ impl Overlaps {
     }
 }
 
-/// Whether a scene that moves begins with its bodies apart, above its floor and between its walls, or may do otherwise.
-/// Bodies among themselves matter only where they push each other.
+/// Succeeds if a moving scene begins with its bodies apart, above its floor and between its walls, or need not.
+/// Overlaps of bodies matter only if they push each other.
 ///
 /// # Errors
-/// How many do not, which is first and how deep; when bodies cannot be read.
+/// Returns the number of overlaps, the first one and its depth. Returns an error if bodies cannot be read.
 pub fn check_start(scene: &Scene, plan: &Plan) -> Result<(), SceneError> {
     if scene.start.value == Start::AsGiven || !Plan::moves(scene) {
         return Ok(());
@@ -88,7 +88,7 @@ pub fn check_start(scene: &Scene, plan: &Plan) -> Result<(), SceneError> {
     Err(SceneError::Value { file: scene.file.clone(), line, key: "bodies".to_owned(), why })
 }
 
-/// The bodies of which `depth` says that they are too far out.
+/// The bodies that are too far out according to `depth`.
 fn beyond(bodies: &[Placed], depth: impl Fn(&Ball) -> f64) -> Overlaps {
     let mut found = Overlaps::default();
     for (number, Placed { ball, .. }) in bodies.iter().enumerate() {
@@ -129,7 +129,7 @@ fn plural(count: u64, one: &str, many: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { many })
 }
 
-/// Three digits.
+/// A number with three digits.
 fn figure(value: f64) -> String {
     let digits = (2.0 - value.log10().floor()).clamp(0.0, 12.0) as usize;
     format!("{value:.digits$}")

@@ -1,4 +1,4 @@
-//! Scenes in which nothing moves: one step, all of it collision detection.
+//! Scenes without motion: one step that consists only of collision detection.
 
 use std::collections::HashMap;
 use std::time::Instant;
@@ -10,19 +10,19 @@ use super::{Part, Scene, SceneError};
 use crate::kernel::Engine;
 use crate::query::PairRecord;
 
-/// A scene in which nothing moves: which spheres of two sets, or of one, touch.
+/// A scene without motion. The question is which spheres of one set, or of two, touch.
 #[derive(Clone, Debug)]
 pub struct Still {
     /// All spheres, those of `queries` last.
     pub balls: Vec<Ball>,
-    /// How many are bodies.
+    /// The number of bodies.
     pub bodies: usize,
-    /// The pairs that could touch: numbers of spheres.
+    /// The pairs that could touch, as numbers of spheres.
     pub candidates: Vec<[usize; 2]>,
 }
 
 impl Still {
-    /// Of a scene: its bodies against its queries, or against each other where there are none.
+    /// The bodies of a scene against its queries, or against each other if there are none.
     ///
     /// # Errors
     /// Returns an error if a file of bodies cannot be read.
@@ -43,7 +43,7 @@ impl Still {
         self.candidates.iter().map(|&[a, b]| PairRecord::from_spheres(sphere(a), sphere(b))).collect()
     }
 
-    /// Pairs there are without asking who is in reach.
+    /// The number of all pairs, whether or not they could touch.
     pub(crate) fn all_pairs(&self) -> u64 {
         let (bodies, queries) = (self.bodies as u64, (self.balls.len() - self.bodies) as u64);
         if queries > 0 { bodies * queries } else { bodies * bodies.saturating_sub(1) / 2 }
@@ -86,7 +86,7 @@ fn candidates(balls: &[Ball], bodies: usize) -> Vec<[usize; 2]> {
     pairs
 }
 
-/// Runs a scene's one query on an engine.
+/// Runs a scene's single query on an engine.
 ///
 /// # Errors
 /// Returns an error if bodies cannot be read, or the engine fails.

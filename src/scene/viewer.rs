@@ -1,4 +1,4 @@
-//! The part of a page in which the scene moves, or shows who touches whom.
+//! The part of a page that shows the moving scene, or the contacts.
 
 use maud::{Markup, PreEscaped, html};
 
@@ -8,7 +8,7 @@ use crate::plot::{Axis, Line, Plot, Scale, Series};
 use crate::query::{ContactRecord, FLAGS};
 use crate::report::table::grouped;
 
-/// The viewer's script: a block, so that its names are its own.
+/// The viewer's script, in a block so that its names are local.
 pub(super) const SCRIPT: &str = concat!(
     "\"use strict\";\n{\n",
     include_str!("viewer/data.js"),
@@ -122,7 +122,7 @@ fn contacts(run: &SceneRun, moves: bool) -> Markup {
     }
 }
 
-/// Five significant digits are enough to read; contacts.csv has all.
+/// Five significant digits are enough to read. contacts.csv has all digits.
 fn short(value: f32) -> String {
     if value != 0.0 && !(1e-4..1e6).contains(&value.abs()) {
         return format!("{value:.3e}");
@@ -131,7 +131,7 @@ fn short(value: f32) -> String {
     format!("{value:.places$}", places = (4.0 - whole).clamp(0.0, 8.0) as usize)
 }
 
-/// The energy over the time, with the time that the view shows: broad, and narrow for a small screen.
+/// The energy over time, with the time that the view shows. It is drawn for a wide and a narrow screen.
 fn energy(run: &SceneRun) -> Markup {
     if run.energy.is_empty() {
         return html! {};

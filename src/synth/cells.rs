@@ -1,4 +1,4 @@
-//! Cells by kind, as Yosys counts them, and what a device spends on them.
+//! Cells by kind, as Yosys counts them, and the area that they take.
 
 use std::collections::BTreeMap;
 use std::ops::Sub;
@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 
 use super::Target;
 
-/// How many cells of each type there are.
+/// The number of cells of each type.
 pub(super) type Cells = BTreeMap<String, u64>;
 
-/// What a unit takes of a device.
+/// The area of a unit on a device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Area {
     /// LUTs, including those of carry chains and small memories; ALUTs on Cyclone V.

@@ -18,7 +18,7 @@ pub enum SynthError {
     /// The AFU could not be generated.
     #[error(transparent)]
     Generate(#[from] BuildError),
-    /// The unit or its wrapper: a mistake of the generator, or a clock nothing can be cut for.
+    /// The unit or its wrapper is faulty, because of a mistake of the generator or a clock that is impossible.
     #[error("the hardware is faulty:\n{0}")]
     Hardware(#[from] BuildErrors),
     /// A program failed, with its last messages.
@@ -26,7 +26,7 @@ pub enum SynthError {
     Failed {
         /// The program.
         program: String,
-        /// What it was working on.
+        /// The unit that it was working on.
         unit: String,
         /// Its messages.
         text: String,
@@ -36,19 +36,19 @@ pub enum SynthError {
     Unexpected {
         /// The program.
         program: String,
-        /// What it was working on.
+        /// The unit that it was working on.
         unit: String,
         /// What is wrong.
         what: String,
     },
-    /// A file or folder could not be read or written, or a program not run.
+    /// A file or folder could not be read or written, or a program could not be run.
     #[error("cannot {action} {}: {source}", path.display())]
     Io {
         /// The verb: read, write, create, run.
         action: &'static str,
-        /// On what.
+        /// The path.
         path: PathBuf,
-        /// Why.
+        /// The cause.
         source: io::Error,
     },
     /// Netlists and routes cannot be stored.
@@ -57,8 +57,8 @@ pub enum SynthError {
 }
 
 impl SynthError {
-    /// True if this unit is to blame: it cannot be generated, or a program failed on it. False if others would fail as
-    /// well: a program is missing, or the disk is full.
+    /// True if only this unit failed: it cannot be generated, or a program failed on it. False if other units would
+    /// fail as well: a program is missing, or the disk is full.
     pub fn is_of_unit(&self) -> bool {
         match self {
             Self::Generate(_) | Self::Hardware(_) | Self::Failed { .. } | Self::Unexpected { .. } => true,

@@ -1,4 +1,4 @@
-//! The figures of a unit, as the JSON has them.
+//! The figures of a unit, as they are in the JSON.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,7 +18,7 @@ pub struct Figures {
     pub version: String,
     /// The kind of unit, such as `add` or `scpu`.
     pub unit: String,
-    /// Its arithmetic.
+    /// The arithmetic of the unit.
     pub profile: Profile,
     /// The architecture, if the operator has several.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -34,20 +34,20 @@ pub struct Figures {
     pub asked_mhz: f64,
     /// The clock that the delay model predicts, MHz; `None` if no stages were cut.
     pub modelled_mhz: Option<f64>,
-    /// The clock after place and route, MHz, median of the seeds; `None` if cells were only counted.
+    /// The clock after place and route in MHz, the median over the seeds; `None` if cells were only counted.
     pub clock_mhz: Option<f64>,
     /// Cycles from inputs to outputs; `None` if the unit is not a pipeline.
     pub latency_cycles: Option<u32>,
-    /// The same in nanoseconds, at [`Figures::clock_mhz`].
+    /// The same latency in nanoseconds, at [`Figures::clock_mhz`].
     pub latency_ns: Option<f64>,
-    /// Its area, without the wrapper's.
+    /// The area of the unit, without the wrapper's.
     #[serde(flatten)]
     pub area: Area,
     /// The wrapper's own area, which was subtracted.
     pub wrapper: Area,
     /// Registers of the wrapper that synthesis removed: those of unused inputs and of constant outputs.
     pub trimmed: Trimmed,
-    /// Each seed's run, in the order asked for.
+    /// The run of each seed, in the given order.
     pub seeds: Vec<Seed>,
     /// The critical path between two registers, for the seed with the median clock.
     pub critical: Vec<Hop>,
@@ -69,11 +69,11 @@ pub struct Seed {
 /// A part of a path.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Hop {
-    /// The signal, with the instances it is in: what a cell computes, or contributes to.
+    /// The signal, with the names of its instances, that a cell computes or contributes to.
     pub signal: String,
-    /// The stage it stands in, counted from 0.
+    /// The stage of the signal, counted from 0.
     pub stage: Option<u32>,
-    /// Routing delay to it, ns.
+    /// Routing delay to the signal, ns.
     pub routing_ns: f64,
     /// Logic delay, ns.
     pub logic_ns: f64,
@@ -84,12 +84,12 @@ pub struct Hop {
 pub struct Tools {
     /// Yosys.
     pub yosys: String,
-    /// nextpnr, where it was used.
+    /// nextpnr, if it was used.
     pub nextpnr: Option<String>,
 }
 
 impl Figures {
-    /// Whether the requested clock was reached; `None` if cells were only counted.
+    /// True if the requested clock was reached; `None` if cells were only counted.
     pub fn meets(&self) -> Option<bool> {
         self.clock_mhz.map(|clock| clock >= self.asked_mhz)
     }

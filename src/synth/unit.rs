@@ -13,9 +13,9 @@ use super::{SynthError, Target};
 /// A module to be measured.
 #[derive(Clone, Debug)]
 pub struct Unit {
-    /// Its kind, such as `add` or `scpu`.
+    /// The kind of unit, such as `add` or `scpu`.
     pub name: String,
-    /// The arithmetic.
+    /// The arithmetic of the unit.
     pub profile: Profile,
     /// The architecture, if the operator has several.
     pub architecture: Option<Architecture>,
@@ -23,7 +23,7 @@ pub struct Unit {
     pub interval: Option<u32>,
     /// The clock that its stages were cut for, MHz.
     pub clock_mhz: f64,
-    /// Its module.
+    /// The module of the unit.
     pub module: Arc<Module>,
     /// Cycles from inputs to outputs; `None` if the unit is not a pipeline.
     pub latency: Option<u32>,
@@ -69,7 +69,7 @@ impl Unit {
         Self::scpu_with(config, DelayModel::default())
     }
 
-    /// [`Unit::scpu`] cut for a target by its own delays ([`Target::delays`]), its multiplier blocks in its own way.
+    /// As [`Unit::scpu`], but cut for a target with its own delays ([`Target::delays`]) and its own multiplier blocks.
     ///
     /// # Errors
     /// Returns an error if the configuration cannot be generated.
@@ -109,7 +109,7 @@ impl Unit {
         }
     }
 
-    /// The clock in MHz that the delay model predicts, that of the slowest part; `None` if no stages were cut.
+    /// The clock in MHz that the delay model predicts, which the slowest part decides; `None` if no stages were cut.
     pub fn modelled_mhz(&self) -> Option<f64> {
         let timings = self.module.hierarchy();
         timings.iter().filter_map(|module| module.timing.as_ref()).map(|timing| timing.clock_mhz).reduce(f64::min)

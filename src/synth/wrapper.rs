@@ -1,28 +1,28 @@
-//! Registers and scan chains around a unit: few pins, whatever its ports, and register-to-register paths only.
+//! Registers and scan chains around a unit: few pins for any number of ports, and only register-to-register paths.
 //!
-//! A chain shifts `scan_in` through; `load` copies it into the operand registers, which feed the unit. Its results go
-//! into registers, and from there, when `shift` is low, into a second chain that ends at `scan_out`. The operand
-//! registers have an enable, so no register of the unit that delays an input can be merged with a wrapper's.
+//! A chain shifts `scan_in` through. `load` copies it into the operand registers, which feed the unit. The results go
+//! into registers and, when `shift` is low, into a second chain that ends at `scan_out`. The operand registers have an
+//! enable, so no register of the unit that delays an input can be merged with one of the wrapper's.
 
 use std::sync::Arc;
 
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
-/// The wrapper's module.
+/// The name of the wrapper's module.
 pub const TOP: &str = "bench";
-/// The unit's instance in it.
+/// The name of the unit's instance in it.
 pub(crate) const UNIT: &str = "unit";
 
-/// Its registers that feed the unit.
+/// The name of the registers that feed the unit.
 pub(crate) const OPERANDS: &str = "operand_register";
-/// Its registers that take the unit's results.
+/// The name of the registers that take the unit's results.
 pub(crate) const RESULTS: &str = "result_register";
 
-/// The wrapper around `unit`. Words stand in the chains in the order of the ports, the first one most significant; a
-/// chain takes and gives the most significant bit first.
+/// The wrapper around `unit`. The words in the chains have the order of the ports, the first one most significant. A
+/// chain shifts the most significant bit first.
 ///
 /// # Errors
-/// A fault of the generator.
+/// Returns an error only if the generator has a fault.
 pub fn wrap(unit: &Arc<Module>) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new(TOP);
     graph.about(format!("registers and scan chains around {}", unit.name));
@@ -44,14 +44,14 @@ pub fn wrap(unit: &Arc<Module>) -> Result<Arc<Module>, BuildErrors> {
     result.next(Signal::join(&results));
     let shift = graph.input("shift", 1);
     let chain = graph.data_register("result_chain", bits(true));
-    // What comes in behind is the input's bit: a constant would make the last register another kind of cell.
+    // The bit that follows is the input's. A constant would turn the last register into another kind of cell.
     let shifted = shift_in(chain.value(), scan_in);
     chain.next(shift.select(shifted, result.value()));
     graph.output("scan_out", chain.msb());
     graph.finish()
 }
 
-/// The bits of a unit's inputs or outputs together.
+/// The number of bits in a unit's inputs or outputs.
 pub fn bits(unit: &Module, outputs: bool) -> u32 {
     unit.ports.iter().filter(|port| port.output == outputs).map(|port| port.width).sum()
 }

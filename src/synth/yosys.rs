@@ -90,7 +90,7 @@ pub(super) fn run(program: &Program, command: &mut Command, unit: &str) -> Resul
     Err(SynthError::Failed { program: program.name().to_owned(), unit: unit.to_owned(), text })
 }
 
-/// Reads what a program wrote as JSON.
+/// Reads JSON that a program wrote.
 pub(super) fn read<T: for<'de> Deserialize<'de>>(program: &Program, path: &Path, unit: &str) -> Result<T, SynthError> {
     let bytes = fs::read(path).map_err(|e| SynthError::io("read", path, e))?;
     serde_json::from_slice(&bytes).map_err(|error| SynthError::Unexpected {

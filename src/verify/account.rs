@@ -1,24 +1,25 @@
-//! A small job's cycles, one by one: which part of the AFU and of the link takes how many.
+//! The cycles of a small job, split into the parts of the AFU and of the link.
 
 use crate::afu::Afu;
 use crate::config::Results;
 use crate::link::{LinkModel, Order};
 
-/// A part of a job's way, and the cycles it takes.
+/// A part of a job, and the cycles that it takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Part {
-    /// What.
+    /// The name of the part.
     pub name: &'static str,
     /// Cycles.
     pub cycles: u64,
 }
 
-/// The cycles of a job of `pairs` pairs over `link`, from the cycle in which `start` is high to the one in which `done`
-/// is, part by part; their sum is the job's to the cycle.
+/// The cycles of a job of `pairs` pairs over `link`, part by part, from the cycle in which `start` is high to the one
+/// in which `done` is. Their sum is exactly the job's number of cycles.
 ///
-/// Nothing for a job or a link for which that is no sum: a shell that polls, randomness (a tail, stalls, stragglers,
-/// reads in any order that wait for one another), fewer SCPUs than pairs in a line, an interval above 1, contacts alone
-/// as results, more lines than may be in flight or than the AFU takes in before its first write.
+/// `None` for a job or a link whose cycles are not such a sum. The reasons are a shell that polls, randomness (a tail,
+/// stalls, stragglers, reads in any order that wait for one another), fewer SCPUs than pairs in a line, an interval
+/// above 1, contacts alone as results, or more lines than may be in flight or than the AFU takes before its first
+/// write.
 pub fn account(afu: &Afu, link: &LinkModel, pairs: u32) -> Option<Vec<Part>> {
     if afu.has_shell() {
         return None;
@@ -39,8 +40,8 @@ pub fn account(afu: &Afu, link: &LinkModel, pairs: u32) -> Option<Vec<Part>> {
     if !(is_steady && no_stragglers && wide && sources.max(destinations) <= in_flight.into()) {
         return None;
     }
-    // A source line comes each cycle at best; a destination line is full when its last pair's source line has been all
-    // the way.
+    // At best, a source line arrives in each cycle. A destination line is full once the source line of its last pair
+    // has passed through.
     let arrivals = link.pace_of_reads(&(0..sources).collect::<Vec<_>>());
     let last_arrival = arrivals.last().copied()?;
     let shuffled = link.order == Order::Shuffled && last_arrival != sources - 1;

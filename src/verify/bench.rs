@@ -1,4 +1,4 @@
-//! An AFU ready for jobs.
+//! An AFU that is ready to run jobs.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -29,9 +29,9 @@ pub enum Progress {
 /// The origin of a model.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Origin {
-    /// Part of this program, made of the very Verilog that was asked for.
+    /// Part of this program, and made from exactly the requested Verilog.
     BuiltIn,
-    /// Built, or found in the cache: the library.
+    /// Built, or found in the cache; this is the library.
     Library(PathBuf),
 }
 
@@ -47,37 +47,37 @@ pub struct Bench {
 }
 
 impl Bench {
-    /// Generates the Verilog of a configuration and makes a model of it: the built-in one if that is made of the same
-    /// Verilog, else one from the cache or from Verilator.
+    /// Generates the Verilog of a configuration and gets a model of it: the built-in one if it was made from the same
+    /// Verilog, otherwise one from the cache or from Verilator.
     ///
     /// # Errors
-    /// Returns an error if the configuration cannot be generated, a tool is missing, or one refuses.
+    /// Returns an error if the configuration cannot be generated, or if a tool is missing or fails.
     pub fn new(config: &Config) -> Result<Self, VerifyError> {
         Self::traced(config, Trace::Off)
     }
 
-    /// [`Bench::new`] with a model that can write waveforms.
+    /// As [`Bench::new`], with a model that can write waveforms.
     ///
     /// # Errors
-    /// As `new`.
+    /// Returns the errors of `new`.
     pub fn traced(config: &Config, trace: Trace) -> Result<Self, VerifyError> {
         Self::of(config, generated(config)?, |source| Model::build(source, trace), trace == Trace::Off)
     }
 
-    /// [`Bench::new`] with a model from `cache`, a folder for models, even where the built-in one would serve: what a
-    /// build takes can then be measured.
+    /// As [`Bench::new`], with a model from the folder `cache` even if the built-in one would serve, so that the time
+    /// of a build can be measured.
     ///
     /// # Errors
-    /// As `new`.
+    /// Returns the errors of `new`.
     pub(crate) fn cached_in(config: &Config, cache: &Path) -> Result<Self, VerifyError> {
         Self::of(config, generated(config)?, |source| Model::build_in(source, Trace::Off, cache), false)
     }
 
-    /// The Verilog that lies in `folder`, which `afu rtl` wrote, edited or not; `scpus` overrides its manifest's
+    /// The Verilog in `folder`, which `afu rtl` wrote and which may have been edited. `scpus` overrides the manifest's
     /// number.
     ///
     /// # Errors
-    /// As `new`, and when the folder's manifest or file list cannot be read.
+    /// Returns the errors of `new`, and an error if the folder's manifest or file list cannot be read.
     pub fn of_folder(folder: &Path, scpus: Option<u32>, trace: Trace) -> Result<Self, VerifyError> {
         let in_folder = config::read(folder)?;
         let config = Config { scpus: scpus.unwrap_or(in_folder.scpus), ..in_folder.clone() };
@@ -119,7 +119,7 @@ impl Bench {
         self.model.shared_object().map_or(Origin::BuiltIn, |path| Origin::Library(path.to_owned()))
     }
 
-    /// The model, for a driver of the caller's.
+    /// The model, for callers with their own driver.
     pub fn model(&self) -> &Model {
         &self.model
     }
@@ -129,19 +129,20 @@ impl Bench {
         self.source.sha256()
     }
 
-    /// Sends pairs through the AFU over a link and compares what comes back. `seed` decides the link's randomness and
-    /// what the registers hold that no reset reaches.
+    /// Sends pairs through the AFU over a link and compares the results. `seed` decides the link's randomness and the
+    /// initial values of registers without a reset.
     ///
     /// # Errors
-    /// Returns an error if the job does not end, or the AFU breaks the line port's protocol. Mismatches are no error.
+    /// Returns an error if the job does not finish, or if the AFU breaks the line port's protocol. Mismatches are not
+    /// errors.
     pub fn run(&self, pairs: &[PairRecord], link: &LinkModel, seed: u64) -> Result<Verdict, VerifyError> {
         self.run_with(pairs, link, seed, None, |_| {})
     }
 
-    /// [`Bench::run`] that writes a waveform and tells, now and then, how far it has come.
+    /// As [`Bench::run`], but writes a waveform and reports progress now and then.
     ///
     /// # Errors
-    /// As `run`, and when the waveform cannot be written.
+    /// Returns the errors of `run`, and an error if the waveform cannot be written.
     pub fn run_with(
         &self,
         pairs: &[PairRecord],
@@ -180,7 +181,8 @@ impl Bench {
     }
 }
 
-/// SHA-256 of the Verilog that would be generated for a configuration: [`Bench::rtl_sha256`] without a model.
+/// SHA-256 of the Verilog that would be generated for a configuration: the same as [`Bench::rtl_sha256`], without a
+/// model.
 ///
 /// # Errors
 /// Returns an error if the configuration cannot be generated.
@@ -188,11 +190,11 @@ pub fn rtl_sha256(config: &Config) -> Result<String, VerifyError> {
     Ok(generated(config)?.sha256())
 }
 
-/// The Verilog of a configuration. The number of SCPUs is left to the parameter, so that models share what they can.
+/// The Verilog of a configuration. The number of SCPUs remains a parameter, so that models share their code.
 fn generated(config: &Config) -> Result<Source, VerifyError> {
     let scpus = Config::default().scpus;
     Spec::from(config.clone()).check().map_err(crate::afu::BuildError::from)?;
-    // Names change nothing, and models are shared by those that have none before them.
+    // A prefix does not change the behaviour, so a model without a prefix serves every prefix.
     let plain = Config { scpus, prefix: None, ..config.clone() };
     let afu = Afu::generate(Spec::from(plain))?;
     let files = afu.verilog().into_iter().map(|(name, text)| File { name, text }).collect();

@@ -12,30 +12,30 @@ use crate::kernel::settle;
 use crate::query::{ContactRecord, Fields, Flow, PairRecord, Query};
 use crate::record::{Contacts, Layout};
 
-/// Mismatches that a verdict's text shows in full.
+/// The number of mismatches that a verdict's text shows in full.
 const SHOWN: usize = 3;
 
-/// The verdict on a job. Its text says whether the job is good, else what is wrong and how to run it again.
+/// The verdict on a job. Its text says whether the job is good, and otherwise what is wrong and how to run it again.
 #[derive(Clone, Debug)]
 pub struct Verdict {
     /// The AFU, the link and the seed.
     pub setup: Setup,
-    /// Pairs of the job.
+    /// The number of pairs in the job.
     pub pairs: usize,
     /// The contacts in destination memory, with unsettled pairs resolved by the host: one per pair, or only those that
     /// touch. Words that were not written or not asked for are zero.
     pub contacts: Vec<ContactRecord>,
-    /// For each of `contacts` its pair's number in the job, from 0.
+    /// For each record in `contacts`, the number of its pair in the job, from 0.
     pub numbers: Vec<u32>,
-    /// Records that the AFU left to the host, which settled them.
+    /// The number of records that the AFU left to the host, which resolved them.
     pub unsettled: u64,
     /// Records that differ from the reference's.
     pub mismatches: Vec<Mismatch>,
     /// Other checks that failed: status, counters, unused bits.
     pub failed_checks: Vec<String>,
-    /// The job as the driver saw it.
+    /// The outcome of the job.
     pub outcome: Outcome,
-    /// Seconds the simulation took, without building the model and without the reference.
+    /// Seconds of simulation, without building the model and without the reference.
     pub seconds: f64,
 }
 
@@ -45,8 +45,8 @@ impl Verdict {
         self.mismatches.is_empty() && self.failed_checks.is_empty()
     }
 
-    /// Panics unless the verdict [is good](Self::is_good), for tests. The message is the verdict's text: the first
-    /// mismatches, the failed checks, the seed and how to run the job again.
+    /// Panics unless the verdict [is good](Self::is_good). This is for tests. The message is the verdict's text: the
+    /// first mismatches, the failed checks, the seed and how to run the job again.
     ///
     /// # Panics
     /// If a record differs from the reference's, or another check failed.
@@ -55,8 +55,8 @@ impl Verdict {
         assert!(self.is_good(), "{self}");
     }
 
-    /// Pairs of each flow, in the order of [`Flow::ALL`]. One-bit records, and those of contacts alone, tell no invalid
-    /// pairs apart from those without contact: there the AFU's own count is taken.
+    /// The number of pairs of each flow, in the order of [`Flow::ALL`]. One-bit records and contacts alone do not
+    /// distinguish invalid pairs from those without a contact, so the AFU's own count is used there.
     pub fn flows(&self, config: &Config) -> [u64; 4] {
         let of = |flow| self.contacts.iter().filter(|contact| contact.flow() == Some(flow)).count() as u64;
         let mut flows = Flow::ALL.map(of);
@@ -69,7 +69,7 @@ impl Verdict {
         flows
     }
 
-    /// A contact for each pair, in their order; where only contacts came back, the others read as pairs without one.
+    /// A contact for each pair, in their order. If only contacts came back, the other pairs read as no contact.
     pub fn by_pair(&self) -> Vec<ContactRecord> {
         by_pair(self.pairs, &self.numbers, &self.contacts)
     }
@@ -122,7 +122,7 @@ pub(super) fn check(
     }
     job.status(&mut failed_checks);
     let Received { numbers, mut contacts, mismatches, .. } = received;
-    // With contacts alone as results nothing is unsettled: the profile exact refuses them.
+    // With contacts alone as results, nothing is unsettled, because the profile exact refuses this combination.
     let unsettled = if layout.number_bits() > 0 { 0 } else { settle(pairs, &mut contacts, setup.config.contact) };
     Verdict { setup, pairs: pairs.len(), contacts, numbers, unsettled, mismatches, failed_checks, outcome, seconds }
 }
@@ -139,7 +139,7 @@ struct Job<'a> {
 /// The contents of destination memory.
 #[derive(Default)]
 struct Received {
-    /// Records there must be in destination memory.
+    /// The number of records that must be in destination memory.
     records: usize,
     numbers: Vec<u32>,
     contacts: Vec<ContactRecord>,
@@ -173,7 +173,7 @@ impl Job<'_> {
     }
 
     /// A record for each pair that touches: as many as the AFU counted, in the order of their numbers, and nothing
-    /// behind.
+    /// after them.
     fn hits(&self, failed_checks: &mut Vec<String>) -> Received {
         let (records, error) = Records::hits(self.memory, self.pairs.len(), self.outcome.contacts);
         failed_checks.extend(error.map(|error| error.to_string()));
@@ -227,7 +227,7 @@ mod tests {
     use crate::link::LinkModel;
     use crate::number::Format;
 
-    /// The outcome of a job whose destination holds these records, one a line, and nothing else.
+    /// The outcome of a job whose destination holds only these records, one per line.
     fn outcome(records: &[(u32, ContactRecord)], lines: usize) -> Outcome {
         let line = |(number, contact): &(u32, ContactRecord)| {
             let mut line = [0; 16];
@@ -281,10 +281,10 @@ mod tests {
         let mut flipped = hit(3);
         flipped.1.0[6] ^= 1;
         assert_eq!(wrong(&[hit(1), flipped, hit(4)]), (vec![3], 0));
-        // One too few or too many: the count is wrong too.
+        // One record too few or too many: the count is wrong too.
         assert_eq!(wrong(&[hit(1), hit(4)]), (vec![3], 1));
         assert_eq!(wrong(&[hit(0), hit(1), hit(3), hit(4)]), (vec![0], 1));
-        // Out of order, twice, of no pair: what follows is not believed.
+        // Out of order, repeated, or without a pair: the records that follow are not used.
         assert_eq!(wrong(&[hit(3), hit(1), hit(4)]), (vec![1, 4], 1));
         assert_eq!(wrong(&[hit(1), hit(1), hit(4)]), (vec![3, 4], 1));
         assert_eq!(wrong(&[hit(1), hit(3), (5, reference[4])]), (vec![4], 1));
@@ -324,7 +324,7 @@ mod tests {
         verdict.failed_checks = vec!["status: contacts is 5, should be 6".to_owned()];
         let panic = std::panic::catch_unwind(|| verdict.assert_good()).expect_err("it is not good");
         let text = panic.downcast_ref::<String>().expect("a message");
-        // The pair's words are those of a mismatch's own text.
+        // The pair's words are the same as in the text of a mismatch.
         let lines: Vec<_> = text.lines().filter(|line| !line.starts_with("  ") || line.contains("got")).collect();
         expect![[r#"
             5 of 1 000 records differ from the reference, 1 other check failed

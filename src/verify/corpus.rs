@@ -1,4 +1,4 @@
-//! Pairs that once mismatched: a CSV file of pairs that grows, so that what failed is tried first the next time.
+//! Pairs that once mismatched, in a CSV file. A later run tries them first.
 
 use std::collections::HashSet;
 use std::path::Path;
@@ -9,7 +9,7 @@ use crate::query::{PairRecord, Query};
 /// The pairs of the corpus `file`; empty if the file does not exist.
 ///
 /// # Errors
-/// Returns an error if there is one that cannot be read or is no CSV or npy file of pairs.
+/// Returns an error if the file cannot be read or is not a CSV or npy file of pairs.
 pub fn read(query: Query, file: &Path) -> Result<Loaded, FileError> {
     match file.try_exists() {
         Ok(false) => Ok(Loaded { pairs: Vec::new(), rounded: None }),
@@ -17,11 +17,11 @@ pub fn read(query: Query, file: &Path) -> Result<Loaded, FileError> {
     }
 }
 
-/// Adds to `file` those of `pairs` that are not in it yet, each once, and says how many that were. Without any, the
-/// file is left alone.
+/// Adds those of `pairs` to `file` that are not in it yet, each once. Returns their number. If there are none, the file
+/// is not touched.
 ///
 /// # Errors
-/// Returns the errors of [`read`], and when it cannot be written.
+/// Returns the errors of [`read`], and an error if the file cannot be written.
 pub fn join(query: Query, file: &Path, pairs: impl IntoIterator<Item = PairRecord>) -> Result<usize, FileError> {
     let mut corpus = read(query, file)?.pairs;
     let mut known: HashSet<PairRecord> = corpus.iter().copied().collect();

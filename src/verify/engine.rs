@@ -1,13 +1,13 @@
-//! The simulated AFU as an engine: one job a batch, every bit of it compared before it is believed.
+//! The simulated AFU as an engine: one job per batch, with every bit compared with the reference.
 
 use super::{Bench, VerifyError};
 use crate::kernel::{Engine, EngineError};
 use crate::link::LinkModel;
 use crate::query::{ContactRecord, PairRecord};
 
-/// A [`Bench`] in the place of whatever else computes contacts. Each batch is a job from reset, over the same link.
+/// A [`Bench`] as an engine that computes contacts. Each batch is a job from reset, over the same link.
 ///
-/// It is never wrong in silence: a batch with a record that differs from the reference kernel's is an error.
+/// It never returns a wrong result: a batch with a record that differs from the reference kernel's is an error.
 #[derive(Clone, Debug)]
 pub struct BenchEngine<'a> {
     bench: &'a Bench,
@@ -19,16 +19,16 @@ pub struct BenchEngine<'a> {
 /// The work of an engine so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Totals {
-    /// Jobs.
+    /// The number of jobs.
     pub jobs: u64,
-    /// Pairs in them.
+    /// The number of pairs in them.
     pub pairs: u64,
-    /// Clock cycles from start to done, all jobs together.
+    /// Clock cycles from start to done, summed over all jobs.
     pub cycles: u64,
 }
 
 impl<'a> BenchEngine<'a> {
-    /// The AFU of `bench` behind `link`. The jobs have the seeds from `seed` on.
+    /// The AFU of `bench` behind `link`. The first job has the seed `seed`, and each further job the next one.
     pub fn new(bench: &'a Bench, link: LinkModel, seed: u64) -> Self {
         Self { bench, link, seed, totals: Totals::default() }
     }
@@ -47,7 +47,7 @@ pub struct Disagreement {
     pub job: u64,
     /// The number of pairs.
     pub pairs: usize,
-    /// Records that differ.
+    /// The number of records that differ.
     pub mismatches: usize,
     /// Other checks that failed.
     pub failed_checks: Vec<String>,

@@ -1,4 +1,4 @@
-//! Errors of a job without a verdict.
+//! Errors of a job that has no verdict.
 
 use crate::afu::BuildError;
 use crate::config::ReadError;
@@ -17,22 +17,22 @@ pub enum VerifyError {
     /// The folder's manifest cannot be read.
     #[error(transparent)]
     Manifest(#[from] ReadError),
-    /// There is no model: a tool is missing, or refused the Verilog.
+    /// There is no model: a tool is missing, or it rejected the Verilog.
     #[error(transparent)]
     Model(#[from] CosimError),
-    /// The link model is not one.
+    /// The link model is invalid.
     #[error(transparent)]
     Link(#[from] LinkError),
-    /// The job has no end, or the AFU broke the line port's protocol.
+    /// The job does not finish, or the AFU broke the line port's protocol.
     #[error(transparent)]
     Drive(#[from] DriveError),
     /// The same below SPL2.
     #[error(transparent)]
     Host(#[from] HostError),
-    /// A pair with another radius than the AFU's.
+    /// A pair has another radius than the AFU's.
     #[error(transparent)]
     Radius(#[from] OtherRadius),
-    /// More pairs than a job's count can say.
+    /// There are more pairs than a job's count can represent.
     #[error("{0} pairs: expected at most 4294967295 in a job")]
     Pairs(usize),
 }

@@ -4,8 +4,8 @@ use std::fmt;
 
 use crate::query::{ContactRecord, Flow, PairRecord, Query};
 
-/// One record that is not what it should be. As text it is a paragraph: the pair, and the words that differ, in hex and
-/// value.
+/// A record that differs from the expected one. Its text is a paragraph with the pair and the words that differ, in hex
+/// and as values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Mismatch {
     /// The query of the pair.
@@ -18,13 +18,13 @@ pub struct Mismatch {
     pub pair: PairRecord,
     /// The record of the reference kernel.
     pub expected: ContactRecord,
-    /// What lies in destination memory; none: nothing does. Where only contacts come back, zero words are expected of a
-    /// pair without one.
+    /// The record in destination memory; `None` if nothing was written. If only contacts come back, a pair without one
+    /// is expected to have zero words.
     pub got: Option<ContactRecord>,
 }
 
 impl Mismatch {
-    /// The words that differ: each one's place in a contact record, what was expected, and what there was, if anything.
+    /// The words that differ: the place in a contact record, the expected word, and the word found, if any.
     pub fn differences(&self) -> impl Iterator<Item = (usize, u32, Option<u32>)> {
         let Self { expected, got, .. } = *self;
         let words = expected.0.into_iter().enumerate();

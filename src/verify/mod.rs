@@ -1,4 +1,4 @@
-//! Pairs through a simulated AFU, and every bit of what comes back compared with the reference kernel.
+//! Sends pairs through a simulated AFU, and compares every bit of the result with the reference kernel.
 
 mod account;
 mod bench;

@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 use crate::config::Config;
 use crate::link::{Description, LinkModel};
 
-/// Stands for the file of a job's pairs in a command.
+/// Stands for the file with a job's pairs in a command.
 const PAIRS: &str = "PAIRS.csv";
 
-/// What a job ran on. With the same pairs it runs again, cycle by cycle: [`Bench::run`](super::Bench::run) takes link
-/// and seed. As text it is a line that says so, with the command.
+/// The AFU, link and seed of a job. With the same pairs, [`Bench::run`](super::Bench::run) repeats the job cycle by
+/// cycle. Its text is a line that says this, with the command.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setup {
     /// The AFU.
@@ -19,13 +19,13 @@ pub struct Setup {
     pub folder: Option<PathBuf>,
     /// The link.
     pub link: LinkModel,
-    /// The seed of the link, and of what the registers hold that no reset reaches.
+    /// The seed of the link, and of the initial values of registers without a reset.
     pub seed: u64,
 }
 
 impl Setup {
-    /// The command of the program that runs the job again, `PAIRS.csv` being its pairs
-    /// ([`write_pairs`](crate::pairs::write_pairs)). `None` if the program does not know the link by name.
+    /// The command that runs the job again, in which `PAIRS.csv` stands for its pairs
+    /// ([`write_pairs`](crate::pairs::write_pairs)). `None` if the link has no name.
     pub fn command(&self) -> Option<String> {
         let Self { config, folder, link, seed } = self;
         let known = link.name.parse::<Description>().and_then(|known| known.at(config.clock_mhz)).ok()?;
@@ -81,7 +81,7 @@ impl Command {
         self
     }
 
-    /// The line.
+    /// The command line.
     pub fn line(self) -> String {
         self.0
     }

@@ -3,7 +3,7 @@
 use crate::config::{Config, Profile, RecordFormat, Shell};
 use crate::number::{Format, Roots};
 
-/// A configuration as studies have it: one SCPU, nothing around the line port. What more SCPUs give follows from it.
+/// The configuration that a study uses: one SCPU without a shell. The results for more SCPUs follow from it.
 fn one(config: Config) -> Config {
     Config { scpus: 1, shell: Shell::Line, ..config }
 }
@@ -21,11 +21,11 @@ pub fn name(config: &Config) -> String {
 pub type Choice = (&'static str, Config);
 
 fn profile(name: &str) -> Option<Config> {
-    // An invalid name is left out; tests check that there is none.
+    // An invalid name is left out. Tests check that there is none.
     name.parse::<Profile>().ok().map(|profile| one(Config { profile, ..Config::default() }))
 }
 
-/// Profiles that were asked for.
+/// The given profiles.
 pub(super) fn chosen(profiles: Vec<Profile>) -> Vec<Choice> {
     profiles.into_iter().map(|profile| ("profile", one(Config { profile, ..Config::default() }))).collect()
 }
@@ -47,7 +47,7 @@ fn records(choices: &[(&str, RecordFormat)]) -> Vec<Choice> {
     choices.iter().filter_map(of).map(|config| ("record", config)).collect()
 }
 
-/// A row a profile: from narrow to exact.
+/// One row per profile, from narrow to exact.
 pub(super) fn of_profiles() -> Vec<Choice> {
     profiles("profile", &["half", "bfloat", "e8f15", "paper", "wide", "wide+faithful", "exact"])
 }
@@ -85,8 +85,8 @@ pub(super) fn each_alone() -> Vec<Choice> {
     .concat()
 }
 
-/// Configurations one step from `config`: a fraction or exponent bit more or less, roots of the other kind, the next
-/// clock up or down, records of other numbers.
+/// Configurations that are one step from `config`: one fraction or exponent bit more or less, roots of the other kind,
+/// the next clock up or down, records of another format.
 pub(super) fn neighbours(config: &Config) -> Vec<Choice> {
     let format = config.profile.format();
     let (exponent, fraction) = (format.exponent_bits(), format.fraction_bits());
@@ -121,7 +121,8 @@ pub(super) fn is_same(a: &Config, b: &Config) -> bool {
     a.profile.arithmetic() == b.profile.arithmetic() && *a == renamed
 }
 
-/// The same without those that cannot be generated, which are told apart with the reason, and without repetitions.
+/// The same choices without repetitions and without those that cannot be generated, which are returned separately with
+/// the reason.
 pub(super) fn possible(choices: Vec<Choice>) -> (Vec<Choice>, Vec<String>) {
     let (mut good, mut left_out): (Vec<Choice>, Vec<String>) = (Vec::new(), Vec::new());
     for (axis, config) in choices {

@@ -1,18 +1,18 @@
-//! The cheapest configuration that meets bounds, out of a study's results.
+//! The cheapest configuration that meets bounds, from a study's results.
 
 use super::{Point, Study, Time};
 use crate::config::{Config, SCPUS};
 
-/// The bounds that a configuration must meet; `None` is no bound.
+/// The bounds that a configuration must meet. `None` means no bound.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bounds {
-    /// The largest relative error on the scenes, at most.
+    /// The largest allowed relative error on the scenes.
     pub error: Option<f64>,
-    /// Nanoseconds, at most.
+    /// The largest allowed number of nanoseconds.
     pub ns: Option<f64>,
-    /// LUTs of an SCPU, at most.
+    /// The largest allowed number of LUTs per SCPU.
     pub luts: Option<f64>,
-    /// Gross failures on all pairs of the study, at most.
+    /// The largest allowed number of gross failures on all pairs of the study.
     pub bad: Option<f64>,
 }
 
@@ -50,7 +50,7 @@ impl Bound {
         }
     }
 
-    /// A value of it, in words.
+    /// A value of the quantity, in words.
     pub fn words(self, value: f64) -> String {
         match self {
             Self::Error => format!("an error of {value:.1e}"),
@@ -61,20 +61,20 @@ impl Bound {
     }
 }
 
-/// What would have to give way: a bound, the least value that would do, and the point that has it.
+/// An alternative: a bound that could be relaxed, the smallest value that would be enough, and the point that has it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Instead<'a> {
     /// The bound.
     pub bound: Bound,
-    /// The value that would be enough, the other bounds kept.
+    /// The value that would be enough if the other bounds are kept.
     pub value: f64,
-    /// Who has it.
+    /// The point with this value.
     pub point: &'a Point,
 }
 
-/// The point with the fewest LUTs of the [comparable](Study::comparable) ones that meet `bounds` (then the one with
-/// the least time); where none does, for each bound what it would take if it alone gave way. That is empty where even
-/// then nothing meets the others.
+/// The point with the fewest LUTs among the [comparable](Study::comparable) ones that meet `bounds`; of several, the
+/// one with the least time. If none meets them, returns for each bound the value that would be enough if only this
+/// bound were relaxed. This list is empty if even then nothing meets the others.
 pub fn choose<'a>(results: &'a Study, bounds: &Bounds, time: Time) -> Result<&'a Point, Vec<Instead<'a>>> {
     let figure = |bound: Bound, point: &Point| bound.figure(results, point, time);
     let meets = |bound: Bound, point: &Point| {
@@ -101,9 +101,9 @@ pub fn choose<'a>(results: &'a Study, bounds: &Bounds, time: Time) -> Result<&'a
     })
 }
 
-/// The configuration to build of a point: its arithmetic, with the default shell; one SCPU, or, where the time is a
-/// full device's, as many as it holds. Its stages are cut as the point's were, and its clock is the one that its times
-/// are of: the router's, rounded down, or the delay model's if nothing was routed.
+/// The configuration to build for a point: its arithmetic, with the default shell. It has one SCPU or, if the time is
+/// that of a full device, as many as the device holds. Its stages are cut like the point's. Its clock is the one of the
+/// point's times: the router's, rounded down, or the delay model's if nothing was routed.
 pub fn to_build(results: &Study, point: &Point, time: Time) -> Config {
     let default = Config::default();
     let full = point.on_device(results.target).unwrap_or(1).clamp((*SCPUS.start()).into(), (*SCPUS.end()).into());

@@ -11,7 +11,7 @@ pub(super) enum Show {
     Count,
     /// With two decimals.
     Time,
-    /// With two decimals, and from a thousand on as an error.
+    /// With two decimals, and from a thousand on like an error.
     Units,
     /// With two significant digits and a power of ten.
     Error,
@@ -61,7 +61,7 @@ fn ulps(results: &Study, point: &Point, which: usize) -> Option<f64> {
     [errors.depth_ulps, errors.normal_ulps, errors.position_ulps].get(which).map(|spread| spread.largest)
 }
 
-/// What the page is about, in the order in which it has them; the other columns follow.
+/// The first columns of the page, in this order. The other columns follow.
 pub(super) const FIRST: [&str; 7] = ["worst", "lone_ns", "link_ns", "device_ns", "luts", "wrong", "bad"];
 
 /// All columns, in the order of the CSV.

@@ -17,19 +17,20 @@ use serde::{Deserialize, Serialize};
 pub struct Cycles {
     /// Hash of the simulated Verilog, link and clock.
     pub key: String,
-    /// From the line of a lone pair in to the line of its contact out, over the link `ideal`.
+    /// Latency of a single pair, from its line in to its contact's line out, over the link `ideal`.
     pub lone: u64,
-    /// A pair, over the link `ideal`: what one SCPU needs.
+    /// Cycles per pair over the link `ideal`: the throughput of one SCPU.
     pub compute: f64,
-    /// A pair, over the link of the study, at the clock of the point.
+    /// Cycles per pair over the link of the study, at the clock of the point.
     pub link: f64,
-    /// The least a pair that the link allows.
+    /// The link limit in cycles per pair.
     pub link_limit: f64,
-    /// Records that differ from the reference kernel's, and other checks that failed: 0, or nothing here holds.
+    /// Records that differ from the reference kernel's, and other checks that failed. Unless it is 0, the other figures
+    /// are invalid.
     pub mismatches: u64,
 }
 
-/// Counts the cycles of an AFU for a lone pair, and for `pairs` over the link `ideal` and over `link`.
+/// Counts the cycles of an AFU for a single pair, and for `pairs` over the link `ideal` and over `link`.
 ///
 /// # Errors
 /// Returns an error if a job does not end.
@@ -60,14 +61,14 @@ pub fn cycles(
     })
 }
 
-/// The hash of what decides [`Cycles`].
+/// The hash of everything that affects [`Cycles`].
 pub(super) fn cycles_hash(rtl: &str, pairs: &[PairRecord], link: &LinkModel, seed: u64) -> String {
-    // A link is plain values: it has JSON.
+    // A link consists of plain values, so it can be written as JSON.
     let link = serde_json::to_string(link).unwrap_or_default();
     with_pairs(format!("cycles 1 {rtl} {link} {seed} "), pairs)
 }
 
-/// An SCPU on an FPGA.
+/// The area and clock of an SCPU on an FPGA.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Hardware {
@@ -75,16 +76,16 @@ pub struct Hardware {
     pub key: String,
     /// Its area.
     pub area: Area,
-    /// The clock after place and route, MHz; none where cells were only counted.
+    /// The clock after place and route, MHz; `None` if cells were only counted.
     pub routed_mhz: Option<f64>,
 }
 
-/// The hash of what decides [`Hardware`].
+/// The hash of everything that affects [`Hardware`].
 pub(super) fn hardware_hash(rtl: &str, plan: &Plan, seeds: &[u32]) -> String {
     sha256(format!("hardware 2 {rtl} {} {seeds:?}", plan.target).as_bytes())
 }
 
-/// Synthesises the SCPU of a configuration, and routes it where there are `seeds` for the placer.
+/// Synthesises the SCPU of a configuration. Also places and routes it if there are `seeds` for the placer.
 pub(super) fn hardware(
     config: &Config,
     plan: &Plan,

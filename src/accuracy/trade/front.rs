@@ -1,4 +1,4 @@
-//! The best of points: those that no other beats in error and time at once.
+//! The fronts: points that no other point beats in both error and time.
 
 use super::table::BASE;
 use super::{Point, Study};
@@ -10,9 +10,9 @@ use std::collections::BTreeSet;
 pub enum Time {
     /// The latency of a single pair, line in to line out.
     Lone,
-    /// A pair through a device full of SCPUs.
+    /// The time per pair of a device full of SCPUs.
     Device,
-    /// A pair over the link.
+    /// The time per pair over the link.
     Link,
 }
 
@@ -20,7 +20,7 @@ impl Time {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::Lone, Self::Device, Self::Link];
 
-    /// A point's, ns.
+    /// The time of a point, ns.
     pub fn of(self, point: &Point, results: &Study) -> Option<f64> {
         match self {
             Self::Lone => Some(point.lone_ns()),
@@ -39,8 +39,8 @@ impl Time {
     }
 }
 
-/// The front: indices of the points of `among` that have a finite error and time of which no other has both at most as
-/// large and one smaller, from the fastest to the most accurate.
+/// The front: indices of the points of `among` with finite error and time for which no other point is at least as good
+/// in both and better in one. They are ordered from the fastest to the most accurate.
 pub fn front(results: &Study, time: Time, among: impl Fn(&Point) -> bool) -> Vec<usize> {
     let placed: Vec<(usize, f64, f64)> = results
         .points
@@ -59,12 +59,13 @@ pub(super) fn on_fronts(results: &Study) -> Vec<usize> {
     all.into_iter().collect()
 }
 
-/// A time that is shorter by no more than this is no reason for place and route, whose clocks scatter more.
+/// A time that is shorter by no more than this does not justify place and route, because its clocks vary more.
 const SCATTER: f64 = 0.01;
 
-/// The points on a front of any time if each is routed as most are: a clock of the model's is taken less what place and
-/// route left of the others', in the middle. (Over a link it is the link's time that counts, which no clock changes.)
-/// Without those that are no faster than a routed point as good; with the one that times are compared with.
+/// The points that would be on a front of any time if they were routed. For this, the model's clock is multiplied by
+/// the median ratio of routed to modelled clocks. (Over a link, the link's own time counts, which no clock changes.)
+/// Points that are no faster than an equally accurate routed point are left out. The point that times are compared with
+/// is included.
 pub(super) fn worth_routing(results: &Study) -> Vec<usize> {
     let mut left: Vec<f64> =
         results.points.iter().filter_map(|point| Some(point.routed_mhz()? / point.modelled_mhz)).collect();
@@ -137,8 +138,8 @@ mod tests {
         assert_eq!(best(&[(7, 1.0, 1.0), (8, 1.0, 1.0)]), [7], "equal points: the first");
     }
 
-    /// Where all lose alike by place and route, the first choice is the last; where another may still be better, it is
-    /// not.
+    /// If place and route slows all points equally, the first choice is the last. If another point may still be better,
+    /// it is not.
     #[test]
     fn what_is_routed_is_what_a_front_may_need() {
         let mut results = committed().expect("results");
@@ -152,7 +153,7 @@ mod tests {
             let point = &mut results.points[index];
             let routed_mhz = Some(0.8 * point.modelled_mhz);
             point.hardware = point.hardware.take().map(|hardware| Hardware { routed_mhz, ..hardware });
-            // Fewer cycles of a slower clock: the link's own time stays.
+            // Fewer cycles of a slower clock, because the link's own time does not change.
             point.cycles.link *= 0.8;
         }
         assert!(worth_routing(&results).is_empty(), "{:?}", worth_routing(&results));

@@ -1,8 +1,8 @@
 //! What accuracy costs: configurations with their errors, their time and their area.
 //!
-//! A [`Point`] is a configuration with everything measured of it. [`run`] measures a [`Plan`]: errors against the truth
-//! on named sets of pairs by the engine of all studies ([`measure`](super::measure)), cycles by cosim, area and clock
-//! by synthesis. Every measurement is kept by the hash of what went into it, so that an interrupted study goes on.
+//! A [`Point`] is a configuration with all its measurements. [`run`] measures a [`Plan`]: errors against the truth on
+//! named sets of pairs ([`measure`](super::measure)), cycles by co-simulation, area and clock by synthesis. Every
+//! measurement is stored under the hash of its inputs, so that an interrupted study can resume.
 
 mod axes;
 mod choose;

@@ -1,4 +1,4 @@
-//! `report.html`: the pictures, the steps along their fronts, and a table that sorts.
+//! `report.html`: the pictures, the steps along their fronts, and a sortable table.
 
 use super::columns::{COLUMNS, Column, FIRST};
 use super::front::{Time, front, step};
@@ -7,10 +7,10 @@ use crate::report::page;
 use crate::report::table::grouped;
 use maud::{Markup, html};
 
-/// The page's own script: hovering over a point shows its row, a heading sorts.
+/// The page's own script. Hovering over a point shows its row, and a click on a heading sorts.
 const SCRIPT: &str = include_str!("report.js");
 
-/// The page.
+/// The text of the page.
 pub fn page(results: &Study) -> String {
     let body = html! {
         p { "Each point is a configuration of the AFU: its error, measured against the truth in arbitrary precision, over "
@@ -72,7 +72,7 @@ fn table(results: &Study) -> Markup {
     }
 }
 
-/// The columns in which anything is known: what the page is about, then the others.
+/// The columns with any value: first those that the page is about, then the others.
 fn known(results: &Study) -> impl Iterator<Item = &'static Column> {
     let is_known = |column: &&Column| results.points.iter().any(|point| (column.value)(results, point).is_some());
     let first = FIRST.iter().filter_map(|key| COLUMNS.iter().find(|column| column.key == *key));

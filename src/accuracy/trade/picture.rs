@@ -1,10 +1,10 @@
-//! The pictures: time across, error up.
+//! The pictures: error over time.
 
 use super::front::{Time, front};
 use super::{Point, Study};
 use crate::plot::{Axis, Line, Marker, Plot, Scale, Series};
 
-/// The picture of a time.
+/// The picture of one kind of time.
 pub fn picture(results: &Study, time: Time) -> Plot {
     let routed = |point: &Point| point.routed_mhz().is_some();
     let place = |point: &Point| Some((time.of(point, results)?, results.worst(point)));
@@ -18,7 +18,7 @@ pub fn picture(results: &Study, time: Time) -> Plot {
     let times = results.points.iter().filter_map(|point| time.of(point, results));
     let [least, most] = times.fold([f64::INFINITY, 0.0], |[least, most], t| [least.min(t), most.max(t)]);
     let x = Axis::new(label(time), Scale::Linear);
-    // Room at both ends for names; where the times are nearly one, from nothing.
+    // Room for names at both ends. If the times are almost equal, the axis starts from zero.
     let room = 0.12 * (most - least);
     let x = match most - least > 0.1 * most {
         true => x.with_range((least - room).max(0.0), most + room),

@@ -1,4 +1,4 @@
-//! A configuration with all that was measured of it.
+//! A configuration with all its measurements.
 
 use super::cost::{Cycles, Hardware};
 use super::scene::Drift;
@@ -15,26 +15,26 @@ pub struct Point {
     pub name: String,
     /// The axis along which it was chosen.
     pub axis: String,
-    /// The configuration, of one SCPU with nothing around its line port.
+    /// The configuration, with one SCPU and without a shell.
     pub config: Config,
-    /// The clock that its stages came out at by the delay model, MHz: not above the one asked for.
+    /// The clock of its stages by the delay model, MHz. It is not above the requested one.
     pub modelled_mhz: f64,
     /// Stages of the SCPU, as the generator counts them.
     pub scpu_cycles: u32,
     /// SHA-256 of its Verilog.
     pub rtl_sha256: String,
-    /// A row a set of pairs.
+    /// One row per set of pairs.
     pub rows: Vec<Row>,
-    /// Cycles by cosim.
+    /// Cycles by co-simulation.
     pub cycles: Cycles,
-    /// Area and clock, where the tools for it are there.
+    /// Area and clock, if the tools are installed.
     pub hardware: Option<Hardware>,
     /// Both times at the delay model's clock, before place and route; `None` if the point was not routed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub before_routing: Option<Counted>,
-    /// Nanoseconds a pair of the same arithmetic in software, on one thread of this machine.
+    /// Nanoseconds per pair of the same arithmetic in software, on one thread of this machine.
     pub software_ns: Option<f64>,
-    /// How far it leads the diamond's spheres; `None` without ODE, or if it gives a record that is not a contact.
+    /// The drift of the diamond's spheres; `None` without ODE, or if it gives a record that is not a contact.
     pub drift: Option<Drift>,
 }
 
@@ -42,14 +42,14 @@ pub struct Point {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Counted {
-    /// Cycles by cosim.
+    /// Cycles by co-simulation.
     pub cycles: Cycles,
     /// Area, without a clock.
     pub hardware: Hardware,
 }
 
 impl Point {
-    /// The clock that its times are of, MHz: after place and route, else by the delay model.
+    /// The clock of its times, MHz: after place and route, otherwise by the delay model.
     pub fn clock_mhz(&self) -> f64 {
         self.routed_mhz().unwrap_or(self.modelled_mhz)
     }
@@ -59,8 +59,8 @@ impl Point {
         self.hardware.as_ref().and_then(|hardware| hardware.routed_mhz)
     }
 
-    /// The same before place and route: its times are those at the delay model's clock, its cells those that synthesis
-    /// counted.
+    /// The same point before place and route: its times are at the delay model's clock, and its cells as synthesis
+    /// counted them.
     #[must_use]
     pub fn unrouted(&self) -> Self {
         let (cycles, hardware) = match &self.before_routing {
@@ -75,27 +75,27 @@ impl Point {
         1000.0 * cycles / self.clock_mhz()
     }
 
-    /// From the line of a lone pair in to the line of its contact out, ns.
+    /// The latency of a single pair, from its line in to its contact's line out, ns.
     pub fn lone_ns(&self) -> f64 {
         self.ns(self.cycles.lone as f64)
     }
 
-    /// A pair through one SCPU, ns.
+    /// The time per pair of one SCPU, ns.
     pub(crate) fn compute_ns(&self) -> f64 {
         self.ns(self.cycles.compute)
     }
 
-    /// A pair over the link, ns.
+    /// The time per pair over the link, ns.
     pub(crate) fn link_ns(&self) -> f64 {
         self.ns(self.cycles.link)
     }
 
-    /// SCPUs that a device of the target holds.
+    /// The number of SCPUs that fit in a device of the target.
     pub(crate) fn on_device(&self, target: Target) -> Option<u64> {
         Some(target.capacity()?.fits(&self.area()?))
     }
 
-    /// A pair through a device full of SCPUs, ns; none where not even one fits.
+    /// The time per pair of a device full of SCPUs, ns; `None` if not even one fits.
     pub(crate) fn device_ns(&self, target: Target) -> Option<f64> {
         self.on_device(target).filter(|&scpus| scpus > 0).map(|scpus| self.compute_ns() / scpus as f64)
     }

@@ -1,4 +1,5 @@
-//! What an arithmetic does to a scene: where the diamond's spheres are after some steps, and where `f64` has them.
+//! The effect of an arithmetic on a scene: the distance of the diamond's spheres from their places in `f64`, after some
+//! steps.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,15 +7,15 @@ use serde::{Deserialize, Serialize};
 pub const STEPS: usize = 300;
 /// Layers of the diamond, the paper's hMax.
 pub const LAYERS: u32 = 3;
-/// The gap between its spheres, the paper's dSph. Without one they stay where every number is exact.
+/// The gap between its spheres, the paper's dSph. Without a gap, they stay where every number is exact.
 pub const GAP: f64 = 0.05;
 
-/// How far the spheres of the diamond are, after [`STEPS`] steps, from where ODE with its own collider in `f64` has
-/// them; in radii. The scene is chaotic: errors grow, and from some time on two paths have nothing in common.
+/// The distance of the diamond's spheres, after [`STEPS`] steps, from their places with ODE's own collider in `f64`, in
+/// radii. The scene is chaotic: errors grow, and in the end two paths have nothing in common.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Drift {
-    /// Mean over the spheres.
+    /// The mean over the spheres.
     pub mean: f64,
     /// The largest.
     pub largest: f64,
@@ -34,7 +35,7 @@ mod with_ode {
     use crate::kernel::Engine;
     use crate::ode::{Collider, Diamond, Error, Ode, Simulation};
 
-    /// The scene as `f64` has it.
+    /// The scene in `f64`.
     pub struct Scene {
         exact: Vec<[f64; 3]>,
     }
@@ -51,7 +52,7 @@ mod with_ode {
             Ok(Self { exact: positions(&simulation) })
         }
 
-        /// How far an engine's contacts lead away from it; `None` if the engine gives a record that is not a contact.
+        /// The drift that an engine's contacts cause; `None` if the engine gives a record that is not a contact.
         pub fn drift(&self, engine: &mut dyn Engine) -> Result<Option<Drift>, Error> {
             let ode = Ode::start(Collider::Engine)?;
             let diamond = diamond();
@@ -89,7 +90,7 @@ mod with_ode {
         use crate::kernel::{EngineError, Truth};
         use crate::query::{ContactRecord, Fields, PairRecord};
 
-        /// The truth in the place of the collider: off by the rounding of records alone.
+        /// The truth in place of the collider. Only the rounding of records differs.
         struct True;
 
         impl Engine for True {

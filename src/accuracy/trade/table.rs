@@ -5,8 +5,8 @@ use crate::report::table::{grouped, table as drawn};
 
 /// The profile that times are relative to.
 pub(super) const BASE: &str = "paper";
-/// Times over a link that differ by less than this share count as equal: the link stalls at random, and differently at
-/// another clock.
+/// Times over a link that differ by less than this share count as equal, because the link stalls at random, and
+/// differently at another clock.
 const SAME: f64 = 0.05;
 /// A configuration is link-bound if its time per pair is at most this share above the link limit.
 const LIMITED: f64 = 0.09;

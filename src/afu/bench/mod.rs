@@ -1,5 +1,5 @@
-//! The test bench beside the Verilog: a job with its pairs and the lines that the reference kernel gives for them, for
-//! simulators that know nothing of this crate. A shell has its bench, whose parts that all share are in `shared.v`.
+//! The test bench beside the Verilog, for simulators without this crate: a job with its pairs, and the lines that the
+//! reference kernel computes for them. Each shell has its own bench, and `shared.v` has the common parts.
 
 use crate::query::{Flow, PairRecord};
 
@@ -19,7 +19,7 @@ impl Afu {
         let examples = config.query.shape().examples.iter();
         let pairs: Vec<_> = examples.map(|values| PairRecord::of_values(values.iter().copied())).collect();
         let source = pack(&layout, &pairs);
-        // As the AFU reads them: rounded to the record's numbers, with the hardware's radius.
+        // As the AFU reads them: rounded to the record format, with the hardware's radius.
         let records = config.reference().run_all(&unpack_pairs(&layout, &source, pairs.len()));
         let expected = pack_contacts(&layout, &records);
         let invalid: Vec<usize> = (0..records.len()).filter(|&i| records[i].flow() == Some(Flow::Invalid)).collect();
@@ -53,7 +53,7 @@ impl Afu {
     }
 }
 
-/// The text with what the benches of all shells have in common in the place of its parts' names.
+/// The text with the parts that the benches of all shells share in place of their names.
 fn with_shared(text: String) -> String {
     let parts = include_str!("shared.v").split("@@ ").filter_map(|part| part.split_once('\n'));
     parts.fold(text, |text, (name, part)| text.replace(&format!("@{name}@\n"), part))

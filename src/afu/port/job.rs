@@ -1,4 +1,4 @@
-//! The core's ports for its host: what a job is started with, and what comes of it.
+//! The core's ports for its host: the inputs that start a job, and the outputs of a job.
 
 use super::interface;
 use crate::afu::{ADDRESS_BITS, EPOCH_BITS, Spec};
@@ -11,7 +11,7 @@ const MODE_BITS: u32 = 4;
 const CYCLE_BITS: u32 = 64;
 
 interface! {
-    /// What starts and stops a job.
+    /// The inputs that start and stop a job.
     JobInputs(spec) {
         start: T => 1, "one cycle high starts a job; ignored while busy";
         source: T => ADDRESS_BITS, "line address of the first source line";
@@ -37,7 +37,7 @@ interface! {
 }
 
 interface! {
-    /// What the AFU says of a job and of itself.
+    /// The outputs about a job and about the AFU.
     JobOutputs(spec) {
         busy: T => 1, "a job is running or ending";
         done: T => 1, "the last job has ended; low from the next start on";
@@ -55,7 +55,7 @@ interface! {
     }
 }
 
-/// The errors that this core can tell.
+/// The errors that this core can report.
 fn errors(spec: &Spec) -> String {
     let is_told = |error: &JobError| match error {
         JobError::Room => false,

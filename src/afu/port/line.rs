@@ -1,10 +1,10 @@
-//! The core's ports for memory: requests and responses of reads, and of writes, a line each.
+//! The core's ports for memory: requests and responses of reads and writes, one line each.
 
 use super::interface;
 use crate::afu::{ADDRESS_BITS, JobError};
 
 interface! {
-    /// What memory says to reads.
+    /// The responses to reads.
     ReadInputs(spec) {
         rd_req_ready: T => 1, READY;
         rd_rsp_valid: T => 1, "a read response, in any order; never refused";
@@ -16,7 +16,7 @@ interface! {
 }
 
 interface! {
-    /// What memory says to writes.
+    /// The responses to writes.
     WriteInputs(spec) {
         wr_req_ready: T => 1, READY;
         wr_rsp_valid: T => 1, "a write acknowledgement, in any order; never refused";

@@ -1,7 +1,7 @@
-//! Ports, each declared once: its name, its width and what it means. Hardware declares and connects its ports by these
+//! Ports, each declared once: its name, its width and its meaning. Hardware declares and connects its ports by these
 //! interfaces, PORTS.md and test benches are written from them, and simulations bind to models by them.
 //!
-//! An interface is generic in what stands at each port: a [`Declaration`], a signal of hardware, or a model's port.
+//! An interface is generic in the type of each port: a [`Declaration`], a signal of hardware, or a model's port.
 
 mod job;
 mod line;
@@ -14,12 +14,12 @@ use super::Spec;
 pub(crate) use job::{JobInputs, JobOutputs};
 pub(crate) use line::{ReadInputs, ReadOutputs, WriteInputs, WriteOutputs};
 
-/// A port as it is declared.
+/// The declaration of a port.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Declaration {
     pub(crate) name: &'static str,
     pub(crate) bits: u32,
-    /// What PORTS.md says of it.
+    /// The description in PORTS.md.
     pub(crate) meaning: Cow<'static, str>,
 }
 
@@ -116,12 +116,12 @@ macro_rules! interface {
         // Not every interface is used in every way.
         #[allow(dead_code)]
         impl<T> $interface<T> {
-            /// What `f` makes of each, or its first error.
+            /// Applies `f` to each port; fails with its first error.
             pub(crate) fn try_map<U, E>(self, mut f: impl FnMut(T) -> Result<U, E>) -> Result<$interface<U>, E> {
                 Ok($interface { $($port: $crate::afu::port::interface!(@map f, self.$port $(, $condition)?),)* })
             }
 
-            /// What `f` makes of each.
+            /// Applies `f` to each port.
             pub(crate) fn map<U>(self, mut f: impl FnMut(T) -> U) -> $interface<U> {
                 match self.try_map(|each| Ok::<_, std::convert::Infallible>(f(each))) {
                     Ok(mapped) => mapped,
@@ -129,13 +129,13 @@ macro_rules! interface {
                 }
             }
 
-            /// Each with its port's name, in order.
+            /// The ports with their names, in order.
             pub(crate) fn named(self) -> Vec<(&'static str, T)> {
                 let each = [$((stringify!($port), $crate::afu::port::interface!(@some self.$port $(, $condition)?)),)*];
                 each.into_iter().filter_map(|(name, value)| Some((name, value?))).collect()
             }
 
-            /// Each, in order.
+            /// The ports, in order.
             pub(crate) fn list(self) -> Vec<T> {
                 self.named().into_iter().map(|(_, each)| each).collect()
             }

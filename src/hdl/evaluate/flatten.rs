@@ -1,5 +1,5 @@
-//! A hierarchy of modules as one flat graph: ports and instance outputs become links between nodes, arrays become
-//! their copies, and the whole is put in an order in which operands come first.
+//! A hierarchy of modules as one flat graph. Ports and instance outputs become links between nodes, arrays become
+//! copies, and nodes are ordered so that operands come first.
 
 use std::sync::Arc;
 
@@ -61,7 +61,8 @@ impl Flat {
         flat
     }
 
-    /// The parameters of a module instantiated in a scope: the scope's of the same name, else their defaults.
+    /// The parameters of a module instantiated in a scope: the scope's parameters of the same name, otherwise the
+    /// defaults.
     fn inherited(&self, scope: usize, module: &Module) -> Vec<u32> {
         let Scope { module: parent, parameters, .. } = &self.scopes[scope];
         let value = |name: &str| parent.parameters.iter().position(|p| p.name == name).map(|index| parameters[index]);
@@ -80,7 +81,8 @@ impl Flat {
         scope
     }
 
-    /// Opens the instances in a scope and links them with it. As deep as the hierarchy, which is a person's work.
+    /// Opens the instances in a scope and links them with it. The recursion is as deep as the hierarchy, which is never
+    /// deep.
     fn fill(&mut self, scope: usize) {
         let module = self.scopes[scope].module.clone();
         let base = self.scopes[scope].base;

@@ -1,5 +1,5 @@
-//! From nodes of any width to steps on 64-bit words. Slices and concatenations at word borders, zero extensions,
-//! wires and ports cost nothing: they are the same words under another name.
+//! Turns nodes of any width into steps on 64-bit words. Slices and concatenations at word borders, zero extensions,
+//! wires and ports cost nothing, because they are the same words under another name.
 
 use std::collections::HashMap;
 
@@ -7,7 +7,7 @@ use super::flatten::{Flat, FlatId, Link, is_state};
 use super::tape::{Kind, Step, field};
 use crate::hdl::module::{Node, Op};
 
-/// A word before it has a place: what computes it stands in [`Lowered::sources`].
+/// A word without a place. [`Lowered::sources`] has its computation.
 pub(super) type Word = u32;
 
 /// The kind of a word.
@@ -38,12 +38,12 @@ pub(super) struct Lowered {
 /// The place of a dead node.
 pub(super) const DEAD: u32 = u32::MAX;
 
-/// Words a value of `width` bits takes.
+/// The number of words in a value of `width` bits.
 pub(super) fn word_count(width: u32) -> usize {
     width.div_ceil(64) as usize
 }
 
-/// Bits in word `index` of a value of `width` bits.
+/// The number of bits in word `index` of a value of `width` bits.
 pub(super) fn word_bits(width: u32, index: usize) -> u32 {
     (width - 64 * index as u32).min(64)
 }
@@ -220,7 +220,7 @@ impl Lowered {
         }
     }
 
-    /// Word `index` of a table's word: a tree of choices, by the address from its lowest bit on.
+    /// Word `index` of a table's word: a tree of selections, by the address from its lowest bit on.
     fn lookup(&mut self, table: &[u128], address: &[Word], index: usize) -> Word {
         let part = |word: &u128| if index < 2 { (*word >> (64 * index)) as u64 } else { 0 };
         let mut words: Vec<Word> = table.iter().map(|word| self.constant(part(word))).collect();
@@ -246,7 +246,7 @@ impl Lowered {
         rest.iter().fold(*first, |all, &word| self.step(kind, [all, word, all], 0))
     }
 
-    /// A sum or difference: one step for one word, a chain of carries for more.
+    /// A sum or difference: one step for one word, and a chain of carries for more.
     fn sum(&mut self, operands: &[Vec<Word>], width: u32, [alone, chained, carry_out]: [Kind; 3]) -> Vec<Word> {
         let (left, right) = (&operands[0], &operands[1]);
         if width <= 64 {
@@ -263,7 +263,7 @@ impl Lowered {
         words
     }
 
-    /// The schoolbook product, to `count` words; what would lie above them is zero.
+    /// The schoolbook product, truncated to `count` words.
     fn product(&mut self, left: &[Word], right: &[Word], count: usize) -> Vec<Word> {
         let zero = self.constant(0);
         let mut total = vec![zero; count];
@@ -317,7 +317,7 @@ impl Lowered {
             return (0..word_count(node.width)).map(|i| self.step(Kind::Spread, [bit; 3], bits(i))).collect();
         }
         let mut words = Vec::with_capacity(word_count(node.width));
-        // The word being filled from its low end, and how many of its bits are.
+        // The word that is being filled from its low end, and the number of its bits that are filled.
         let (mut current, mut filled) = (self.constant(0), 0);
         for (part, &width) in operands.iter().zip(widths).rev() {
             for (index, &word) in part.iter().enumerate() {

@@ -1,7 +1,7 @@
 //! Runs a module cycle by cycle in Rust: two-state, one clock, no simulator needed.
 //!
-//! The hierarchy is flattened, every value is broken into 64-bit words, and what computes them becomes one tape of
-//! steps ([`tape`]) that is run from one end to the other whenever something has changed.
+//! The hierarchy is flattened, every value is split into 64-bit words, and their computation becomes one tape of steps
+//! ([`tape`]). The tape runs from beginning to end whenever something has changed.
 
 mod flatten;
 mod lower;
@@ -19,10 +19,10 @@ use super::module::{Module, Parameter};
 /// Why a module cannot be run.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EvaluateError {
-    /// A value depends on itself without a register between.
+    /// A value depends on itself without a register in between.
     #[error("combinational loop through `{}`: a register must stand between", .0.join("`, `"))]
     Loop(Vec<String>),
-    /// A parameter that the module has not.
+    /// The module has no such parameter.
     #[error("module `{module}` has no parameter `{name}`")]
     UnknownParameter {
         /// The module.
@@ -42,12 +42,12 @@ pub enum EvaluateError {
         /// Largest allowed value.
         max: u32,
     },
-    /// More memory than is sensible.
+    /// The memories are too large.
     #[error("memories and delays hold {0} words of 64 bits, more than this evaluator takes")]
     TooLarge(u64),
 }
 
-/// A port or an internal value: where its words are. Only of use with the evaluator that gave it.
+/// The places of the words of a port or an internal value. Only valid for the evaluator that returned it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pin {
     first: u32,
@@ -64,7 +64,7 @@ impl Pin {
     }
 }
 
-/// A module being run. It starts as after a reset, with memories and delays all zero.
+/// A module that is being run. It starts as after a reset, with memories and delays all zero.
 #[derive(Debug)]
 pub struct Evaluator {
     module: Arc<Module>,
@@ -85,11 +85,11 @@ pub struct Evaluator {
 }
 
 impl Evaluator {
-    /// Prepares `module` to be run, with these parameters and the defaults of those not named.
+    /// Prepares `module` to be run with these parameters, and with the defaults of the others.
     ///
     /// # Errors
-    /// An unknown parameter or one out of range; a combinational loop through several modules (those within one are
-    /// found by [`Graph::finish`](super::Graph::finish)); memories too large.
+    /// Returns an error for an unknown parameter or one out of range, a combinational loop through several modules
+    /// (those within one are found by [`Graph::finish`](super::Graph::finish)), or memories that are too large.
     pub fn new(module: &Arc<Module>, parameters: &[(&str, u32)]) -> Result<Self, EvaluateError> {
         let flat = Flat::new(module, parameter_values(module, parameters)?);
         let outputs = module.ports.iter().filter(|port| port.output);
@@ -129,8 +129,8 @@ impl Evaluator {
         self.module.port(port).map(|(index, _)| self.ports[index])
     }
 
-    /// A named value inside, as `instance.name` or, in an array, `instance[2].name`. Reading it is like reading an
-    /// output. `None` if there is none of that name or nothing needs it.
+    /// A named value inside, as `instance.name` or, in an array, `instance[2].name`. It is read like an output. `None`
+    /// if there is no such name or nothing uses the value.
     pub fn probe(&self, path: &str) -> Option<Pin> {
         let (scope, name) = path.rfind('.').map_or(("", path), |dot| path.split_at(dot + 1));
         let scope = self.scopes.iter().find(|s| s.path == scope)?;
@@ -151,7 +151,7 @@ impl Evaluator {
     /// Sets an input port; bits above its width are dropped, as by an assignment in Verilog.
     ///
     /// # Panics
-    /// If the module has no such input.
+    /// Panics if the module has no such input.
     #[track_caller]
     pub fn set(&mut self, port: &str, value: u128) {
         self.set_words(port, &[value as u64, (value >> 64) as u64]);
@@ -160,7 +160,7 @@ impl Evaluator {
     /// Sets an input port, least significant word first; missing words are zero.
     ///
     /// # Panics
-    /// If the module has no such input.
+    /// Panics if the module has no such input.
     #[track_caller]
     pub fn set_words(&mut self, port: &str, words: &[u64]) {
         let Some(pin) = self.pin(port).filter(|pin| pin.input) else {
@@ -172,7 +172,7 @@ impl Evaluator {
     /// The low 128 bits of a port.
     ///
     /// # Panics
-    /// If the module has no such port.
+    /// Panics if the module has no such port.
     #[track_caller]
     pub fn get(&mut self, port: &str) -> u128 {
         let words = self.get_words(port);
@@ -182,7 +182,7 @@ impl Evaluator {
     /// A port, least significant word first.
     ///
     /// # Panics
-    /// If the module has no such port.
+    /// Panics if the module has no such port.
     #[track_caller]
     pub fn get_words(&mut self, port: &str) -> Vec<u64> {
         let Some(pin) = self.pin(port) else { panic!("module `{}` has no port `{port}`", self.module.name) };
@@ -191,7 +191,7 @@ impl Evaluator {
         words
     }
 
-    /// Sets an input of at most 64 bits (or the low word of a wider one). Nothing happens if it is no input.
+    /// Sets an input of at most 64 bits (or the low word of a wider one). Has no effect if it is not an input.
     #[inline]
     pub fn write(&mut self, pin: Pin, value: u64) {
         if pin.input {
@@ -201,7 +201,7 @@ impl Evaluator {
         }
     }
 
-    /// Sets an input, least significant word first; missing words are zero. Nothing happens if it is no input.
+    /// Sets an input, least significant word first; missing words are zero. Has no effect if it is not an input.
     pub fn write_words(&mut self, pin: Pin, words: &[u64]) {
         if !pin.input {
             return;
@@ -223,7 +223,7 @@ impl Evaluator {
         self.words[self.places[pin.first as usize] as usize]
     }
 
-    /// A value, least significant word first, as many words of it as `words` takes; those beyond it become zero.
+    /// A value, least significant word first, as many words as `words` holds. Words beyond the value become zero.
     pub fn read_words(&mut self, pin: Pin, words: &mut [u64]) {
         if !pin.stable {
             self.settle();
@@ -244,7 +244,7 @@ impl Evaluator {
         }
     }
 
-    /// One clock edge: registers, delays and memories sample what is there now, then change together.
+    /// One clock edge: registers, delays and memories sample their present inputs, then change together.
     pub fn step(&mut self) {
         self.settle();
         let resets = self.reset.is_some_and(|pin| self.words[self.places[pin.first as usize] as usize] != 0);
@@ -255,7 +255,7 @@ impl Evaluator {
         self.settled = false;
     }
 
-    /// Puts every register that has a reset value to it; other registers, delays and memories keep what they hold.
+    /// Sets every register with a reset value to that value. Other registers, delays and memories keep their content.
     pub fn reset(&mut self) {
         self.state.reset(&mut self.words);
         self.settled = false;

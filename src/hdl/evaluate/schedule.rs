@@ -1,5 +1,5 @@
-//! Puts steps in an order in which operands come first and steps of one kind stand together, and gives every word its
-//! place: constants, pins, state, then the steps' results in their order.
+//! Orders steps so that operands come first and steps of one kind are together, and gives every word its place:
+//! constants, pins, state, then the results of the steps in their order.
 
 use super::lower::{Lowered, Source, Word};
 use super::tape::{KINDS, Kind, Step, Tape};
@@ -55,7 +55,7 @@ pub(super) fn schedule(lowered: &Lowered, state: &[Word]) -> Layout {
     Layout { tape, words, place, state: first_state }
 }
 
-/// Greedy: choose the kind with the most ready steps, and continue with it until none is ready.
+/// Greedy: chooses the kind with the most ready steps, and continues with it until none is ready.
 fn order(lowered: &Lowered) -> Vec<(Kind, Word)> {
     let count = lowered.sources.len();
     let is_step = |word: Word| matches!(lowered.sources[word as usize], Source::Step(..));

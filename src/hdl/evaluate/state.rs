@@ -10,14 +10,14 @@ use crate::hdl::module::Op;
 /// The most words that memories and delays may hold together: 8 GiB.
 const MOST_WORDS: u64 = 1 << 30;
 
-/// A register's word: where its next value and its enable lie.
+/// The word of a register, with the places of its next value and its enable.
 #[derive(Debug)]
 struct Enabled {
     next: u32,
     enable: u32,
 }
 
-/// All delays of the same length: a ring of rows, one word a delayed word each.
+/// All delays of the same length: a ring of rows, with one word per delayed word.
 #[derive(Debug)]
 struct Ring {
     inputs: Vec<u32>,
@@ -43,8 +43,8 @@ struct Read {
     enable: Option<u32>,
 }
 
-/// State elements of the whole hierarchy. Their present values lie together among the words, in this order:
-/// registers that always load (and delays of one cycle), registers with an enable, rings, memory reads.
+/// State elements of the whole hierarchy. Their present values are together among the words, in this order: registers
+/// that always load (and delays of one cycle), registers with an enable, rings, memory reads.
 #[derive(Debug)]
 pub(super) struct State {
     always: Vec<u32>,
@@ -56,7 +56,7 @@ pub(super) struct State {
     sampled: Vec<u64>,
 }
 
-/// State elements by how they load, before words have places.
+/// State elements, sorted by how they load, before words have places.
 #[derive(Debug, Default)]
 pub(super) struct Elements {
     always: Vec<FlatId>,
@@ -97,12 +97,12 @@ impl Elements {
         self.always.iter().chain(&self.enabled).chain(rings).chain(&self.reads).copied()
     }
 
-    /// Words of present values, in the order in which they shall lie.
+    /// Words of present values, in the order in which they are placed.
     pub(super) fn words(&self, flat: &Flat, lowered: &Lowered) -> Vec<Word> {
         self.ids().flat_map(|id| lowered.of(flat, id).iter().copied()).collect()
     }
 
-    /// With the places of words.
+    /// Builds the state from the places of words.
     pub(super) fn place(&self, flat: &Flat, lowered: &Lowered, place: &[u32]) -> State {
         let at = |id: FlatId| -> Vec<u32> { lowered.of(flat, id).iter().map(|&w| place[w as usize]).collect() };
         let operand = |id: FlatId, k: usize| at(flat.scope(id).base + flat.node(id).operands[k].index());
@@ -154,14 +154,14 @@ impl Elements {
 }
 
 impl State {
-    /// Sets every register that has a reset value to it.
+    /// Sets every register to its reset value, if it has one.
     pub(super) fn reset(&self, words: &mut [u64]) {
         for &(place, value) in &self.resets {
             words[place as usize] = value;
         }
     }
 
-    /// A clock edge: `words` are settled, state begins at `first`.
+    /// A clock edge. `words` are settled, and state begins at `first`.
     pub(super) fn clock(&mut self, words: &mut [u64], first: usize) {
         let at = |place: u32| words[place as usize];
         let end = first + self.sampled.len();

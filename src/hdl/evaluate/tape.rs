@@ -1,8 +1,8 @@
-//! Straight-line code over 64-bit words, in runs of one kind each, so that a run is a tight loop and not a jump a step.
+//! Straight-line code over 64-bit words. Steps of one kind run together, in a tight loop instead of one jump per step.
 
 use std::ops::Range;
 
-/// The operation of a step on the words `a`, `b`, `c` and the immediate. Words hold their value zero-extended.
+/// The operation of a step on the words `a`, `b`, `c` and the immediate. Words are zero-extended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub(super) enum Kind {
@@ -71,7 +71,7 @@ pub(super) struct Step {
     pub immediate: u32,
 }
 
-/// Steps in order. Step `i` writes word `first + i`, and reads only words before that one.
+/// Steps in order. Step `i` writes word `first + i`, and reads only earlier words.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tape {
     pub first: usize,
@@ -85,7 +85,7 @@ impl Tape {
         for (kind, range) in &self.runs {
             let steps = &self.steps[range.clone()];
             let first = self.first + range.start;
-            // One monomorphic loop a kind: the closures are inlined into it.
+            // One monomorphic loop per kind, into which the closures are inlined.
             match kind {
                 Kind::Not => each(words, first, steps, |w, s| !at(w, s.a) & mask(s.immediate)),
                 Kind::And => each(words, first, steps, |w, s| at(w, s.a) & at(w, s.b)),

@@ -1,4 +1,4 @@
-//! Instances in the body of a module: one, or as many as a parameter says, whose outputs are or-ed together.
+//! Instances in the body of a module: one, or the number that a parameter gives, with outputs or-ed together.
 
 use super::super::module::{Instance, InstanceCount, NodeId, Op};
 use super::expression::{constant, range};
@@ -78,7 +78,7 @@ impl Sections<'_> {
         lines.join(",\n")
     }
 
-    /// Parameters that an instance takes from this module, where both have them.
+    /// Parameters that an instance takes from this module, if both have them.
     fn inherited(&self, instance: &Instance) -> String {
         let known = |name: &str| self.module.parameters.iter().any(|parameter| parameter.name == name);
         let parameters = instance.module.parameters.iter().filter(|parameter| parameter.rounded.is_none());

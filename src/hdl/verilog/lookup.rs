@@ -11,8 +11,8 @@ pub(super) fn is_block_memory(module: &Module) -> bool {
 
 /// The declaration of `name` and the statement that gives it the word at `index`.
 ///
-/// Left alone Yosys makes a memory of it, whose block is too slow for a fast clock where its registers are not used:
-/// the attribute keeps it in tables, unless it `is_block`.
+/// Without an attribute Yosys makes a memory of it. The block of this memory is too slow for a fast clock if its
+/// registers are not used. The attribute keeps it in look-up tables, unless it `is_block`.
 pub(super) fn lookup(name: &str, width: u32, table: &[u128], index: &str, is_block: bool) -> String {
     let style = if is_block { "block" } else { "logic" };
     let index_bits = table.len().ilog2();

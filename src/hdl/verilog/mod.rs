@@ -1,5 +1,5 @@
-//! Verilog-2005 that a hardware engineer enjoys reading: the generator's names, stage banners, one module a file,
-//! every operand sized. Clean under `-Wall` without pragmas, since widths always match.
+//! Verilog-2005 that a hardware engineer can read: the generator's names, stage banners, one file per module, every
+//! operand sized. It is clean under `-Wall` without pragmas, because widths always match.
 
 mod delay;
 mod expression;
@@ -29,13 +29,14 @@ pub struct Style {
 /// The memories of an FPGA family, which decide what the attributes of a memory ask for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Memories {
-    /// Any family's. No block memory is named, since M20K, M10K and M9K belong to different families of Intel's; MLAB
-    /// is, since Quartus puts no small memory there unasked, and without MLABs it warns and takes what there is.
+    /// For any family. No block memory is named, because M20K, M10K and M9K belong to different families of Intel's.
+    /// MLAB is named, because Quartus does not place small memories there otherwise. Without MLABs, Quartus warns and
+    /// uses other memories.
     #[default]
     Any,
-    /// Block memories and memories of look-up tables, of a family that Quartus does not know.
+    /// Block memories and memories of look-up tables, for a family that Quartus does not support.
     BlocksAndLuts,
-    /// Block memories alone: where small memories go is left to synthesis.
+    /// Block memories only. Synthesis decides about small memories.
     Blocks,
 }
 

@@ -1,4 +1,4 @@
-//! Unused bits, gathered in one wire whose name says so: linters then accept them.
+//! Gathers unused bits in one wire whose name says so, so that linters accept them.
 
 use super::super::module::{InstanceCount, Module, NodeId, Op};
 use super::names::Names;
@@ -56,7 +56,7 @@ pub(super) fn unconnected(module: &Module, instance: usize) -> Vec<(usize, Strin
     ports.map(|(index, port)| (index, format!("{}_{}_unused", of.name, port.name))).collect()
 }
 
-/// Which bits of each declared node are read by anything. What is written in place passes on what is read of it.
+/// The bits of each declared node that are read. A node that is written in place passes its reads on to its operands.
 fn used_bits(module: &Module, names: &Names) -> Vec<Vec<bool>> {
     let mut used: Vec<Vec<bool>> = module.nodes.iter().map(|node| vec![false; node.width as usize]).collect();
     let outputs = module.ports.iter().filter(|port| port.output).filter_map(|port| port.node);

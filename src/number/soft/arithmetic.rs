@@ -1,4 +1,4 @@
-//! Sum, product, quotient and root of values taken apart: exact but for one sticky bit, in any format.
+//! Sum, product, quotient and root of unpacked values: exact except for one sticky bit, in any format.
 
 use super::parts::{Class, Parts};
 
@@ -22,7 +22,8 @@ pub fn add(a: Parts, b: Parts) -> Parts {
 fn add_finite(a: Parts, b: Parts) -> Parts {
     let a_is_larger = (a.exponent, a.significand) >= (b.exponent, b.significand);
     let (large, small) = if a_is_larger { (a, b) } else { (b, a) };
-    // Leading bits at 62: room for a carry. Ten zero bits below, of which rounding needs two and the sticky bit.
+    // Leading bits at 62 leave room for a carry. There are ten zero bits below, and rounding needs two and the sticky
+    // bit.
     let x = large.significand >> 1;
     let y = shift_sticky(small.significand >> 1, (large.exponent - small.exponent) as u32);
     let sum = if a.negative == b.negative { x + y } else { x - y };
@@ -57,7 +58,7 @@ pub fn divide(a: Parts, b: Parts) -> Parts {
     let negative = a.negative != b.negative;
     match (a.class, b.class) {
         (Finite, Finite) => {
-            // Both lead at bit 63, so the quotient with 63 places fits 64 bits and has at least 63.
+            // Both have their leading bit at 63, so the quotient with 63 places fits in 64 bits and has at least 63.
             let (n, d) = (u128::from(a.significand) << 63, u128::from(b.significand));
             let quotient = (n / d) as u64;
             let shift = quotient.leading_zeros(); // 0 or 1

@@ -1,4 +1,4 @@
-//! Order of two words, and the comparison with a rounded root that needs no root.
+//! The order of two words, and a comparison with a rounded root that needs no root.
 
 use super::parts::{Class, Parts};
 use crate::number::{Format, Rounding};
@@ -9,7 +9,7 @@ pub fn order(format: Format, a: u128, b: u128) -> Option<Ordering> {
     Some(key(format, a)?.cmp(&key(format, b)?))
 }
 
-/// An integer in the order of the values: a word's magnitude under its sign.
+/// An integer in the order of the values: the magnitude of a word with its sign.
 fn key(format: Format, bits: u128) -> Option<i128> {
     let magnitude = bits & !format.sign_mask();
     if magnitude > format.infinity_bits() {
@@ -20,13 +20,14 @@ fn key(format: Format, bits: u128) -> Option<i128> {
     Some(if bits & format.sign_mask() == 0 { magnitude } else { -magnitude })
 }
 
-/// RN(√q) > s, without the root: q > (s + ½ulp(s))², taken exactly. Toward zero √q ≥ s + ulp(s), so q ≥ (s + ulp(s))².
+/// RN(√q) > s, without the root: q > (s + ½ulp(s))², computed exactly. For rounding toward zero, √q ≥ s + ulp(s), so q
+/// ≥ (s + ulp(s))².
 ///
 /// The middle between s and the next number has one significand bit more than s, so its square has at most
 /// 2·(53 + 1) bits. No format can tie: the square of a normal s's middle is odd in its last of more than 2p bits,
 /// that of a subnormal one has its last bit below the smallest subnormal.
 ///
-/// Negative s, which a sum of radii never is, is compared as the root would be.
+/// A negative s, which a sum of radii never is, is compared as the root would be.
 pub fn root_exceeds(format: Format, q: Parts, s: Parts) -> bool {
     let no_root = q.class == Class::Nan || q.negative && q.class != Class::Zero;
     if no_root || s.class == Class::Nan {
@@ -52,15 +53,15 @@ pub fn root_exceeds(format: Format, q: Parts, s: Parts) -> bool {
 fn upper_middle(format: Format, s: Parts) -> Parts {
     let fraction = format.fraction_bits() as i32;
     if s.class == Class::Zero {
-        // Half of the smallest subnormal. Where those are flushed any positive q is far above its square too.
+        // Half of the smallest subnormal. If subnormals are flushed, any positive q is also far above its square.
         return Parts::finite(false, format.min_exponent() - fraction - 1, 1 << 63);
     }
-    // The bit below the last one: a subnormal's significand, being aligned, has it higher up.
+    // The bit below the last one. The aligned significand of a subnormal has it higher up.
     let aligned = (format.min_exponent() - s.exponent).max(0);
     Parts::finite(false, s.exponent, s.significand | 1 << (62 - fraction + aligned))
 }
 
-/// The next number above s ≥ 0; above the largest, the one that would follow.
+/// The next number above s ≥ 0. Above the largest number, it is the one that would follow.
 fn next_up(format: Format, s: Parts) -> Parts {
     let fraction = format.fraction_bits() as i32;
     if s.class == Class::Zero {

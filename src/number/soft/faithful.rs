@@ -1,4 +1,4 @@
-//! Faithful reciprocal and root of values taken apart.
+//! Faithful reciprocal and root of unpacked values.
 
 use super::parts::{Class, Parts};
 use crate::number::{Faithful, Function};

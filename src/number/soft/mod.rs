@@ -12,11 +12,11 @@ use std::cmp::Ordering;
 use std::fmt;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
-/// A word and the format it is to be read in.
+/// A word with its format.
 ///
 /// Every operation is exact inside and rounds once, as its format says (faithful roots are computed as the hardware
-/// computes them); every NaN that an operation
-/// produces is the canonical one. Two numbers of different formats in one operation panic with both names.
+/// computes them). Every NaN that an operation produces is the canonical one. An operation on two numbers of different
+/// formats panics with the names of both formats.
 ///
 /// `==` compares words, so +0 differs from −0 and a NaN equals itself: use [`Number::gt`] and [`Number::le`] for
 /// IEEE comparisons.
@@ -30,7 +30,7 @@ impl Soft {
     /// The number whose word is `bits`.
     ///
     /// # Panics
-    /// When `bits` has a bit set beyond the format's width.
+    /// Panics if `bits` has a bit set beyond the format's width.
     #[inline]
     pub fn from_bits(format: Format, bits: u128) -> Self {
         assert!(bits >> format.width() == 0, "{bits:#x} has more bits than a word of {format}");
@@ -59,7 +59,7 @@ impl Soft {
         self.bits
     }
 
-    /// The format the word is in.
+    /// The format of the word.
     #[inline]
     pub fn format(self) -> Format {
         self.format
@@ -75,14 +75,14 @@ impl Soft {
         unpack(self.format, self.bits)
     }
 
-    /// An operation of two numbers of one format.
+    /// An operation on two numbers of one format.
     #[inline]
     fn with(self, other: Self, operation: impl Fn(Parts, Parts) -> Parts) -> Self {
         self.must_share_format(other);
         Self { bits: pack(self.format, operation(self.parts(), other.parts())), format: self.format }
     }
 
-    /// A faithful result is as near as it is: where a subnormal has less room, it is rounded to nearest.
+    /// A faithful result keeps its accuracy; if a subnormal has fewer bits, it is rounded to nearest.
     fn faithful(self, function: impl Fn(u32, Parts) -> Parts) -> Self {
         let result = function(self.format.fraction_bits(), self.parts());
         Self { bits: pack(self.format.with_rounding(Rounding::Nearest), result), ..self }
@@ -188,7 +188,7 @@ impl Number for Soft {
         if condition { yes } else { no }
     }
 
-    /// This number in another format, rounded once. In its own format it stays the word it is.
+    /// This number in another format, rounded once. In its own format the word does not change.
     #[inline]
     fn to(self, format: Format) -> Self {
         if format == self.format { self } else { Self { bits: pack(format, self.parts()), format } }

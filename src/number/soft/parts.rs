@@ -1,4 +1,4 @@
-//! A word taken apart, and a result put together: the only place that rounds.
+//! Takes words apart and assembles results. This is the only place that rounds.
 
 use crate::number::{Format, Rounding};
 
@@ -14,9 +14,9 @@ pub enum Class {
 
 /// A value without a format: ±significand · 2^(exponent − 63).
 ///
-/// The significand of a finite value has its leading bit at bit 63. Those of words have at most 53 bits, so the
-/// low eleven are zero. Those of results are exact down to bit 1; bit 0 says whether anything was lost below it
-/// ("sticky"), which is all that rounding needs to know.
+/// The significand of a finite value has its leading bit at bit 63. Significands of words have at most 53 bits, so the
+/// low eleven bits are zero. Significands of results are exact down to bit 1. Bit 0 is set if anything was lost below
+/// it ("sticky"), which is all that rounding needs.
 #[derive(Clone, Copy, Debug)]
 pub struct Parts {
     pub class: Class,
@@ -46,10 +46,10 @@ impl Parts {
     }
 }
 
-/// Reads a word. A subnormal reads as zero where the format flushes them.
+/// Reads a word. A subnormal reads as zero if the format flushes subnormals.
 #[inline]
 pub fn unpack(format: Format, bits: u128) -> Parts {
-    // A fraction fits 64 bits; so do nearly all words, and shifting those is cheaper.
+    // A fraction fits in 64 bits. So do nearly all words, which are then cheaper to shift.
     let low = bits as u64;
     let fraction = low & ((1 << format.fraction_bits()) - 1);
     let narrow = format.width() <= u64::BITS;
@@ -81,7 +81,7 @@ pub fn pack(format: Format, value: Parts) -> u128 {
         Class::Finite => round(format, value.exponent, value.significand),
     };
     let head = u64::from(u32::from(value.negative) << format.exponent_bits() | biased);
-    // A carry out of a subnormal's fraction makes the biased exponent 1, as it should.
+    // A carry out of a subnormal's fraction correctly sets the biased exponent to 1.
     if format.width() <= u64::BITS {
         u128::from((head << format.fraction_bits()) + fraction)
     } else {
@@ -89,8 +89,8 @@ pub fn pack(format: Format, value: Parts) -> u128 {
     }
 }
 
-/// Rounds a value to odd and writes its word: what does not fit sets the last bit of what does. The value must be
-/// zero or within the format's normal range.
+/// Rounds a value to odd and writes its word: if bits are lost, the last bit that fits is set. The value must be zero
+/// or within the format's normal range.
 pub fn pack_odd(format: Format, value: Parts) -> u128 {
     let dropped = 64 - format.significand_bits();
     let lost = value.significand & ((1 << dropped) - 1) != 0;

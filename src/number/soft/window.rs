@@ -1,9 +1,9 @@
-//! The difference of squares in a window, and what it cannot tell.
+//! The difference of squares in a window, with detection of doubt.
 
 use super::parts::{Class, Parts};
 use crate::number::{Format, WINDOW_BITS, WINDOW_INEXACT_BITS, WINDOW_LEADING_BITS, WINDOW_LOST_BITS};
 
-/// a² − (x² + y² + z²) of finite or zero operands in `format`, or NaN where it is in doubt.
+/// a² − (x² + y² + z²) of finite or zero operands in `format`, or NaN if it is in doubt.
 pub fn square_excess(format: Format, a: Parts, others: [Parts; 3]) -> Parts {
     let operands = [a, others[0], others[1], others[2]];
     if operands.iter().any(|operand| matches!(operand.class, Class::Nan | Class::Infinity)) {
@@ -74,15 +74,15 @@ mod tests {
 
     #[test]
     fn what_does_not_fit_is_in_doubt_or_settled() {
-        // A step to the side whose square is below the window: touch or not is in doubt.
+        // A step to the side whose square is below the window, so that the contact is in doubt.
         assert!(excess(5.0, [5.0, 2.0_f64.powi(-30), 0.0]).is_nan());
         // Clearly apart, clearly together.
         assert!(excess(5.0, [6.0, 2.0_f64.powi(-30), 0.0]).to_f64() < -10.9);
         assert!(excess(5.0, [4.0, 2.0_f64.powi(-30), 0.0]).to_f64() > 8.9);
-        // Below what was lost, an excess has too few leading bits.
+        // With an excess just above the lost bits, too few leading bits are certain.
         let next = 1.0 + 2.0_f64.powi(-46);
         assert!(excess(next, [1.0, 2.0_f64.powi(-40), 0.0]).is_nan());
-        // An operand whose last bit is set may not be what is meant.
+        // An operand whose last bit is set may not be exact.
         let odd = 1.0 + 2.0_f64.powi(-47);
         assert!(excess(1.0 + 2.0_f64.powi(-20), [odd, 0.0, 0.0]).is_nan());
         assert!(!excess(1.125, [odd, 0.0, 0.0]).is_nan());

@@ -8,26 +8,27 @@ use crate::ode::{Error, Ode, SpherePair};
 use crate::query::{ContactRecord, Fields, PairRecord};
 use std::hint::black_box;
 
-/// What the same collisions take, all of them together, in nanoseconds. All is measured on this machine, one thread.
+/// The time of the same collisions, all together, in nanoseconds. All times are measured on this machine with one
+/// thread.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Figures {
     /// Number of collisions.
     pub collisions: usize,
     /// ODE by the paper's rule: the sum of the averages, the clock's share included.
     pub rule_ns: f64,
-    /// ODE called for one after the other, the loop timed as a whole. Its spheres lie in memory in the order of the
-    /// collisions, as `f64`.
+    /// ODE, called for one collision after the other, with the loop timed as a whole. Its spheres are in memory in the
+    /// order of the collisions, as `f64`.
     pub calls: Timing,
     /// The f32 kernel, from a batch in its own layout into another.
     pub kernel: Timing,
-    /// The f32 kernel from records to records, rearranging included.
+    /// The f32 kernel from records to records, including rearranging.
     pub records: Timing,
     /// The instruction set of the two kernels.
     pub level: &'static str,
 }
 
 impl Recording {
-    /// Times the first `count` collisions (all, where there are fewer) in `passes` passes.
+    /// Times the first `count` collisions, or all if there are fewer, in `passes` passes.
     ///
     /// # Errors
     /// Returns an error if ODE runs without its own collider, or has no memory.

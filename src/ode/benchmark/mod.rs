@@ -1,10 +1,10 @@
-//! The paper's benchmark: what ODE takes to collide two spheres, measured inside a simulation.
+//! The paper's benchmark: the time that ODE takes to collide two spheres, measured inside a simulation.
 //!
-//! [`Benchmark::run`] follows the paper's Figure 5: the diamond is simulated, every candidate pair is collided ten
-//! times, and those of the wanted kind are counted and recorded with the average, until there are enough.
+//! [`Benchmark::run`] follows the paper's Figure 5. The diamond is simulated, and every candidate pair is collided ten
+//! times. Pairs of the wanted kind are counted and recorded with their average time, until there are enough.
 //!
-//! A clock's call costs more than what it times there. So [`Recording::figures`] times the same pairs as a whole too:
-//! a loop of ODE's calls, and the f32 kernel in batch.
+//! Reading the clock takes longer than a collision. So [`Recording::figures`] also times the same pairs as a whole: a
+//! loop of ODE's calls, and the f32 kernel in batch.
 
 mod figures;
 mod timing;
@@ -18,47 +18,47 @@ use crate::query::{Flow, PairRecord};
 use std::hint::black_box;
 use std::time::Instant;
 
-/// A benchmark: what to measure.
+/// The settings of a benchmark.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Benchmark {
-    /// The simulation: the paper's hMax and dSph are in it.
+    /// The simulation, with the paper's hMax and dSph.
     pub diamond: Diamond,
     /// The paper's tCol, the kind of collision that counts: fake, real or grazing.
     pub flow: Flow,
-    /// The paper's nColMax: how many of them. The simulation stops at the last.
+    /// The paper's nColMax: the number of these collisions. The simulation stops at the last.
     pub collisions: usize,
-    /// Number of executions of each collision, whose average counts; 10 in the paper, at least 1.
+    /// The number of executions of each collision, which are averaged; 10 in the paper, at least 1.
     pub executions: u32,
-    /// After so many steps the diamond is built anew and the recording goes on: the forces that made it collide drive
-    /// its spheres apart in the end, that of hMax 3 after some 1350 steps. At least 1.
+    /// The number of steps, at least 1, after which the diamond is rebuilt and the recording continues. In the end, the
+    /// forces that made it collide drive its spheres apart, with hMax 3 after some 1350 steps.
     pub steps_of_a_run: usize,
-    /// After so many steps in all without enough of them the benchmark stops too, with an error.
+    /// The benchmark stops with an error if this number of steps in total did not give enough collisions.
     pub most_steps: usize,
 }
 
-/// A collision of the kind that counts.
+/// A collision of the wanted kind.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Collision {
     /// The two spheres in ODE's numbers and order, x y z and radius each.
     pub spheres: [[f64; 4]; 2],
-    /// The average of its executions in nanoseconds, a clock's call for all of them included.
+    /// The average time of its executions in nanoseconds, including one reading of the clock for all of them.
     pub nanoseconds: f64,
 }
 
 /// The result of a run of the benchmark.
 #[derive(Clone, Debug)]
 pub struct Recording {
-    /// The collisions that count, in the order they were met.
+    /// The collisions of the wanted kind, in the order in which they occurred.
     pub collisions: Vec<Collision>,
-    /// Steps done before the last collision was met, in all runs together.
+    /// The total number of steps before the last collision, in all runs together.
     pub steps: usize,
-    /// What a measurement of nothing takes, in nanoseconds. Each collision's average has this, divided by the
-    /// executions, in it.
+    /// The time of an empty measurement, in nanoseconds. Each collision's average includes this time, divided by the
+    /// executions.
     pub clock_ns: f64,
 }
 
 impl Benchmark {
-    /// The paper's for Figure 6: real collisions in the diamond of hMax 3 and dSph 0, each executed 10 times.
+    /// The paper's settings for Figure 6: real collisions in the diamond of hMax 3 and dSph 0, each executed 10 times.
     pub const fn paper(collisions: usize) -> Self {
         let diamond = Diamond::new(3, 0.0);
         let (steps_of_a_run, most_steps) = (1000, 100_000);
@@ -97,7 +97,7 @@ impl Benchmark {
         Ok(Recording { collisions, steps, clock_ns })
     }
 
-    /// Collides the candidates of a step, and records those of the kind until there are enough.
+    /// Collides the candidates of a step, and records those of the wanted kind until there are enough.
     fn measure(&self, simulation: &Simulation, collisions: &mut Vec<Collision>) -> Result<Vec<Touch>, Error> {
         let world = simulation.world();
         let executions = self.executions.max(1);
@@ -121,7 +121,7 @@ impl Benchmark {
             };
             let spheres = [sphere(first), sphere(second)];
             if touch {
-                // SAFETY: ODE has just said there is a contact.
+                // SAFETY: ODE has just reported a contact.
                 let contact = unsafe { room.contact() };
                 touches.push(Touch { first, second, contact });
             }
@@ -133,8 +133,8 @@ impl Benchmark {
     }
 }
 
-/// Which way a pair went through ODE's collider, which does not say. It tells coincident centres by their rounded
-/// distance, which is 0 exactly when the rounded sum of squares is.
+/// The flow of a pair through ODE's collider, which does not report it. ODE tests for coincident centres by their
+/// rounded distance, which is 0 exactly if the rounded sum of squares is.
 fn flow(touch: bool, [[x1, y1, z1, _], [x2, y2, z2, _]]: [[f64; 4]; 2]) -> Flow {
     let (x, y, z) = (x1 - x2, y1 - y2, z1 - z2);
     match touch {
@@ -150,14 +150,14 @@ impl Recording {
         self.first(count).iter().map(|collision| collision.nanoseconds).sum()
     }
 
-    /// The first `count` collisions as the pairs that an engine gets: each number rounded to binary32 once.
+    /// The first `count` collisions as an engine gets them: each number is rounded to binary32 once.
     pub fn pairs(&self, count: usize) -> Vec<PairRecord> {
         let narrow = |sphere: [f64; 4]| sphere.map(|v| v as f32);
         let record = |c: &Collision| PairRecord::from_spheres(narrow(c.spheres[0]), narrow(c.spheres[1]));
         self.first(count).iter().map(record).collect()
     }
 
-    /// The first `count` collisions, or all of them where there are fewer.
+    /// The first `count` collisions, or all of them if there are fewer.
     fn first(&self, count: usize) -> &[Collision] {
         &self.collisions[..count.min(self.collisions.len())]
     }

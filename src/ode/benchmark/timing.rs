@@ -1,21 +1,21 @@
-//! Timing something many times over.
+//! Times a piece of work many times.
 
 use std::time::{Duration, Instant};
 
-/// Shorter than this, a piece of work is repeated between two looks at the clock.
+/// Work shorter than this is repeated between two readings of the clock.
 const LONG_ENOUGH: Duration = Duration::from_micros(50);
 
 /// The time of a piece of work, in nanoseconds. On a shared machine the minimum is the most meaningful.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timing {
-    /// The shortest.
+    /// The minimum.
     pub least_ns: f64,
     /// The median.
     pub median_ns: f64,
 }
 
 impl Timing {
-    /// Times `work` in `passes` passes, at least one, after one that warms up.
+    /// Times `work` in `passes` passes, at least one, after a warm-up pass.
     pub(super) fn of(passes: usize, mut work: impl FnMut()) -> Self {
         let mut time = |repeats: u32| {
             let begin = Instant::now();
@@ -37,7 +37,7 @@ impl Timing {
     }
 }
 
-/// The time between two readings of the clock with nothing between them: the median of many.
+/// The time between two consecutive readings of the clock: the median of many.
 pub(super) fn clock_ns() -> f64 {
     let looks: Vec<f64> = (0..1001).map(|_| Instant::now().elapsed().as_nanos() as f64).collect();
     Timing::from_passes(looks).median_ns

@@ -1,5 +1,5 @@
 //! Roots for numbers that arrive a few cycles apart: a digit recurrence in which one rank of registers does several
-//! steps, one or a few per cycle, instead of one rank for each step.
+//! steps, one or a few per cycle, instead of one rank per step.
 
 mod rank;
 mod recip;
@@ -16,13 +16,13 @@ use super::{Domain, Operator};
 use crate::hdl::{BuildErrors, DelayModel, Module};
 use crate::number::Roots;
 
-/// A correctly rounded root, [`Operator::Recip`] or [`Operator::Sqrt`], for one number every `interval` cycles at most;
-/// nothing for other operators.
+/// A correctly rounded root, [`Operator::Recip`] or [`Operator::Sqrt`], for at most one number every `interval` cycles.
+/// `None` for other operators.
 ///
-/// Beside `a` and `result` it has an input `phase` of `interval` bits: bit k is set k cycles after a number has come,
-/// and every `interval` cycles from then on. The result is there [`Module::latency`] cycles after the number, for one
-/// cycle; it is the [`pipelined`](super::pipelined) operator's, bit for bit. `area` says which of several is the
-/// smallest.
+/// Besides `a` and `result` it has an input `phase` of `interval` bits. Bit k is set k cycles after a number arrived,
+/// and every `interval` cycles from then on. The result is available [`Module::latency`] cycles after the number, for
+/// one cycle. It is the same as the [`pipelined`](super::pipelined) operator's, bit for bit. `area` decides which of
+/// several variants is the smallest.
 ///
 /// # Errors
 /// Returns the first error that a graph recorded, or an error if it cannot be cut for the clock.

@@ -1,4 +1,4 @@
-//! Ranks of a recurrence: each has a number for as many cycles as the interval allows, and hands it on.
+//! Ranks of a recurrence: each holds a number for as many cycles as the interval allows, and passes it on.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use crate::operator::Operator;
 /// More steps than this in one cycle are never worth it.
 const MOST_STEPS: u32 = 8;
 
-/// The smallest by `area` of those that do one step a cycle, two, and so on as far as the clock allows.
+/// The smallest by `area` of the variants with one, two or more steps per cycle, as far as the clock allows.
 ///
 /// # Errors
 /// Returns the first error that a graph recorded, or an error if it cannot be cut for the clock.
@@ -33,7 +33,7 @@ pub(super) fn smallest(
             best = Some(module);
         }
     }
-    // One step a cycle is always there.
+    // The variant with one step per cycle always exists.
     best.ok_or_else(|| BuildErrors(Vec::new()))
 }
 
@@ -107,7 +107,7 @@ impl Unit<'_> {
                 .enumerate()
                 .map(|(index, value)| graph.data_register(&format!("state_{rank}_{index}"), value.width()))
                 .collect();
-            // In a rank's last cycle fewer steps may be left.
+            // In a rank's last cycle, fewer steps may be left.
             let cycles = (end - begun).div_ceil(at_once);
             let last = end - begun - (cycles - 1) * at_once;
             let mut now: Vec<_> = registers.iter().map(|register| register.value()).collect();

@@ -1,4 +1,4 @@
-//! Reciprocal: the state is the partial remainder and the digits so far, complemented; the divisor stays.
+//! Reciprocal: the state is the partial remainder and the complemented digits so far. The divisor does not change.
 
 use super::recurrence::Recurrence;
 use crate::hdl::Signal;
@@ -6,7 +6,7 @@ use crate::operator::div::Step;
 use crate::operator::parts::Operand;
 use crate::operator::{Domain, recip};
 
-/// 1 / a, as [`recip::recip`] has it.
+/// 1 / a, as in [`recip::recip`].
 pub(super) struct Reciprocal {
     pub domain: Domain,
 }
@@ -16,7 +16,7 @@ impl Recurrence for Reciprocal {
         self.domain
     }
 
-    /// A digit a step.
+    /// One digit per step.
     fn steps(&self) -> u32 {
         recip::digits(self.domain)
     }

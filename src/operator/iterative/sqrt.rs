@@ -1,17 +1,17 @@
-//! Square root: the state is the remainder, the root so far, and what is left of the radicand.
+//! Square root: the state is the remainder, the root so far, and the rest of the radicand.
 
 use super::recurrence::Recurrence;
 use crate::hdl::Signal;
 use crate::operator::parts::Operand;
 use crate::operator::{Domain, sqrt};
 
-/// √a, as [`sqrt::sqrt`] has it.
+/// √a, as in [`sqrt::sqrt`].
 pub(super) struct Root {
     pub domain: Domain,
 }
 
 impl Root {
-    /// Bits of the radicand behind its first two that are not zero by themselves, a step taking two.
+    /// The number of bits after the first two of the radicand that may be set. A step takes two bits.
     fn rest_bits(&self) -> u32 {
         (self.domain.significand_bits() - 1).next_multiple_of(2)
     }
@@ -36,7 +36,7 @@ impl Recurrence for Root {
     }
 
     fn fit<'g>(&self, state: &[Signal<'g>], first: u32, end: u32) -> Vec<Signal<'g>> {
-        // Nobody hands on the first digit.
+        // The first digit is not passed on.
         let one = [state[0], state[0].graph().constant(1, 1), state[1]];
         let state = if first == 0 { &one } else { state };
         let mut fitted = vec![state[0].extend(end + 2), state[1].extend(end + 1)];
@@ -48,7 +48,7 @@ impl Recurrence for Root {
     fn step<'g>(&self, state: &[Signal<'g>], _: &[Signal<'g>], index: u32) -> Vec<Signal<'g>> {
         let (remainder, root, rest) = (state[0], state[1], state.get(2).copied());
         let graph = root.graph();
-        // With the root so far r and the remainder m, a digit 1 takes 4r + 1 from 4m + the next two bits.
+        // With the root so far r and the remainder m, a digit 1 subtracts 4r + 1 from 4m + the next two bits.
         let shifted = remainder.concat(rest.map_or_else(|| graph.constant(2, 0), |rest| rest.high(2)));
         let trial = root.concat(graph.constant(2, 1)).extend(shifted.width());
         let difference = (shifted - trial).named(&format!("difference_{index}"));

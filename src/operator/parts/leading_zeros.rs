@@ -2,10 +2,10 @@
 
 use crate::hdl::Signal;
 
-/// The number of leading zeros of `value` (at least 2 bits), and whether all its bits are clear. Values inside are
-/// named after `name` and the bits of `value` they tell of.
+/// The number of leading zeros of `value` (at least 2 bits), and whether all its bits are clear. Inner values are named
+/// after `name` and the bits of `value` that they describe.
 ///
-/// The count has ⌈log2 width⌉ bits; of a value with all bits clear it is width − 1.
+/// The count has ⌈log2 width⌉ bits. For a value with all bits clear it is width − 1.
 #[track_caller]
 pub fn leading_zeros<'g>(value: Signal<'g>, name: &str) -> (Signal<'g>, Signal<'g>) {
     let clear = value.is_zero().named(&format!("{name}_is_zero"));

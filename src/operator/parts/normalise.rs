@@ -1,5 +1,5 @@
-//! A value's leading one brought to the top: counted and shifted in the same steps, which takes less logic than a count
-//! and a shifter behind it.
+//! Moves a value's leading one to the top. Counting and shifting use the same steps, which takes less logic than a
+//! count followed by a shifter.
 
 use crate::hdl::Signal;
 
@@ -8,7 +8,7 @@ use crate::hdl::Signal;
 pub struct Normalised<'g> {
     /// As wide as the value; the top bit is set unless the value is zero.
     pub value: Signal<'g>,
-    /// The number of leading zeros; for zero the largest count.
+    /// The number of leading zeros; for zero, the largest count.
     pub zeros: Signal<'g>,
 }
 

@@ -1,4 +1,4 @@
-//! An operand taken apart: sign, exponent, significand and what kind of value it is.
+//! The fields of an operand: sign, exponent, significand and the class of its value.
 
 use super::{Signed, leading_zeros, shift_left};
 use crate::hdl::Signal;
@@ -11,9 +11,9 @@ pub struct Operand<'g> {
     domain: Domain,
     /// The sign bit.
     pub sign: Signal<'g>,
-    /// The biased exponent as it stands in the word.
+    /// The biased exponent field.
     pub exponent: Signal<'g>,
-    /// The fraction as it stands in the word.
+    /// The fraction field.
     pub fraction: Signal<'g>,
     /// The leading bit of the significand: clear for zeros and subnormals.
     pub hidden: Signal<'g>,
@@ -50,7 +50,7 @@ impl<'g> Operand<'g> {
         self.name(self.exponent.concat(self.fraction), "magnitude")
     }
 
-    /// One bit: reads as zero. Where subnormals are flushed they do.
+    /// One bit: reads as zero, as subnormals do if they are flushed.
     #[track_caller]
     pub fn is_zero(&self) -> Signal<'g> {
         let zero = if self.domain.keeps_subnormals() { !self.hidden & self.fraction.is_zero() } else { !self.hidden };
@@ -106,19 +106,19 @@ impl<'g> Operand<'g> {
         self.name(self.exponent.drop_low(1).concat(low), "effective_exponent")
     }
 
-    /// Biased exponent and significand with the leading bit set, as if the exponent had no lower end. Only for what
-    /// is neither zero nor special.
+    /// Biased exponent and significand with the leading bit set, as if the exponent had no lower limit. Only for values
+    /// that are neither zero nor special.
     #[track_caller]
     pub fn normalised(&self) -> (Signed<'g>, Signal<'g>) {
         self.normalised_for(self.domain.bias())
     }
 
-    /// The same with the exponent for another bias. That of zero is then the smallest there is, if subnormals count,
-    /// and its significand is zero.
+    /// The same with the exponent for another bias. If subnormals count, zero has the smallest exponent and the
+    /// significand zero.
     #[track_caller]
     pub fn normalised_for(&self, bias: i32) -> (Signed<'g>, Signal<'g>) {
         let largest = i64::from(self.domain.special_exponent()) - 1;
-        // Added here, where there is time, and not behind the count of zeros.
+        // Added here, where there is time, and not after the count of zeros.
         let exponent = Signed::unsigned(self.effective_exponent(), 1, largest);
         let exponent = match i64::from(bias - self.domain.bias()) {
             0 => exponent,

@@ -5,7 +5,7 @@ use crate::hdl::Signal;
 /// The widest unsigned factor of one tile: multipliers of 18 × 18 bits are common to FPGA families.
 const TILE: u32 = 18;
 
-/// The whole product of two factors of equal width.
+/// The full product of two factors of equal width.
 ///
 /// Both are cut into equal digits. Tiles of digits with the same distance lie side by side without overlap, so
 /// they make one row; the rows are summed in a tree.
@@ -22,7 +22,7 @@ pub fn product<'g>(a: Signal<'g>, b: Signal<'g>) -> Signal<'g> {
     total(rows, 2 * width)
 }
 
-/// The whole square: as the product, with each pair of mirrored tiles made once and doubled.
+/// The full square: as the product, with each pair of mirrored tiles computed once and doubled.
 #[track_caller]
 pub fn square(a: Signal<'_>) -> Signal<'_> {
     let width = a.width();
@@ -34,13 +34,13 @@ pub fn square(a: Signal<'_>) -> Signal<'_> {
     total(rows, 2 * width)
 }
 
-/// How many of the low bits of a [`product`] of factors that wide, or of a [`square`], are one tile's own: they are
-/// there before the rows are summed.
+/// The number of low bits of a [`product`] of factors of this width, or of a [`square`], that come from one tile. They
+/// are available before the rows are summed.
 pub fn settled_bits(width: u32) -> u32 {
     if width > digit_width(width) { digit_width(width) } else { 0 }
 }
 
-/// The whole product of two factors of any width, the second of at most one tile's: tiles are named after `name`.
+/// The full product of two factors of any width, the second at most as wide as one tile. Tiles are named after `name`.
 #[track_caller]
 pub fn product_of<'g>(a: Signal<'g>, b: Signal<'g>, name: &str) -> Signal<'g> {
     let digit = digit_width(a.width());
@@ -51,7 +51,7 @@ pub fn product_of<'g>(a: Signal<'g>, b: Signal<'g>, name: &str) -> Signal<'g> {
     total(digits(a).into_iter().enumerate().map(tile).collect(), a.width() + b.width()).named(name)
 }
 
-/// The low `width` bits of a product of factors of any width: what lies above them is not made. Tiles are named after
+/// The low `width` bits of a product of factors of any width. The bits above are not computed. Tiles are named after
 /// `name`.
 #[track_caller]
 pub fn product_low<'g>(a: Signal<'g>, b: Signal<'g>, width: u32, name: &str) -> Signal<'g> {
@@ -61,7 +61,7 @@ pub fn product_low<'g>(a: Signal<'g>, b: Signal<'g>, width: u32, name: &str) -> 
     total(rows, width)
 }
 
-/// The same of a square: each pair of mirrored tiles is made once and doubled.
+/// The same for a square: each pair of mirrored tiles is computed once and doubled.
 #[track_caller]
 pub fn square_low<'g>(a: Signal<'g>, width: u32, name: &str) -> Signal<'g> {
     let a = whole_digits(a);
@@ -70,13 +70,14 @@ pub fn square_low<'g>(a: Signal<'g>, width: u32, name: &str) -> Signal<'g> {
     total(rows, width)
 }
 
-/// Digits as wide as a tile: what is left over is in the last one, of whose tiles the low bits need little.
+/// Digits as wide as a tile. The last one has the rest, and the low bits need few of its tiles.
 fn whole_digits(value: Signal<'_>) -> Vec<Signal<'_>> {
     let width = value.width();
     (0..width).step_by(TILE as usize).map(|low| value.slice(low, TILE.min(width - low))).collect()
 }
 
-/// The product of two digits, each with its place, as far as it is below `width`; doubled by so many places.
+/// The product of two digits, each with its place, as far as it is below `width`, shifted left by this number of
+/// places.
 fn low_tile<'g>(
     (i, a): (usize, Signal<'g>),
     (j, b): (usize, Signal<'g>),
@@ -117,7 +118,7 @@ fn row<'g>(a: &[Signal<'g>], b: &[Signal<'g>], first: [usize; 2]) -> Signal<'g> 
     Signal::join(&row).named(&format!("tiles_{i}_{j}"))
 }
 
-/// Sum of the rows in a tree: neighbours first, and the highest ones, which leave most of the bits alone.
+/// Sum of the rows in a tree: neighbours first, and the highest ones, which leave most bits unchanged.
 fn total<'g>(mut rows: Vec<Row<'g>>, width: u32) -> Signal<'g> {
     rows.sort_by_key(|row| row.offset);
     while rows.len() > 1 {
@@ -128,11 +129,11 @@ fn total<'g>(mut rows: Vec<Row<'g>>, width: u32) -> Signal<'g> {
     bits.append_zeros(offset).extend(width)
 }
 
-/// a + b, where b's offset is not the smaller one. The bits of `a` below `b` pass by the adder.
+/// a + b, where b's offset is not smaller than a's. The bits of `a` below `b` bypass the adder.
 fn sum<'g>(a: Row<'g>, b: Row<'g>, width: u32) -> Row<'g> {
     let skipped = b.offset - a.offset;
     let end = (a.offset + a.bits.width()).max(b.offset + b.bits.width());
-    // One more bit for the carry, but never more than the whole product has.
+    // One more bit for the carry, but never more than the full product has.
     let adder = (end + 1).min(width) - b.offset;
     let upper = if skipped < a.bits.width() { Some(a.bits.drop_low(skipped)) } else { None };
     let high = match upper {

@@ -1,4 +1,4 @@
-//! Rounding, and the ends of the range.
+//! Rounding, and results at the ends of the range.
 
 use super::{Signed, capped, distance_bits, shift_right_sticky};
 use crate::hdl::Signal;
@@ -7,15 +7,15 @@ use crate::operator::Domain;
 /// A result before rounding: significand.guard sticky · 2^exponent, with the leading bit of the significand set.
 #[derive(Clone, Copy)]
 pub struct Unrounded<'g> {
-    /// The biased exponent, as if it had no ends.
+    /// The biased exponent, as if it had no limits.
     pub exponent: Signed<'g>,
     /// As many bits as the format's significand.
     pub significand: Signal<'g>,
     /// The next bit.
     pub guard: Signal<'g>,
-    /// Whether anything is set below that one.
+    /// Set if any bit below the guard bit is set.
     pub sticky: Signal<'g>,
-    /// One bit: the exponent is one more than said, which the adder that rounds can see to.
+    /// One bit: the exponent is one more than `exponent`. The adder that rounds can add it.
     pub doubled: Option<Signal<'g>>,
 }
 
@@ -38,15 +38,15 @@ impl Unrounded<'_> {
 pub struct Fields<'g> {
     /// The exponent field.
     pub exponent: Signal<'g>,
-    /// The fraction field, cut off.
+    /// The fraction field, truncated.
     pub fraction: Signal<'g>,
     /// The next bit.
     pub guard: Signal<'g>,
-    /// Whether anything is set below that one.
+    /// Set if any bit below the guard bit is set.
     pub sticky: Signal<'g>,
-    /// One bit: the exponent is one more than said. Only where results are normal and rounded to nearest.
+    /// One bit: the exponent is one more than `exponent`. Only if results are normal and rounded to nearest.
     pub doubled: Option<Signal<'g>>,
-    /// Rounds off what lies below the fraction.
+    /// The rounding of the bits below the fraction.
     pub rounding: Rounding,
     /// One bit: too large for the format.
     pub overflow: Signal<'g>,
@@ -54,14 +54,14 @@ pub struct Fields<'g> {
     pub underflow: Signal<'g>,
 }
 
-/// Rounds off what does not fit.
+/// The treatment of bits that do not fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rounding {
     /// To the nearest, ties to even.
     NearestEven,
-    /// Toward zero: what does not fit is dropped.
+    /// Toward zero: they are dropped.
     TowardZero,
-    /// To odd: what does not fit sets the last bit of what does.
+    /// To odd: they set the last bit that fits.
     Odd,
 }
 
@@ -72,7 +72,7 @@ fn rounds_up<'g>(fraction: Signal<'g>, guard: Signal<'g>, sticky: Signal<'g>) ->
 }
 
 impl<'g> Fields<'g> {
-    /// These fields where `condition` (1 bit) is set, else zero, which rounding leaves alone.
+    /// These fields if `condition` (1 bit) is set, otherwise zero, which rounding does not change.
     pub fn gate(self, condition: Signal<'g>) -> Self {
         Self {
             exponent: self.exponent.gate(condition),
@@ -81,15 +81,15 @@ impl<'g> Fields<'g> {
         }
     }
 
-    /// Another fraction where `condition` is not set, with nothing below it.
+    /// Another fraction if `condition` is not set, with nothing below it.
     pub fn with_fraction(self, fraction: Signal<'g>, condition: Signal<'g>) -> Self {
-        // To nearest the guard bit decides alone, toward zero nothing below counts.
+        // To nearest, the guard bit decides alone. Toward zero, nothing below the fraction counts.
         let sticky = if self.rounding == Rounding::Odd { self.sticky & condition } else { self.sticky };
         Self { fraction, guard: self.guard & condition, sticky, ..self }
     }
 
-    /// {exponent, fraction}, rounded. A carry out of the fraction makes the exponent one more, which is right; out of
-    /// the largest finite number it makes infinity.
+    /// {exponent, fraction}, rounded. A carry out of the fraction correctly increments the exponent. From the largest
+    /// finite number it gives infinity.
     #[track_caller]
     pub fn rounded(self) -> Signal<'g> {
         let Self { exponent, fraction, guard, sticky, .. } = self;
@@ -97,7 +97,7 @@ impl<'g> Fields<'g> {
             Rounding::NearestEven => {
                 let truncated = exponent.concat(fraction).named("truncated");
                 let up = rounds_up(fraction, guard, sticky);
-                // The adder that rounds also makes the exponent one more.
+                // The adder that rounds also increments the exponent.
                 let increment = match self.doubled {
                     Some(doubled) => {
                         let doubled = doubled.extend(exponent.width());
@@ -116,7 +116,7 @@ impl<'g> Fields<'g> {
     }
 }
 
-/// Rounds in one of the ways there are.
+/// Rounds in the given mode.
 #[track_caller]
 pub fn round<'g>(domain: Domain, value: Unrounded<'g>, rounding: Rounding) -> Fields<'g> {
     let never = value.guard.same(0);
@@ -145,7 +145,7 @@ pub fn round<'g>(domain: Domain, value: Unrounded<'g>, rounding: Rounding) -> Fi
         let (exponent, fraction, guard, sticky) = denormalise(domain, value, never);
         return Fields { exponent, fraction, guard, sticky, ..fields };
     }
-    // Just below the smallest normal number a result can still be rounded up to it.
+    // Just below the smallest normal number, a result may still be rounded up to it.
     let too_small = match rounding {
         Rounding::NearestEven => {
             let up = rounds_up(fields.fraction, value.guard, value.sticky);
@@ -162,8 +162,8 @@ pub fn overflow<'g>(domain: Domain, value: Unrounded<'g>) -> Signal<'g> {
     value.exponent.at_least(i64::from(domain.special_exponent())).named("overflow")
 }
 
-/// Moves a significand whose exponent is below the smallest normal one to the right, and one that is `gone` out of
-/// sight. Gives exponent field, fraction, guard and sticky.
+/// Shifts a significand whose exponent is below the smallest normal one to the right, and a significand that is `gone`
+/// out completely. Returns exponent field, fraction, guard and sticky.
 pub fn denormalise<'g>(
     domain: Domain,
     value: Unrounded<'g>,
@@ -174,9 +174,9 @@ pub fn denormalise<'g>(
     let missing_bits = 64 - (1 - value.exponent.min()).leading_zeros();
     let moved = value.significand.concat(value.guard);
     let places = capped(missing.bits(missing_bits).named("missing_places"), moved.width(), "missing_places_capped");
-    // What is negative is not missing; what is zero does not move anything. Neither waits for `is_subnormal`.
+    // A negative value is not missing, and zero does not move. Neither waits for `is_subnormal`.
     let mut distance = places.gate(!missing.is_negative());
-    // The distance can see to what is gone, unless it is too short for that.
+    // The distance can also shift out what is gone, unless it has too few bits.
     let is_enough = distance.width() == distance_bits(moved.width());
     if is_enough {
         distance = distance | gone.repeat(distance.width());

@@ -2,7 +2,7 @@
 
 use crate::hdl::Signal;
 
-/// `value` shifted left by `distance`; what leaves at the top is lost. Steps are named as in `name_by_8`.
+/// `value` shifted left by `distance`. Bits that leave at the top are lost. Steps are named as in `name_by_8`.
 #[track_caller]
 pub fn shift_left<'g>(value: Signal<'g>, distance: Signal<'g>, name: &str) -> Signal<'g> {
     let width = value.width();
@@ -31,14 +31,14 @@ pub fn shift_right_sticky<'g>(value: Signal<'g>, distance: Signal<'g>, name: &st
     (shifted, sticky)
 }
 
-/// Bits of a distance of which the largest moves a value of `width` bits out whole.
+/// The number of bits of a distance whose largest value shifts out all of a value of `width` bits.
 pub fn distance_bits(width: u32) -> u32 {
     u32::BITS - width.leading_zeros()
 }
 
-/// A distance in the bits that a value of `width` bits needs: one that moves it out whole and does not fit in them
-/// becomes the largest that does, which moves it out as well. So what is far costs a gate for each bit of the distance,
-/// not of the value. The result is named where it is not the distance itself.
+/// A distance in the bits that a value of `width` bits needs. A distance that shifts everything out and does not fit
+/// becomes the largest that fits, which also shifts everything out. So this costs a gate per bit of the distance, not
+/// per bit of the value. The result is named if it differs from the distance.
 #[track_caller]
 pub fn capped<'g>(distance: Signal<'g>, width: u32, name: &str) -> Signal<'g> {
     let levels = distance_bits(width);
@@ -49,7 +49,7 @@ pub fn capped<'g>(distance: Signal<'g>, width: u32, name: &str) -> Signal<'g> {
     (distance.low(levels) | far.repeat(levels)).named(name)
 }
 
-/// How far a level of the shifter moves; beyond any width from the 31st bit on.
+/// The number of places that a level of the shifter moves; more than any width from the 31st bit on.
 fn step(level: u32) -> u32 {
     1_u32.checked_shl(level).unwrap_or(u32::MAX)
 }

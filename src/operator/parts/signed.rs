@@ -2,16 +2,17 @@
 
 use crate::hdl::Signal;
 
-/// A two's complement value and the range it is known to stay in while the operands are finite and not zero.
+/// A two's complement value and its known range, for operands that are finite and not zero.
 ///
-/// The range decides the width, and whether overflow or underflow can happen at all: logic for what cannot happen is
-/// never made. For special operands the value may wrap; the result is then chosen by [`super::Special`].
+/// The range decides the width, and whether overflow or underflow can happen. Logic for what cannot happen is not
+/// built. For special operands the value may wrap, and [`super::Special`] then selects the result.
 #[derive(Clone, Copy)]
 pub struct Signed<'g> {
     bits: Signal<'g>,
     min: i64,
     max: i64,
-    /// What it is by a constant more than, and that constant: another constant is then one step from there, not two.
+    /// The value that this one exceeds by a constant, and that constant. Another constant is then one addition from
+    /// there, not two.
     offset_from: Option<(Signal<'g>, i64)>,
 }
 
@@ -29,7 +30,7 @@ impl<'g> Signed<'g> {
         Self { bits: field.extend(width), min, max, offset_from: None }
     }
 
-    /// The same value where more is known of its range than its making tells.
+    /// The same value with a smaller range, which its construction does not show.
     #[must_use]
     pub fn with_range(self, min: i64, max: i64) -> Self {
         let width = width_for(min, max);
@@ -90,7 +91,7 @@ impl<'g> Signed<'g> {
         }
     }
 
-    /// Less `bias` + 1, which is a power of two: the bits below it stay.
+    /// Minus `bias` + 1, which is a power of two, so the bits below it do not change.
     #[track_caller]
     #[must_use]
     pub fn minus_bias_and_one(self, bias: i32) -> Self {
@@ -130,7 +131,7 @@ impl<'g> Signed<'g> {
     pub fn subtracted_from(self, from: i64) -> Self {
         let (min, max) = (from - self.max, from - self.min);
         let (bits, by) = self.offset_from.unwrap_or((self.bits, 0));
-        // What it is offset from may be wider than what comes out.
+        // The value that it is an offset of may be wider than the result.
         let width = width_for(min, max);
         let subtrahend = Self { bits, ..self }.bits(width);
         Self { bits: self.constant(width, from - by) - subtrahend, min, max, offset_from: None }
@@ -179,7 +180,7 @@ impl<'g> Signed<'g> {
         }
     }
 
-    /// Of a value that is not negative, to be compared with more than zero. A power of two and one less need no
+    /// The comparison for a bound above zero and a value that is not negative. A power of two and one less need no
     /// subtraction.
     fn magnitude_at_least(self, bound: u64) -> Signal<'g> {
         let low = bound.trailing_ones();

@@ -1,4 +1,4 @@
-//! A result put together: what rounding makes of it, or a special value.
+//! Assembles a result: the rounded value, or a special value.
 
 use super::round::{denormalise, overflow};
 use super::{Fields, Rounding, Unrounded, round};
@@ -16,8 +16,8 @@ pub struct Special<'g> {
     pub zero: Signal<'g>,
 }
 
-/// The result's word: rounded as the format says, with gradual underflow or flushing as it has it, or special. What the
-/// exponent's range excludes costs nothing.
+/// The result's word: rounded as the format says, with gradual underflow or flushing, or special. Cases that the
+/// exponent's range excludes cost nothing.
 #[track_caller]
 pub fn result<'g>(domain: Domain, sign: Signal<'g>, value: Unrounded<'g>, special: Special<'g>) -> Signal<'g> {
     let rounding = domain.rounding();
@@ -26,7 +26,7 @@ pub fn result<'g>(domain: Domain, sign: Signal<'g>, value: Unrounded<'g>, specia
     }
     let value = value.exact_exponent();
     let chosen = Chosen::of(domain, special, overflow(domain, value), value.guard.same(0));
-    // What is special is moved out whole, and nothing is left to round.
+    // A special result is shifted out completely, so that nothing is left to round.
     let (exponent, fraction, guard, sticky) = denormalise(domain, value, chosen.is_special);
     let exponent = chosen.is_special.select(chosen.exponent, exponent).named("exponent_field");
     let fraction = (fraction.msb() | chosen.nan).concat(fraction.low(fraction.width() - 1));
@@ -36,7 +36,7 @@ pub fn result<'g>(domain: Domain, sign: Signal<'g>, value: Unrounded<'g>, specia
     (sign & !chosen.nan).named("sign").concat(fields.rounded())
 }
 
-/// The word of what is to be rounded, or special. Where results are normal only `zero` counts.
+/// The word of a rounded or special result. If results are normal, only `zero` counts.
 #[track_caller]
 pub fn pack<'g>(domain: Domain, sign: Signal<'g>, fields: Fields<'g>, special: Special<'g>) -> Signal<'g> {
     if domain.is_normal() {
@@ -45,7 +45,7 @@ pub fn pack<'g>(domain: Domain, sign: Signal<'g>, fields: Fields<'g>, special: S
     }
     let Chosen { is_special, nan, exponent, fraction } = Chosen::of(domain, special, fields.overflow, fields.underflow);
     let magnitude = if fields.underflow.as_constant() == Some(0) {
-        // Chosen before rounding, where there is time: behind the adder it would be a stage of its own.
+        // Selected before rounding, where there is time. After the adder it would need another stage.
         let exponent = is_special.select(exponent, fields.exponent).named("exponent_field");
         let fraction = is_special.select(fraction, fields.fraction).named("fraction_field");
         Fields { exponent, ..fields.with_fraction(fraction, !is_special) }.rounded()
@@ -58,7 +58,7 @@ pub fn pack<'g>(domain: Domain, sign: Signal<'g>, fields: Fields<'g>, special: S
 
 /// The special value of a result, and its fields.
 struct Chosen<'g> {
-    /// One bit: any at all.
+    /// One bit: the result is special.
     is_special: Signal<'g>,
     nan: Signal<'g>,
     exponent: Signal<'g>,
@@ -68,7 +68,7 @@ struct Chosen<'g> {
 impl<'g> Chosen<'g> {
     fn of(domain: Domain, special: Special<'g>, overflow: Signal<'g>, underflow: Signal<'g>) -> Self {
         let nan = special.nan.named("is_nan");
-        // A zero operand leaves nonsense in the exponent, which may look like an overflow; so does an infinity.
+        // For a zero operand, the exponent is meaningless and may look like an overflow. An infinity may, too.
         let overflow = overflow & !special.zero;
         let zero = (special.zero | underflow).named("is_zero");
         if domain.rounding() == Rounding::TowardZero {

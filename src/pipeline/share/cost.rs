@@ -2,25 +2,25 @@
 
 use crate::hdl::{Module, Node, NodeId, Op};
 
-/// A multiplier block, in tables: as scarce as that many in the devices at hand.
+/// The cost of a multiplier block in LUTs, because blocks are scarce in the supported devices.
 const BLOCK: u32 = 100;
-/// The widest operand of one.
+/// The widest operand of a multiplier block.
 const BLOCK_BITS: u32 = 18;
 
-/// The tables of a module.
+/// The LUTs of a module.
 pub(super) fn tables(module: &Module) -> u32 {
     let nodes: u32 = module.nodes.iter().map(|node| of(module, node)).sum();
     nodes + module.instances.iter().map(|instance| tables(&instance.module)).sum::<u32>()
 }
 
-/// The tables of a module and half its register bits: a table comes with a register, and few stand alone.
+/// The LUTs of a module plus half its register bits. A LUT comes with a register, and few registers stand alone.
 pub(super) fn area(module: &Module) -> u32 {
     tables(module) + registers(module) / 2
 }
 
 fn registers(module: &Module) -> u32 {
     let bits = |node: &Node| match node.op {
-        // A long delay is a memory of words of 16.
+        // A long delay is a memory of words of 16 bits.
         Op::Delay { cycles } => node.width * cycles.min(2 + cycles / 16),
         Op::Register { .. } | Op::MemoryRead { .. } => node.width,
         _ => 0,
@@ -39,7 +39,7 @@ fn of(module: &Module, node: &Node) -> u32 {
     let operand = || node.operands.first().map_or(0, width);
     match node.op {
         Op::Add | Op::Sub => node.width,
-        // Without a primitive the complement has look-up tables of its own.
+        // Without a primitive, the complement takes its own LUTs.
         Op::SubAdd => 2 * node.width,
         Op::Less => operand(),
         Op::Equal => operand() * 2 / 3,

@@ -1,4 +1,4 @@
-//! A kernel with a time table as a module: instances that take turns, choices before them, and values that wait.
+//! Turns a kernel with a time table into a module: shared instances, selections before them, and values that wait.
 
 use std::sync::Arc;
 
@@ -86,7 +86,7 @@ impl<'g> Emitter<'_, 'g> {
         &self.kinds.all[self.plan.instances[instance].kind]
     }
 
-    /// Instances with registers before them, not yet connected: results come back as operands.
+    /// Instances with registers before them. They are not connected yet, because results come back as operands.
     fn shared(&self) -> Vec<Shared<'g>> {
         let mut made: Vec<Shared<'g>> = Vec::new();
         for (instance, of) in self.plan.instances.iter().enumerate() {
@@ -110,7 +110,7 @@ impl<'g> Emitter<'_, 'g> {
         made
     }
 
-    /// Gives an instance the operands of each phase.
+    /// Connects an instance to the operands of each phase.
     fn connect(&self, chooser: &mut Chooser<'g>, shared: &Shared<'g>) {
         let places = &self.plan.instances[shared.instance].places;
         for (position, register) in shared.operands.iter().enumerate() {
@@ -139,7 +139,7 @@ impl<'g> Emitter<'_, 'g> {
         }
     }
 
-    /// A square's one operand is both of a product's.
+    /// The single operand of a square is both operands of a product.
     fn operand(&self, index: usize, position: usize) -> ValueId {
         let operands = &self.kernel.values[index].operands;
         operands[position.min(operands.len() - 1)]
@@ -153,7 +153,7 @@ impl<'g> Emitter<'_, 'g> {
         self.values[id.index()].as_ref()?.at(cycle)
     }
 
-    /// A value that is not a shared instance's, of operands that meet when it begins.
+    /// A value without a shared instance, from operands that meet when it begins.
     fn compute(&mut self, id: ValueId) -> Option<Signal<'g>> {
         let value = self.kernel.value(id);
         let start = self.plan.start[id.index()]?;
@@ -185,7 +185,7 @@ impl<'g> Emitter<'_, 'g> {
     }
 }
 
-/// With the other sign.
+/// The number with the opposite sign.
 fn negate(number: Signal<'_>) -> Signal<'_> {
     (!number.msb()).concat(number.low(number.width() - 1))
 }

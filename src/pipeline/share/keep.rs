@@ -1,22 +1,22 @@
-//! Values that wait: each is written down once in an interval, in a row of registers or in a memory.
+//! Values that wait: each is stored once per interval, in a row of registers or in a memory.
 
 use std::collections::{BTreeSet, HashMap};
 
 use crate::hdl::{Graph, Signal};
 
-/// From this number of registers in a row on, a memory is smaller.
+/// The longest row of registers. Beyond it, a memory is smaller.
 const LONGEST_ROW: u32 = 6;
 /// Narrower values always wait in registers.
 const NARROWEST_MEMORY: u32 = 12;
 
-/// The phase of the pair in hand.
+/// The phases of the present pair.
 pub(super) struct Phases<'g> {
     graph: &'g Graph,
-    /// One bit a phase: set in the cycles of that phase, from the first pair on.
+    /// One bit per phase: set in the cycles of that phase, from the first pair on.
     pub now: Vec<Signal<'g>>,
-    /// The same, a cycle early.
+    /// The same, one cycle early.
     pub next: Vec<Signal<'g>>,
-    /// Places in memories, by depth and by the phase in which they move: this one, and the one after it.
+    /// Places in memories, by depth and by the phase in which they advance: the present one, and the next one.
     places: HashMap<(u32, u32), [Signal<'g>; 2]>,
 }
 
@@ -39,13 +39,13 @@ impl<'g> Phases<'g> {
         self.now.len() as u32
     }
 
-    /// Bit k is set k cycles after that cycle of a pair.
+    /// Bit k is set k cycles after this cycle of a pair.
     pub fn since(&self, cycle: u32) -> Signal<'g> {
         let bits: Vec<_> = (0..self.interval()).rev().map(|later| self.at(cycle + later)).collect();
         Signal::join(&bits)
     }
 
-    /// Set in that cycle of a pair.
+    /// Set in this cycle of a pair.
     fn at(&self, cycle: u32) -> Signal<'g> {
         self.now[(cycle % self.interval()) as usize]
     }
@@ -65,7 +65,7 @@ impl<'g> Phases<'g> {
     }
 }
 
-/// One of the forms in which a value is there, and when.
+/// A stored form of a value, and the cycles in which it is available.
 #[derive(Clone, Copy)]
 struct Kept<'g> {
     signal: Signal<'g>,
@@ -73,12 +73,13 @@ struct Kept<'g> {
     last: u32,
 }
 
-/// A value from its first cycle on.
+/// A value from its first cycle on, in all its stored forms.
 #[derive(Clone)]
 pub(super) struct Keeper<'g>(Vec<Kept<'g>>);
 
 impl<'g> Keeper<'g> {
-    /// A value that is there by itself from cycle `ready` on for `stays` ≥ 1 cycles, and `wanted` in some others.
+    /// A value that is available without storage from cycle `ready` for `stays` ≥ 1 cycles, and is also `wanted` in
+    /// other cycles.
     pub fn new(
         phases: &mut Phases<'g>,
         name: &str,
@@ -95,18 +96,19 @@ impl<'g> Keeper<'g> {
         this
     }
 
-    /// The form in which it exists in `cycle`.
+    /// The form that is available in `cycle`.
     pub fn form(&self, cycle: u32) -> Option<usize> {
         self.0.iter().position(|kept| (kept.first..=kept.last).contains(&cycle))
     }
 
-    /// The value as it is there in `cycle`.
+    /// The value, as it is available in `cycle`.
     pub fn at(&self, cycle: u32) -> Option<Signal<'g>> {
         Some(self.0[self.form(cycle)?].signal)
     }
 }
 
-/// The next form of a value, on the way to `wanted`: written down in the last cycle in which the one before is there.
+/// The next stored form of a value, on the way to `wanted`. It is stored in the last cycle in which the form before is
+/// available.
 fn keep<'g>(phases: &mut Phases<'g>, name: &str, from: Kept<'g>, wanted: u32) -> Kept<'g> {
     let (graph, interval, width) = (phases.graph, phases.interval(), from.signal.width());
     let distance = wanted - from.last;
@@ -115,7 +117,7 @@ fn keep<'g>(phases: &mut Phases<'g>, name: &str, from: Kept<'g>, wanted: u32) ->
         register.next_if(phases.at(from.last), from.signal);
         return Kept { signal: register.value(), first: from.last + 1, last: from.last + interval };
     }
-    // Written at `place` while the word after it is read, which is the oldest; a read takes a cycle.
+    // The value is written at `place` while the next word, which is the oldest, is read. A read takes one cycle.
     let depth = 2 + (distance - 2) / interval;
     let [place, next] = phases.place(depth, from.last);
     let memory = graph.memory(&format!("{name}_words"), depth, width);

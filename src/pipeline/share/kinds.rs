@@ -10,40 +10,40 @@ use crate::operator::Operator;
 use crate::pipeline::kernel::{Kernel, Source};
 use crate::pipeline::range::{Ranges, Unit};
 
-/// Operations of one module.
+/// Operations that use the same module.
 pub(super) struct Kind {
     /// The unit that computes them.
     pub unit: Unit,
     pub module: Arc<Module>,
-    /// By value.
+    /// The operations, by value.
     pub uses: Vec<usize>,
     pub instances: u32,
 }
 
 impl Kind {
-    /// True if some instance serves more than one operation: its operands are then multiplexed and registered.
+    /// True if an instance serves several operations, so that its operands are multiplexed and registered.
     pub fn is_shared(&self) -> bool {
         (self.instances as usize) < self.uses.len()
     }
 
-    /// Cycles from operands to result.
+    /// Cycles from the operands to the result.
     pub fn latency(&self) -> u32 {
         u32::from(self.is_shared()) + self.module.latency
     }
 }
 
-/// All of a kernel's.
+/// All kinds of a kernel.
 pub(super) struct Kinds {
     pub all: Vec<Kind>,
-    /// The kind of each value that is an operator's and that some output needs.
+    /// For each value that is an operator's result and is used, its kind.
     pub of: Vec<Option<usize>>,
-    /// A second operand with its sign inverted: a difference as a sum.
+    /// True for a second operand whose sign is inverted, so that a difference becomes a sum.
     pub negated: Vec<bool>,
 }
 
 impl Kinds {
     /// # Errors
-    /// Returns an error if the library cannot make a unit.
+    /// Returns an error if the library cannot build a unit.
     pub fn of(kernel: &Kernel, interval: u32, library: &mut Library<'_>) -> Result<Self, BuildErrors> {
         let units = Ranges::of(kernel).units;
         let live = kernel.live();
@@ -60,7 +60,7 @@ impl Kinds {
             negated[index] = sum.is_some();
             uses.entry((sum.unwrap_or(operator), domain)).or_default().push(index);
         }
-        // Operations that a more general operator can do as well.
+        // Operations that a more general operator can also do.
         for (special, general) in [(Operator::AddMagnitudes, Operator::Add), (Operator::Square, Operator::Mul)] {
             merge(&mut uses, special, general, interval, library)?;
         }
@@ -82,14 +82,14 @@ impl Kinds {
     }
 }
 
-/// As few as the interval allows, unless choosing the operands costs more than the operators it saves.
+/// As few as the interval allows, unless selecting the operands costs more than the saved operators.
 fn instances(module: &Module, uses: u32, interval: u32) -> u32 {
     let fewest = uses.div_ceil(interval);
     let choices: u32 = module.ports.iter().filter(|port| !port.output).map(|port| choice(2, port.width)).sum();
     if choices < tables(module) { fewest } else { uses }
 }
 
-/// Takes `special` into `general`, of the same values, where that is smaller.
+/// Merges `special` into `general`, for the same values, if the result is smaller.
 fn merge(
     uses: &mut BTreeMap<Unit, Vec<usize>>,
     special: Operator,

@@ -1,5 +1,5 @@
-//! Random kernels: no instance is wanted twice in a phase, every operand is there when it is wanted, and what comes out
-//! is what the pipeline of an operator for each operation gives.
+//! Tests with random kernels: no instance is used twice in a phase, every operand is available when it is needed, and
+//! the outputs equal those of a pipeline with one operator per operation.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -15,7 +15,7 @@ use crate::pipeline::wire::{Bit, Wire};
 
 const INPUTS: [&str; 3] = ["a", "b", "c"];
 
-/// Some operations of values so far, and choices among them.
+/// Adds some operations on the values so far, and selections among them.
 fn kernel(random: &mut Xoshiro256PlusPlus, operations: usize) -> Kernel {
     let format: Format = "e5f6".parse().expect("a format");
     trace("random", |ports| {

@@ -1,9 +1,10 @@
-//! A kernel that takes a pair every few cycles: operators of one kind share as few instances as that allows.
+//! A kernel that takes a pair every few cycles: operators of one kind share as few instances as the interval allows.
 //!
-//! A pair's operations are placed once, by list scheduling modulo the interval: an operation that begins in cycle t
-//! takes its instance's place in phase t mod II, and since pairs come a multiple of II cycles apart, no other pair ever
-//! wants it. (B. R. Rau, "Iterative modulo scheduling", 1994; there is no recurrence here, so nothing is ever undone.)
-//! A value that waits is written down once in II cycles, not shifted in every one: that is where area falls.
+//! A pair's operations are placed once, by list scheduling modulo the interval. An operation that begins in cycle t
+//! takes its instance's place in phase t mod II. Pairs arrive a multiple of II cycles apart, so no other pair ever
+//! needs that place. (B. R. Rau, "Iterative modulo scheduling", 1994. There is no recurrence here, so no placement is
+//! ever undone.) A value that waits is stored once in II cycles and not shifted in every cycle, which is what saves
+//! area.
 
 mod cost;
 mod emit;
@@ -25,7 +26,7 @@ use super::range::Unit;
 use crate::hdl::{BuildErrors, DelayModel, Module};
 use crate::operator::{iterative, pipelined};
 
-/// Makes each operator's module once.
+/// Builds each operator's module once.
 struct Library<'a> {
     model: &'a DelayModel,
     clock_mhz: f64,
@@ -33,7 +34,7 @@ struct Library<'a> {
 }
 
 impl Library<'_> {
-    /// The one that does a number in an interval with less, if there is such.
+    /// The iterative unit that takes one number per interval and is smaller, if there is one.
     fn iterative(&self, unit: Unit, interval: u32) -> Result<Option<Arc<Module>>, BuildErrors> {
         iterative(unit.0, unit.1, self.model, self.clock_mhz, interval, cost::area)
     }
@@ -51,9 +52,9 @@ impl Library<'_> {
 impl Kernel {
     /// The kernel as a pipeline that takes new inputs every `interval` ≥ 2 cycles, with operators cut for `clock_mhz`.
     ///
-    /// It has one more input, `take`: set in the cycle before new inputs come. They come a multiple of `interval`
-    /// cycles after those before them, since the last reset, and stay for `interval` cycles. Outputs are there for one
-    /// cycle, [`Module::latency`] cycles after the first in which the inputs are.
+    /// It has one more input, `take`, which is set in the cycle before new inputs arrive. They arrive a multiple of
+    /// `interval` cycles after the previous ones, since the last reset, and stay for `interval` cycles. Outputs are
+    /// valid for one cycle, [`Module::latency`] cycles after the first cycle of the inputs.
     ///
     /// # Errors
     /// Returns the first error that a graph recorded, or an error if an operator cannot be cut for the clock.

@@ -1,11 +1,11 @@
-//! An instance's operand: one of several signals by the phase, registered.
+//! An instance's operand: one of several signals, selected by the phase, and registered.
 
 use std::collections::HashMap;
 
 use super::keep::Phases;
 use crate::hdl::{Graph, Signal};
 
-/// Makes choices, and the selections they share.
+/// Builds selections, and the select signals that they share.
 pub(super) struct Chooser<'g> {
     graph: &'g Graph,
     selections: HashMap<Vec<Option<usize>>, Signal<'g>>,
@@ -16,7 +16,7 @@ impl<'g> Chooser<'g> {
         Self { graph, selections: HashMap::new() }
     }
 
-    /// In each phase the signal that `by_phase` says, by its index in `signals`; in the others, any.
+    /// In each phase, the signal whose index in `signals` is in `by_phase`. In other phases, any signal.
     pub fn choose(
         &mut self,
         phases: &Phases<'g>,
@@ -39,7 +39,7 @@ impl<'g> Chooser<'g> {
     }
 }
 
-/// True if the choice of the next cycle has this bit.
+/// True if the selection in the next cycle has this bit set.
 fn wanted<'g>(graph: &'g Graph, phases: &Phases<'g>, by_phase: &[Option<usize>], bit: u32) -> Signal<'g> {
     let has = |index: &Option<usize>| index.is_some_and(|index| index >> bit & 1 == 1);
     let of = by_phase.iter().zip(&phases.next).filter(|(index, _)| has(index)).map(|(_, next)| *next);

@@ -1,4 +1,4 @@
-//! When each operation begins and in which instance: list scheduling, the longest way to an output first.
+//! Decides when each operation begins and in which instance: list scheduling, the longest path to an output first.
 
 use std::collections::BTreeSet;
 
@@ -11,11 +11,11 @@ use crate::pipeline::kernel::{Kernel, Source, ValueId};
 pub(in crate::pipeline) struct Instance {
     /// Index into [`Kinds::all`].
     pub kind: usize,
-    /// By phase: the value it begins with then.
+    /// By phase: the value that it begins with in that phase.
     pub places: Vec<Option<usize>>,
 }
 
-/// A time table of one pair. Cycle 0 is that of the inputs.
+/// The time table of a pair. In cycle 0, the inputs arrive.
 pub(super) struct Plan {
     pub interval: u32,
     /// The cycle in which each value's operands meet; `None` for dead code and constants.
@@ -71,10 +71,10 @@ impl Plan {
         this
     }
 
-    /// Begins an operation in `cycle`, if its operands are there and an instance is free.
+    /// Begins an operation in `cycle`, if its operands are available and an instance is free.
     fn place(&mut self, kernel: &Kernel, kinds: &Kinds, index: usize, cycle: u32) -> bool {
         let Some(kind) = kinds.of[index] else { return true };
-        // Operands come straight from registers.
+        // Operands come directly from registers.
         let are_there = kernel.values[index].operands.iter().all(|id| {
             let is_constant = kernel.as_constant(*id).is_some();
             is_constant || self.ready[id.index()].is_some_and(|ready| ready + self.is_glue(*id) <= cycle)
@@ -87,7 +87,7 @@ impl Plan {
         };
         let load = |instance: &Instance| instance.places.iter().flatten().count();
         let candidates = self.instances.iter().enumerate().filter(|(_, of)| of.kind == kind && free(of));
-        // The emptiest one, so that no choice gets deep.
+        // The instance with the fewest operations, so that no selection gets deep.
         let Some((instance, _)) = candidates.min_by_key(|(_, of)| load(of)).filter(|_| are_there) else {
             return false;
         };
@@ -102,7 +102,7 @@ impl Plan {
         u32::from(self.glue[id.index()] > 0)
     }
 
-    /// Gives times to inputs, and to glue whose operands have one.
+    /// Sets times for inputs, and for glue whose operands have times.
     fn settle(&mut self, kernel: &Kernel, live: &[bool], kinds: &Kinds) {
         for (index, value) in kernel.values.iter().enumerate() {
             let is_open = live[index] && self.ready[index].is_none() && kinds.of[index].is_none();
@@ -132,7 +132,7 @@ impl Plan {
         if matches!(kernel.values[index].source, Source::Input(_)) { self.interval } else { 1 }
     }
 
-    /// In which cycles each value is wanted.
+    /// The cycles in which each value is needed.
     pub fn wanted(&self, kernel: &Kernel) -> Vec<BTreeSet<u32>> {
         let mut wanted = vec![BTreeSet::new(); kernel.values.len()];
         for (value, start) in kernel.values.iter().zip(&self.start) {
@@ -153,7 +153,7 @@ impl Plan {
 fn heights(kernel: &Kernel, kinds: &Kinds) -> Vec<u32> {
     let mut height = vec![0; kernel.values.len()];
     for index in (0..kernel.values.len()).rev() {
-        // Users have higher indices, and were here before.
+        // Users have higher indices, so they are already done.
         height[index] += kinds.of[index].map_or(0, |kind| kinds.all[kind].latency());
         for id in &kernel.values[index].operands {
             height[id.index()] = height[id.index()].max(height[index]);

@@ -43,7 +43,7 @@ struct MismatchFigures {
     pair: usize,
     /// The cycle of the job in which its line was last written.
     cycle: Option<u64>,
-    /// What went in, field by field.
+    /// The input words, field by field.
     sent: BTreeMap<&'static str, String>,
     /// The words that differ.
     words: Vec<WordFigures>,
@@ -51,7 +51,7 @@ struct MismatchFigures {
 
 #[derive(Serialize)]
 struct WordFigures {
-    /// Its place in a contact record.
+    /// The place of the word in a contact record.
     word: usize,
     field: &'static str,
     expected: String,
@@ -101,7 +101,7 @@ struct LinkFigures<'a> {
 }
 
 impl Run {
-    /// The report for programs. The figures at the top are those of all jobs together; `jobs` has each.
+    /// The report for programs. The figures at the top are sums over all jobs; `jobs` has each of them.
     pub fn json(&self) -> impl Serialize {
         Document {
             schema: SCHEMA,

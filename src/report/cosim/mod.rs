@@ -1,4 +1,4 @@
-//! The report of `afu cosim`: JSON for programs, one table for people.
+//! The report of `afu cosim`: JSON for programs, a table for people.
 
 mod json;
 
@@ -10,7 +10,7 @@ use crate::config::{Config, Results};
 use crate::query::Flow;
 use crate::verify::Mismatch;
 
-/// The JSON's schema. Within a number keys are only added: `CHANGELOG.md` has the rule.
+/// The schema of the JSON. `CHANGELOG.md` says when its number changes.
 pub const SCHEMA: &str = "contact-afu/cosim/1";
 
 /// One job: its pairs and its results.
@@ -34,7 +34,7 @@ impl Job {
         Some(differ).filter(|_| mismatches > 0).into_iter().chain(self.failures.iter().cloned()).collect()
     }
 
-    /// Whether there is neither a mismatch nor another failure.
+    /// True if there is neither a mismatch nor another failure.
     pub fn passed(&self) -> bool {
         self.tally.mismatches == 0 && self.failures.is_empty()
     }
@@ -55,7 +55,7 @@ pub struct Run {
     pub rtl_sha256: String,
     /// The link model.
     pub link: String,
-    /// The jobs, in the order they ran.
+    /// The jobs, in the order in which they ran.
     pub jobs: Vec<Job>,
 }
 
@@ -65,7 +65,7 @@ impl Run {
         self.jobs.iter().fold(Tally::default(), |sum, job| sum.plus(&job.tally))
     }
 
-    /// Whether every job passed.
+    /// True if every job passed.
     pub fn passed(&self) -> bool {
         self.jobs.iter().all(Job::passed)
     }

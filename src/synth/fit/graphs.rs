@@ -1,4 +1,4 @@
-//! The graphs that a delay model is fitted to, and those that it is tried on.
+//! The graphs to which a delay model is fitted, and those on which it is tested.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use crate::hdl::{BuildErrors, Graph, Module, Signal};
 /// A small combinational graph of one kind and size.
 #[derive(Clone, Copy)]
 pub struct Sample {
-    /// What it does.
+    /// The kind of operation.
     kind: &'static str,
     /// Bits of its operands.
     width: u32,
@@ -39,7 +39,7 @@ impl<'g> Operands<'g, '_> {
 }
 
 impl Sample {
-    /// Its name, as in `add_24`.
+    /// The name of the sample, as in `add_24`.
     pub fn name(&self) -> String {
         match self.levels {
             0 => format!("{}_{}", self.kind, self.width),
@@ -47,7 +47,7 @@ impl Sample {
         }
     }
 
-    /// Its logic in a graph, from inputs of its own.
+    /// The logic of the sample in a graph, with its own inputs.
     fn logic<'g>(&self, graph: &'g Graph) -> Signal<'g> {
         let name = self.name();
         (self.build)(&mut Operands { graph, name: &name, width: self.width, levels: self.levels, next: 0 })
@@ -164,7 +164,7 @@ fn order<'g>(x: &mut Operands<'g, '_>) -> Signal<'g> {
     a.less_than(b).select(b, a)
 }
 
-/// A sum shifted by one place where it carries.
+/// A sum, shifted by one place if it carries.
 fn add_normalise<'g>(x: &mut Operands<'g, '_>) -> Signal<'g> {
     let (a, b) = (x.one(), x.one());
     let sum = a.extend(x.width + 1) + b.extend(x.width + 1);

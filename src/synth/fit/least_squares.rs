@@ -1,12 +1,12 @@
-//! Levenberg's and Marquardt's method, for a handful of positive parameters.
+//! The Levenberg-Marquardt method, for a few positive parameters.
 
 use nalgebra::{DMatrix, DVector};
 
-/// Steps at most: it takes some twenty.
+/// The maximum number of steps. Some twenty are usual.
 const STEPS: u32 = 200;
 
-/// The positive parameters, from `start` on, for which the squares of `residuals` add up to the least. They are moved
-/// by factors, so none changes its sign.
+/// The positive parameters that minimise the sum of the squares of `residuals`, starting from `start`. They are changed
+/// by factors, so they stay positive.
 pub fn fit(start: &[f64], residuals: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
     let at = |logs: &DVector<f64>| {
         let values: Vec<f64> = logs.iter().map(|log| log.exp()).collect();
@@ -54,7 +54,7 @@ mod tests {
 
     #[test]
     fn it_finds_the_parameters_that_made_the_data() {
-        // The longer of two straight lines: as kinked as the delay of a path.
+        // The larger of two straight lines, which has a kink like the delay of a path.
         let model = |p: &[f64], x: f64| (p[0] + p[1] * x).max(p[2] * x);
         let wanted = [1.0, 0.05, 0.11];
         let residuals =

@@ -1,9 +1,9 @@
 //! Fits a delay model to the delays that the router reports.
 //!
-//! Small graphs of one kind each are placed and routed, those of about the same delay side by side in one design, so
-//! that none is neglected by a placer that looks at the slowest. Each graph's delay is the latest arrival at its own
-//! registers, the median of the seeds. The model's parameters are those for which the relative errors of the clock are
-//! least, by their squares, over one part of the graphs; the other part says how good it is.
+//! Small graphs of one kind each are placed and routed. Graphs of similar delay share a design, because a placer
+//! concentrates on the slowest paths and would neglect the others. Each graph's delay is the latest arrival at its own
+//! registers, the median over the seeds. The model's parameters minimise the squares of the relative errors of the
+//! clock over one part of the graphs. The other part tests the model.
 
 mod graphs;
 mod least_squares;
@@ -48,14 +48,14 @@ pub struct Point {
     pub graph: String,
     /// True for a graph of the fit, false for one of the test.
     pub fitted: bool,
-    /// The clock that the router's delay allows, MHz: median of the seeds.
+    /// The clock that the router's delay allows, in MHz: the median over the seeds.
     pub routed_mhz: f64,
-    /// The model's, MHz.
+    /// The clock that the model predicts, in MHz.
     pub modelled_mhz: f64,
 }
 
 impl Point {
-    /// How far the model is above the router, as a share.
+    /// The relative error of the model; positive if the model is above the router.
     pub fn error(&self) -> f64 {
         self.modelled_mhz / self.routed_mhz - 1.0
     }
@@ -64,7 +64,7 @@ impl Point {
 /// Routes the graphs and fits a model for a target; `None` for a target without a router.
 ///
 /// # Errors
-/// As of [`super::synthesise`].
+/// Returns the errors of [`super::synthesise`].
 pub fn fit(target: Target, seeds: &[u32], mut progress: impl FnMut(&str)) -> Result<Option<Fit>, SynthError> {
     let Some((architecture, device)) = target.router() else { return Ok(None) };
     let (yosys, nextpnr, store) = (Program::yosys()?, Program::nextpnr(architecture)?, kept()?);
@@ -88,7 +88,7 @@ pub fn fit(target: Target, seeds: &[u32], mut progress: impl FnMut(&str)) -> Res
             runs.push(run.arrivals(&store)?);
         }
         for sample in &group {
-            // A register's cell is named by the port it drives, and what kind of cell it is.
+            // A register's cell is named after the port that it drives and the kind of cell.
             let mark = format!("{}_TRELLIS_FF", port(&sample.name()));
             let latest = runs.iter().map(|run| {
                 let ends = run.iter().filter(|(cell, _)| cell.contains(&mark));
@@ -126,12 +126,12 @@ pub fn fit(target: Target, seeds: &[u32], mut progress: impl FnMut(&str)) -> Res
     Ok(Some(Fit { schema: SCHEMA.to_owned(), target, tools, seeds: seeds.to_vec(), model, points }))
 }
 
-/// Rounded to a picosecond: more digits are noise.
+/// Rounds to a picosecond, because more digits are noise.
 fn thousandths(time: &f64) -> f64 {
     (time * 1000.0).round() / 1000.0
 }
 
-/// Samples in the order of their delays, cut where it has grown by the spread.
+/// Groups samples in the order of their delays, with a new group wherever the spread is exceeded.
 fn groups(sorted: &[(f64, Sample)]) -> Vec<Vec<Sample>> {
     let mut groups: Vec<Vec<Sample>> = Vec::new();
     let mut first = 0.0;
@@ -151,7 +151,7 @@ fn groups(sorted: &[(f64, Sample)]) -> Vec<Vec<Sample>> {
 mod tests {
     use super::*;
 
-    /// The model's structure may change after a fit: then what the file says of its points must still be what it says
+    /// The model's structure may change after a fit. The file's modelled clocks must still be what the model says
     /// today.
     #[test]
     fn the_committed_points_are_what_the_model_says() {

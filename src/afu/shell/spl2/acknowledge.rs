@@ -8,8 +8,9 @@ use super::words::{MDATA_BITS, SHELL_EPOCH_BITS, is_core_s};
 use crate::afu::counter::up_down;
 use crate::afu::{EPOCH_BITS, Spec};
 
-/// Builds the module `spl2_acknowledge`. Channel 0 goes straight to the core; channel 1 waits for a cycle in which
-/// channel 0 is idle. As many can wait as writes can be outstanding, and those of other jobs are dropped before.
+/// Builds the module `spl2_acknowledge`. Channel 0 goes straight to the core, and channel 1 waits for a cycle in which
+/// channel 0 is idle. There is room for as many as there can be outstanding writes. Those of other jobs are dropped
+/// first.
 pub(super) fn acknowledge(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new("spl2_acknowledge");
     graph.about("brings write responses of two channels to the core, one a cycle");
@@ -26,7 +27,7 @@ pub(super) fn acknowledge(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     });
     let [(first, first_tag), (second, second_tag)] = channels;
 
-    // What waits is read at the place of the oldest, whether or not it goes: its tag is there a cycle later.
+    // The place of the oldest is read whether or not it leaves, so its tag is available one cycle later.
     let store = graph.memory("waiting", slots, tag_bits);
     let tail = graph.register("tail", slot_bits, 0);
     let head = graph.register("head", slot_bits, 0);

@@ -11,16 +11,16 @@ use crate::hdl::{Graph, Signal};
 
 /// Identity of the accelerator, in DSM line 0 and in the status. It never changes.
 pub const AFU_ID: u128 = 0xf885_f921_48fc_4b0b_8fd1_f127_a3a0_b8e2;
-/// The version of this map: it changes with every change that software must know of. `CHANGELOG.md` has the rule.
+/// The version of this map. It changes with every change that affects software; `CHANGELOG.md` has the rule.
 pub const VERSION: u32 = 2;
 /// Dword 0 of the control memory, when a job is there.
 pub const START_WORD: u32 = 0x406C_CCFF;
 
-/// Cycles from an answer of the control memory to the next time it is read, while no job runs.
+/// Cycles from an answer of the control memory to its next read, while no job runs.
 pub const IDLE_POLL_CYCLES: u32 = 32;
-/// The same while a job runs: only an abort can be found.
+/// The same while a job runs, when only an abort can be found.
 pub(crate) const RUNNING_POLL_CYCLES: u32 = 512;
-/// Cycles after which an unanswered read of the shell is repeated.
+/// Cycles after which an unanswered read by the shell is repeated.
 pub(crate) const RETRY_CYCLES: u32 = 1 << 16;
 
 /// DSM line of the identity.
@@ -42,7 +42,7 @@ pub(crate) const CONTROL_LINE: u32 = 0;
 /// Source line of the first pairs.
 pub(crate) const DATA_LINE: u32 = 1;
 
-/// A 32-bit register, written through a CSR write. Of two halves the high one comes first, and the low one commits.
+/// A 32-bit register, written by a CSR write. Of two halves, the high one is written first, and the low one commits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Csr {
     /// Byte offset.
@@ -105,7 +105,8 @@ impl Field {
     }
 }
 
-/// A line in hardware: fields in increasing order, zero between them. Values narrower than their field are extended.
+/// A line in hardware: fields in increasing order, with zeros between them. Values narrower than their field are
+/// extended.
 pub(super) fn line<'g>(graph: &'g Graph, line_bits: u32, fields: &[(Field, Signal<'g>)]) -> Signal<'g> {
     let mut parts = Vec::new();
     let mut end = 0;
@@ -120,7 +121,7 @@ pub(super) fn line<'g>(graph: &'g Graph, line_bits: u32, fields: &[(Field, Signa
     Signal::join(&parts).extend(line_bits)
 }
 
-/// `bits` bits from dword `dword` on.
+/// A field of `bits` bits that begins at dword `dword`.
 const fn field(dword: u32, bits: u32, name: &'static str, meaning: &'static str) -> Field {
     Field { low: 32 * dword, bits, name, meaning }
 }

@@ -1,7 +1,7 @@
 //! The shell of Intel HARP v1, as in the paper: the core behind SPL2's port, with the handshake in memory.
 //!
-//! `registers` answers CSR writes, `sequence` runs jobs, `transmit` and `acknowledge` bring requests to SPL's ports and
-//! write responses back; [`map`] has the registers and lines.
+//! `registers` answers CSR writes and `sequence` runs jobs. `transmit` passes requests to SPL's ports, and
+//! `acknowledge` returns write responses. [`map`] has the registers and lines.
 
 mod acknowledge;
 pub mod map;

@@ -1,7 +1,7 @@
 //! The registers that the host writes, and the DSM lines that answer them.
 //!
-//! They are written before SPL is enabled, and on some platforms while it still holds its reset. So only the system's
-//! reset resets them; a new reset by SPL clears the addresses.
+//! They are written before SPL is enabled, and on some platforms while SPL still holds its reset. So only the system's
+//! reset resets them. A new reset by SPL clears the addresses.
 
 use std::sync::Arc;
 
@@ -27,7 +27,7 @@ pub(super) fn registers(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let granted = graph.input("wr_granted", 1);
     let capability = graph.input("capability", 64);
 
-    // A reset of SPL's counts when it begins: where it is a level, addresses are written before it ends.
+    // A reset by SPL counts when it begins. If it is a level, addresses are written before it ends.
     let before = graph.data_register("spl_reset_before", 1);
     before.next(spl_reset);
     let clear = (power_on | (spl_reset & !*before)).named("clear");

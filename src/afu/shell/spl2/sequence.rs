@@ -44,9 +44,10 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let core_cycles = [told.cycles_busy, told.cycles_input, told.cycles_output].map(|port| port.input(&graph));
     let capability = told.capability.input(&graph);
 
-    // What the sequence is at, one of these: no context is known; reads the context; polls the control memory for a
-    // job; counts the job's lines; compares them with the buffers'; starts the job, if there are lines enough; the core
-    // is at work, and the control memory polled for an abort; writes DSM line 4, DSM line 5, the fence, the status.
+    // The states of the sequence, in order. No context is known. The context is being read. The control memory is
+    // polled for a job. The job's lines are counted, and then compared with those of the buffers. The job is started if
+    // there are enough lines. The core works, while the control memory is polled for an abort. DSM line 4, DSM line 5,
+    // the fence and the status are written.
     let state = |name: &str| graph.register(name, 1, 0);
     let idle = graph.register("at_idle", 1, 1);
     let [context, poll, measure, compare, begin, run] =
@@ -75,8 +76,8 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let switches = graph.wire("switches", 1);
     let asks = ((at_context | (at_poll & !switches) | at_run) & may_ask).registered("asks");
 
-    // The context, read again between jobs when its address was written again: what a job reads and writes, its status
-    // included, is always of one context. No request is in flight then.
+    // The context is read again between jobs if its address was written again. So everything that a job reads and
+    // writes, including its status, belongs to one context. No request is in flight then.
     let is_due = graph.register("context_due", 1, 0);
     switches.drive(at_poll & *is_due & !*waiting & !read_granted & !asks);
     let reads_context = ((*idle & context_valid) | switches).named("reads_context");
@@ -151,7 +152,7 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     };
     let (first_read, first_write) = (first(core_read, "read"), first(core_write, "write"));
 
-    // What is written at the end.
+    // The lines written at the end.
     let latency_line = map::line(
         &graph,
         spec.line_bits,
@@ -201,7 +202,7 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let fences = (at_fence & !(gave_up & ran)).named("fences");
     let written = (write_granted | (to_dsm & !dsm_valid) | (at_fence & !fences)).named("written");
 
-    // From state to state.
+    // The transitions between states.
     idle.next(*idle & !context_valid);
     context.next(reads_context | (at_context & !answered));
     poll.next(got_context | (at_status & written) | (at_poll & !got_job & !switches));
@@ -214,7 +215,7 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     fence.next((at_performance & written) | (at_fence & !written));
     report.next((at_fence & written) | (at_status & !written));
 
-    // A state's write stands at the port a cycle after the state is there.
+    // The write of a state is at the port one cycle after the state begins.
     let writes = graph.register("writes", 1, 0);
     writes.next(((to_dsm & dsm_valid) | fences | at_status) & !written);
 

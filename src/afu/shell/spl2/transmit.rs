@@ -28,7 +28,7 @@ pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let next_epoch = (epoch.value() + start.extend(SHELL_EPOCH_BITS)).named("next_epoch");
     epoch.next(next_epoch.gate(!power_on));
 
-    // Reads: the shell's few first.
+    // Reads. The shell's few reads come first.
     let core_read = graph.input("core_rd_valid", 1);
     let core_read_address = graph.input("core_rd_address", ADDRESS_BITS);
     let core_read_tag = graph.input("core_rd_tag", EPOCH_BITS + slot_bits);
@@ -69,7 +69,7 @@ pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let end_write_virtual = graph.input("end_wr_virtual", 1);
     let end_write_address = graph.input("end_wr_address", ADDRESS_BITS);
     let end_write_data = graph.input("end_wr_data", spec.line_bits);
-    // A write of the shell's is chosen a cycle before its turn.
+    // A write of the shell is chosen one cycle before its turn.
     let writes = Turns::new(&graph, "wr", wr_almostfull);
     let is_register = register_write.delay(1).named("is_register");
     let register_granted = (writes.own & is_register & register_write).named("register_wr_granted");
@@ -116,8 +116,8 @@ pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     graph.finish()
 }
 
-/// The turn of a port, known one cycle ahead: the shell's if it has a request, else the core's. SPL accepts four more
-/// requests once it is almost full; at most two come.
+/// The turn of a port, known one cycle ahead: the shell's if it has a request, otherwise the core's. SPL accepts four
+/// more requests after almost-full, and at most two arrive.
 #[derive(Clone, Copy)]
 struct Turns<'g> {
     turn: Register<'g>,
@@ -139,15 +139,15 @@ impl<'g> Turns<'g> {
         Self { turn, open, almost_full, own_turn: *turn, own: *turn & room, core: *open }
     }
 
-    /// The next turn is the shell's if it `wants` it, even if its request may be granted in this one: its requests are
-    /// rare. The core's, whatever room there is, while what it asks is discarded.
+    /// The next turn is the shell's if it `wants` it, even if its present request may be granted in this turn, because
+    /// its requests are rare. While the core's requests are discarded, it gets its turn without room.
     fn connect(self, wants: Signal<'g>, discard: Signal<'g>, power_on: Signal<'g>) {
         self.turn.next(wants & !power_on);
         self.open.next(discard | (!wants & !self.almost_full));
     }
 }
 
-/// The number of the shell's next request: counts those that were granted, since the system's reset.
+/// The number of the shell's next request: the number of requests granted since the system's reset.
 fn number<'g>(graph: &'g Graph, name: &str, granted: Signal<'g>, power_on: Signal<'g>) -> Signal<'g> {
     let number = graph.data_register(name, NUMBER_BITS);
     number.next_if(granted | power_on, number.plus(1).gate(!power_on));
