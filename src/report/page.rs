@@ -33,7 +33,7 @@ th[aria-sort]::after{content:\" ↑\"}th[aria-sort=descending]::after{content:\"
 #points{font-size:.85em}#points th{cursor:pointer;white-space:normal;vertical-align:bottom}#points td{white-space:nowrap}
 #points tr>:first-child{position:sticky;left:0;background:var(--ground)}#points tr.chosen td{background:var(--grid)}
 details summary{cursor:pointer}
-@media (max-width:40rem){th,td{padding:.3rem .45rem}td:first-child{overflow-wrap:anywhere}}
+@media (max-width:40rem){th,td{padding:.3rem .45rem}td:first-child:not(.n){overflow-wrap:anywhere;min-width:7rem}}
 #row:has(span+span){position:sticky;bottom:0}
 #row{display:flex;flex-wrap:wrap;gap:.2rem 1.1rem;padding:.5rem .7rem;font-size:.85em;\
 background:var(--ground);border:1px solid var(--grid);font-variant-numeric:tabular-nums}#row small{color:var(--soft)}
