@@ -20,7 +20,7 @@ pub struct Spec {
     /// Bits of a record's word: as in the configuration's records, or fewer for proofs, whose SCPUs do not contain the
     /// kernel.
     pub word_bits: u32,
-    /// The most outstanding reads, and also writes: 64, or fewer for proofs.
+    /// The most outstanding reads, and also writes: as in the configuration, or fewer for proofs.
     pub max_outstanding: u32,
     /// Cycles that results may wait for their write requests before pairs wait for room: 16, or fewer for proofs.
     pub dispatch_cycles: u32,
@@ -48,19 +48,19 @@ pub enum SpecError {
     #[error("{0} cycles in dispatch: expected 1 to 1024")]
     Dispatch(u32),
     /// Tags cannot represent this number of requests.
-    #[error("{0} outstanding requests: expected a power of two from 2 to 64")]
+    #[error("{0} outstanding requests: expected a power of two from 2 to 256")]
     Outstanding(u32),
 }
 
 impl From<Config> for Spec {
     fn from(config: Config) -> Self {
-        let word_bits = config.record.format().width();
+        let (word_bits, max_outstanding) = (config.record.format().width(), config.outstanding);
         Self {
             config,
             reset: Reset::default(),
             line_bits: LINE_BITS,
             word_bits,
-            max_outstanding: 64,
+            max_outstanding,
             dispatch_cycles: 16,
             delays: DelayModel::default(),
             target: None,
@@ -180,7 +180,7 @@ impl Spec {
         if !self.line_bits.is_power_of_two() || self.line_bits < layout.pair_bits().max(layout.contact_bits()) {
             return Err(SpecError::Line(self.line_bits));
         }
-        if !self.max_outstanding.is_power_of_two() || !(2..=64).contains(&self.max_outstanding) {
+        if !self.max_outstanding.is_power_of_two() || !(2..=256).contains(&self.max_outstanding) {
             return Err(SpecError::Outstanding(self.max_outstanding));
         }
         Ok(())

@@ -19,6 +19,12 @@ pub const SCPUS: std::ops::RangeInclusive<u32> = 1..=64;
 /// The initiation intervals that an SCPU can have, in cycles.
 pub const INTERVALS: std::ops::RangeInclusive<u32> = 1..=64;
 
+/// The reads, and the writes, that an AFU can have in flight.
+pub const OUTSTANDING: std::ops::RangeInclusive<u32> = 16..=256;
+
+/// The most that SPL2 takes: its own hardware is almost full at 58 reads, and at 54 writes.
+const OUTSTANDING_OVER_SPL2: u32 = 64;
+
 /// The maximum length of a prefix, in characters.
 const LONGEST_PREFIX: usize = 32;
 
@@ -58,6 +64,9 @@ pub struct Config {
     pub multipliers: Multipliers,
     /// The shell around the line port.
     pub shell: Shell,
+    /// The most reads, and the most writes, in flight: a power of two, one of [`OUTSTANDING`].
+    #[serde(skip_serializing_if = "is_usual")]
+    pub outstanding: u32,
     /// The clock in MHz. It converts cycles into time, and stages are cut for it unless `cut_mhz` is given.
     pub clock_mhz: f64,
     /// The clock in MHz that stages are cut for, if it differs: place and route may reach less than they were cut for.
@@ -82,6 +91,7 @@ impl Default for Config {
             record: RecordFormat::F32,
             multipliers: Multipliers::Use,
             shell: Shell::Spl2,
+            outstanding: 64,
             clock_mhz: 200.0,
             cut_mhz: None,
             prefix: None,
@@ -98,6 +108,12 @@ pub enum Error {
     /// Outside [`INTERVALS`].
     #[error("interval {0}: expected 1 to 64 cycles")]
     Interval(u32),
+    /// Not a power of two within [`OUTSTANDING`].
+    #[error("{0} requests in flight: expected 16, 32, 64, 128 or 256")]
+    Outstanding(u32),
+    /// More than SPL2 takes.
+    #[error("{0} requests in flight: expected at most 64 below shell spl2; use shell line for more")]
+    OutstandingOverSpl2(u32),
     /// A clock out of range.
     #[error("clock {0} MHz: expected 1 to 2000 MHz")]
     Clock(f64),
@@ -142,6 +158,12 @@ impl Config {
         }
         if !INTERVALS.contains(&self.interval) {
             return Err(Error::Interval(self.interval));
+        }
+        if !self.outstanding.is_power_of_two() || !OUTSTANDING.contains(&self.outstanding) {
+            return Err(Error::Outstanding(self.outstanding));
+        }
+        if self.shell == Shell::Spl2 && self.outstanding > OUTSTANDING_OVER_SPL2 {
+            return Err(Error::OutstandingOverSpl2(self.outstanding));
         }
         let clocks = [self.clock_mhz, self.cut_mhz()];
         if let Some(clock) = clocks.into_iter().find(|clock| !(1.0..=2000.0).contains(clock)) {
@@ -223,6 +245,7 @@ impl Config {
             ("--record", self.record.to_string(), default.record.to_string()),
             ("--multipliers", self.multipliers.to_string(), default.multipliers.to_string()),
             ("--shell", self.shell.to_string(), default.shell.to_string()),
+            ("--outstanding", self.outstanding.to_string(), default.outstanding.to_string()),
             ("--clock", self.clock_mhz.to_string(), default.clock_mhz.to_string()),
             ("--cut-for", cut(self), cut(&default)),
             ("--prefix", self.prefix.clone().unwrap_or_default(), String::new()),
@@ -230,6 +253,11 @@ impl Config {
         let differing = pairs.into_iter().filter(|(_, mine, default)| mine != default);
         differing.flat_map(|(flag, mine, _)| [flag.to_owned(), mine]).collect()
     }
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+fn is_usual(outstanding: &u32) -> bool {
+    *outstanding == Config::default().outstanding
 }
 
 fn is_prefix(text: &str) -> bool {
@@ -277,6 +305,8 @@ mod tests {
         assert_eq!(sparing.flags(), ["--interval", "1", "--multipliers", "spare"]);
         let reached = Config { clock_mhz: 169.1, cut_mhz: Some(200.0), ..Config::default() };
         assert_eq!(reached.flags(), ["--interval", "1", "--clock", "169.1", "--cut-for", "200"]);
+        let far = Config { outstanding: 256, shell: Shell::Line, ..Config::default() };
+        assert_eq!(far.flags(), ["--interval", "1", "--shell", "line", "--outstanding", "256"]);
     }
 
     #[test]
@@ -289,6 +319,9 @@ mod tests {
             (Config { cut_mhz: Some(0.5), ..Config::default() }, "clock 0.5"),
             (Config { interval: 0, ..Config::default() }, "interval 0"),
             (Config { interval: 65, ..Config::default() }, "interval 65"),
+            (Config { outstanding: 96, ..Config::default() }, "96 requests in flight: expected 16, 32"),
+            (Config { outstanding: 512, shell: Shell::Line, ..Config::default() }, "512 requests in flight"),
+            (Config { outstanding: 128, ..Config::default() }, "128 requests in flight: expected at most 64 below"),
             (
                 Config { profile: Profile::EXACT, contact: Fields::HIT, ..Config::default() },
                 "profile exact with contact",

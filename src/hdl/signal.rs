@@ -221,14 +221,19 @@ impl<'g> Signal<'g> {
         if self.width() == 1 { self } else { self.unary("all", Op::All, 1, Location::caller()) }
     }
 
-    /// One-hot decoder: of 2^width bits, the bit whose index is this value is set. At most 7 bits wide.
+    /// One-hot decoder: of 2^width bits, the bit whose index is this value is set. At most 8 bits wide.
     #[track_caller]
     pub fn one_hot(self) -> Self {
         let width = self.width();
-        if width > 7 {
-            let message = format!("one hot: `{}` has {width} bits, more than 7", self.describe());
+        if width > 8 {
+            let message = format!("one hot: `{}` has {width} bits, more than 8", self.describe());
             self.graph.error(message, Location::caller());
             return Self::poison(self.graph);
+        }
+        if width == 8 {
+            // A decoder has up to 128 outputs: two of them, one for each half.
+            let (upper, half) = (self.bit(7), self.low(7).one_hot());
+            return half.gate(upper).concat(half.gate(!upper));
         }
         self.unary("one hot", Op::OneHot, 1 << width, Location::caller())
     }

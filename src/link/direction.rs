@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::model::MAX_OUTSTANDING;
+use super::model::USUAL_IN_FLIGHT;
 
 /// One direction of a link.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -26,7 +26,7 @@ pub struct Direction {
     #[serde(default = "one")]
     pub lines_per_cycle: f64,
     /// The most requests without a response, at least 1. A request whose response is lost no longer counts.
-    #[serde(default = "most_outstanding")]
+    #[serde(default = "usual_in_flight")]
     pub in_flight: u32,
 }
 
@@ -76,12 +76,12 @@ fn one() -> f64 {
     1.0
 }
 
-fn most_outstanding() -> u32 {
-    MAX_OUTSTANDING
+fn usual_in_flight() -> u32 {
+    USUAL_IN_FLIGHT
 }
 
 impl Direction {
-    /// A direction without stalls, stragglers or a bandwidth limit, with an even tail and [`MAX_OUTSTANDING`] in
+    /// A direction without stalls, stragglers or a bandwidth limit, with an even tail and [`USUAL_IN_FLIGHT`] in
     /// flight.
     pub fn steady(latency: u32, tail: u32) -> Self {
         Self {
@@ -91,7 +91,7 @@ impl Direction {
             stragglers: Stragglers::default(),
             stalls: Stalls::default(),
             lines_per_cycle: one(),
-            in_flight: MAX_OUTSTANDING,
+            in_flight: USUAL_IN_FLIGHT,
         }
     }
 

@@ -24,5 +24,5 @@ pub use direction::{Direction, Order, Shape, Stalls, Stragglers};
 pub use fault::Fault;
 pub use figure::Figure;
 pub use memory::{LINE_BYTES, Line, Memory, Violation};
-pub use model::{LinkError, LinkModel, MAX_OUTSTANDING, SessionCost};
+pub use model::{LinkError, LinkModel, SessionCost, USUAL_IN_FLIGHT};
 pub use physical::{Joint, OrderName, Physical, PhysicalDirection, PhysicalSession};

@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 use super::direction::{Direction, Order, Stalls, Stragglers};
 use super::fault::Fault;
 
-/// The most reads that an AFU may have outstanding, and also the most writes.
-pub const MAX_OUTSTANDING: u32 = 64;
+/// The reads, and the writes, that a link takes in flight if its description does not say how many.
+pub const USUAL_IN_FLIGHT: u32 = 64;
 
 /// A link at a clock, in cycles and lines: two directions, an order, a bandwidth that both share, and the cost of a
 /// session. [`Physical`](super::Physical) describes a link in nanoseconds and bytes.

@@ -46,7 +46,7 @@ impl<'a> Driver<'a> {
     /// Returns an error if a port is missing, or if the module stops the simulation.
     pub fn new(afu: &'a Instance, link: Link) -> Result<Self, DriveError> {
         let (clock, ports) = (afu.clock("clk")?, Ports::new(afu)?);
-        let monitor = Monitor::default();
+        let monitor = Monitor::new(ports.tag_bits);
         let mut driver = Self { clock, ports, link, monitor, cycle: 0, epoch: 0, running: None };
         driver.reset()?;
         Ok(driver)

@@ -1,12 +1,9 @@
 //! Checks the line port's protocol in every cycle.
 
 use super::error::DriveError;
+use crate::afu::EPOCH_BITS;
 use crate::count::counted;
-use crate::link::{MAX_OUTSTANDING, Memory, Replies, Requests, Violation};
-
-/// Values of a tag: a 4-bit epoch above a 6-bit slot.
-const TAGS: usize = 1 << 10;
-const SLOT_BITS: u32 = 6;
+use crate::link::{Memory, Replies, Requests, Violation};
 
 /// The error code of an AFU that gave up waiting for a lost response.
 const WATCHDOG: u8 = 4;
@@ -41,10 +38,12 @@ pub enum ProtocolError {
         epoch: u8,
     },
     /// More requests outstanding than agreed.
-    #[error("more than {MAX_OUTSTANDING} outstanding {}s", direction(*is_read))]
+    #[error("more than {agreed} outstanding {}s", direction(*is_read))]
     TooMany {
         /// True for reads.
         is_read: bool,
+        /// The number of slots that a tag can name.
+        agreed: u32,
     },
     /// A request without a job. (A request that a job gave up while it was on the port may stay there.)
     #[error("a {} request while no job runs", direction(*is_read))]
@@ -79,8 +78,9 @@ fn direction(is_read: bool) -> &'static str {
 #[derive(Debug)]
 struct Half {
     is_read: bool,
+    slot_bits: u32,
     /// For each outstanding tag, the cycle in which it was accepted and the number of resets before it.
-    since: Box<[Option<(u64, u32)>; TAGS]>,
+    since: Vec<Option<(u64, u32)>>,
     /// Outstanding requests, without those that a reset forgot.
     outstanding: u32,
     /// Resets so far.
@@ -88,29 +88,35 @@ struct Half {
 }
 
 impl Half {
-    fn new(is_read: bool) -> Self {
-        Self { is_read, since: Box::new([None; TAGS]), outstanding: 0, resets: 0 }
+    fn new(is_read: bool, slot_bits: u32) -> Self {
+        Self { is_read, slot_bits, since: vec![None; 1 << (EPOCH_BITS + slot_bits)], outstanding: 0, resets: 0 }
+    }
+
+    fn entry(&mut self, tag: u16) -> &mut Option<(u64, u32)> {
+        let tags = self.since.len();
+        &mut self.since[usize::from(tag) % tags]
     }
 
     fn accepted(&mut self, cycle: u64, tag: u16, epoch: u8) -> Result<(), ProtocolError> {
         let is_read = self.is_read;
-        if u16::from(epoch) != tag >> SLOT_BITS {
+        if u16::from(epoch) != tag >> self.slot_bits {
             return Err(ProtocolError::WrongEpoch { is_read, tag, epoch });
         }
-        let since = &mut self.since[usize::from(tag) % TAGS];
+        let (resets, agreed) = (self.resets, 1 << self.slot_bits);
+        let since = self.entry(tag);
         if since.is_some() {
             return Err(ProtocolError::TagReused { is_read, tag });
         }
-        *since = Some((cycle, self.resets));
+        *since = Some((cycle, resets));
         self.outstanding += 1;
-        if self.outstanding > MAX_OUTSTANDING {
-            return Err(ProtocolError::TooMany { is_read });
+        if self.outstanding > agreed {
+            return Err(ProtocolError::TooMany { is_read, agreed });
         }
         Ok(())
     }
 
     fn answered(&mut self, tag: u16) {
-        if let Some((_, resets)) = self.since[usize::from(tag) % TAGS].take() {
+        if let Some((_, resets)) = self.entry(tag).take() {
             self.outstanding -= u32::from(resets == self.resets);
         }
     }
@@ -142,11 +148,13 @@ pub(super) struct Monitor {
     violations: u64,
 }
 
-impl Default for Monitor {
-    fn default() -> Self {
+impl Monitor {
+    /// A monitor of an AFU whose tags have `tag_bits` bits.
+    pub(super) fn new(tag_bits: u32) -> Self {
+        let slot_bits = tag_bits.saturating_sub(EPOCH_BITS);
         Self {
-            reads: Half::new(true),
-            writes: Half::new(false),
+            reads: Half::new(true, slot_bits),
+            writes: Half::new(false, slot_bits),
             epoch: 0,
             pending: Requests::default(),
             gave_up: false,
@@ -154,9 +162,7 @@ impl Default for Monitor {
             violations: 0,
         }
     }
-}
 
-impl Monitor {
     /// The AFU was reset. It owes nothing, but the link's outstanding responses still arrive.
     pub(super) fn forget(&mut self) {
         self.reads.forget();

@@ -1,8 +1,8 @@
 //! The ports of the `line` shell.
 
 use super::job::Job;
-use crate::afu::Spec;
 use crate::afu::port::{self, Declaration, JobInputs, JobOutputs, ReadInputs, ReadOutputs, WriteInputs, WriteOutputs};
+use crate::afu::{EPOCH_BITS, Spec};
 use crate::config::{Config, Results};
 use crate::cosim::error::SimulationError;
 use crate::cosim::instance::Instance;
@@ -12,6 +12,8 @@ use crate::link::{ReadRequest, Replies, Requests, WriteRequest};
 /// The AFU's ports, fetched once.
 #[derive(Debug)]
 pub(super) struct Ports<'a> {
+    /// Bits of a tag: those of the AFU that is driven.
+    pub(super) tag_bits: u32,
     reset: Port<'a>,
     reset_active_low: bool,
     job: JobInputs<Port<'a>>,
@@ -37,10 +39,16 @@ impl<'a> Ports<'a> {
     pub(super) fn new(afu: &'a Instance) -> Result<Self, SimulationError> {
         let reset_active_low = !afu.has_port("rst") && afu.has_port("rst_n");
         let results = if afu.has_port("destination_lines") { Results::Hits } else { Results::All };
-        let spec = Spec::from(Config { results, ..Config::default() });
+        let mut spec = Spec::from(Config { results, ..Config::default() });
+        // A tag that is too short or too long is refused below: its port has another width than any AFU's.
+        let tag_bits = afu.port_list().into_iter().find(|(name, ..)| name == "rd_req_tag").map(|(_, bits, _)| bits);
+        if let Some(slot_bits) = tag_bits.and_then(|bits| bits.checked_sub(EPOCH_BITS)).filter(|bits| *bits <= 8) {
+            spec.max_outstanding = 1 << slot_bits;
+        }
         let input = |port: Declaration| afu.input(port.name, port.bits);
         let output = |port: Declaration| afu.output(port.name, port.bits);
         Ok(Self {
+            tag_bits: spec.tag_bits(),
             reset: input(port::reset(reset_active_low))?,
             reset_active_low,
             job: JobInputs::of(&spec).try_map(input)?,
