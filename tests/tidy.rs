@@ -240,6 +240,9 @@ fn no_file_names_a_registry_host_or_a_path_of_one_machine() {
     for name in ["demo", "docs", "fit-delays", "intervals", "operators", "paper", "prove", "release", "setup", "test"] {
         checked.push(Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts").join(name));
     }
+    for name in ["local", "merge", "rehearse", "site.conf", "submit", "task"] {
+        checked.push(Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/slurm").join(name));
+    }
     for name in ["pyproject.toml", ".github/workflows/ci.yml", "scripts/packaging/test", "scripts/packaging/wheel"] {
         checked.push(Path::new(env!("CARGO_MANIFEST_DIR")).join(name));
     }
