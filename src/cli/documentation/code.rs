@@ -60,8 +60,17 @@ fn fault_of(command: &[String], is_mention: bool) -> Option<String> {
         "cargo" => cargo_line::fault(arguments, is_mention),
         script if script.starts_with("scripts/") && root().join(script).is_file() => {
             let text = read(Path::new(script));
-            let unknown = arguments.iter().find(|word| word.starts_with("--") && !text.contains(word.as_str()));
-            unknown.map(|option| format!("{script} has no {option}"))
+            // What follows `--` is a study of afu, which scripts/slurm/submit gives a store.
+            let mut parts = arguments.splitn(2, |word| word == "--");
+            let mut own = parts.next().into_iter().flatten();
+            let unknown = own.find(|word| word.starts_with("--") && !text.contains(word.as_str()));
+            let unknown = unknown.map(|option| format!("{script} has no {option}"));
+            unknown.or_else(|| {
+                parts.next().and_then(|study| {
+                    let study = [study, &["--store".to_owned(), "STORE".to_owned()]].concat();
+                    afu_line::fault(&study, is_mention)
+                })
+            })
         }
         _ => None,
     }
@@ -106,6 +115,7 @@ fn a_command_line_that_cannot_be_run_is_found() {
         ("$ target/release/afu rtl", "required arguments were not provided"),
         ("A=1 afu cosim && afu cosin", "unrecognized subcommand 'cosin'"),
         ("./scripts/demo --no-such-option", "scripts/demo has no --no-such-option"),
+        ("scripts/slurm/submit 4 a b -- sweep --scpu 1..4", "unexpected argument '--scpu'"),
         ("./scripts/no-such-script", "scripts/no-such-script does not exist"),
         ("cargo test --test no_such_target", "--test no_such_target does not exist"),
         ("afu scene examples/scenes/no-such-scene.toml", "examples/scenes/no-such-scene.toml does not exist"),
