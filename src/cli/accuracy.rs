@@ -6,6 +6,7 @@ use std::thread;
 use clap::Args;
 use contact_afu::accuracy::trade::{self, Ended, Request, Size, Study, TradeError};
 use contact_afu::config::Profile;
+use contact_afu::report::table::counted;
 
 use super::failure::{Classify, Failure, Kind};
 use super::study::Shared;
@@ -130,7 +131,8 @@ pub fn passed(results: &Study) -> Result<(), Failure> {
     match results.points.iter().find(|point| point.cycles.mismatches > 0) {
         None => Ok(()),
         Some(point) => {
-            let message = format!("{}: {} mismatches with the reference", point.name, point.cycles.mismatches);
+            let message =
+                format!("{}: {} with the reference", point.name, counted(point.cycles.mismatches, "mismatch"));
             Err(Failure::new(Kind::Failed, message))
         }
     }

@@ -165,7 +165,8 @@ fn line(needs: &Needs) -> String {
     if let Some(mean) = mean_seconds {
         let minutes = ((1.5 * shard_seconds + longest_seconds) / 60.0).ceil() + 1.0;
         let memory = (peak_memory_mib * 5).div_ceil(4).max(256);
-        line += &format!(" mean_seconds={mean:.2} longest_seconds={longest_seconds:.2}");
+        line +=
+            &format!(" mean_seconds={mean:.2} longest_seconds={longest_seconds:.2} shard_seconds={shard_seconds:.0}");
         line += &format!(" time_minutes={minutes:.0} memory_mib={memory}");
     }
     line

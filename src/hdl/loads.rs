@@ -21,7 +21,7 @@ pub(super) fn loads(module: &Module) -> Vec<u32> {
     for id in module.ids() {
         loads[id.index()] = loads[id.index()].max(loads[chooser(module, id).index()]);
     }
-    // Also that of the busiest bit of the values that they are taken from or go into.
+    // A slice also has the load of the busiest bit of the values that it is taken from or goes into.
     for id in module.ids() {
         if let Op::Slice { .. } = module.node(id).op {
             let whole = module.node(id).operands[0].index();

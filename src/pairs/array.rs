@@ -1,5 +1,5 @@
 //! Arrays of pairs as NumPy's users have them: of binary16, binary32 or binary64, in either byte order and either
-//! order of indices: n × 8, or n × 2 × 4 where a pair is of two bodies alike.
+//! order of indices: n × 8, or n × 2 × 4 if both bodies of a pair have the same shape.
 
 use std::path::Path;
 
@@ -31,7 +31,7 @@ fn parse(query: Query, bytes: &[u8]) -> Result<(Vec<PairRecord>, Option<Rounded>
         }
     };
     let fortran_place = |word: usize| word / (words / rows) + rows * (word % (words / rows));
-    // The shape is believed only where the file bears it out.
+    // The shape is accepted only if the length of the file agrees with it.
     let (size, there) = (number.size(), data.len());
     if count.checked_mul((words * size) as u64) != Some(there as u64) {
         let problem =

@@ -34,7 +34,8 @@ pub fn pairs(layers: u32) -> Vec<PairRecord> {
     pairs
 }
 
-/// The steps to neighbours whose boxes touch, of two opposite ones the lexicographically larger, in order.
+/// The steps to neighbours whose boxes touch, in order. Of two opposite steps only the lexicographically larger is
+/// here.
 const NEXT: [[i32; 3]; 13] = [
     [0, 0, 1],
     [0, 1, -1],

@@ -45,7 +45,7 @@ pub struct Rounded {
     pub of: u64,
     /// The pair of the first.
     pub pair: u64,
-    /// Its field.
+    /// The field of the pair.
     pub field: &'static str,
     /// Its value in the file.
     pub given: f64,
@@ -63,7 +63,7 @@ impl fmt::Display for Rounded {
     }
 }
 
-/// Why pairs could not be had.
+/// Why pairs could not be loaded.
 #[derive(Debug, thiserror::Error)]
 pub enum LoadError {
     /// A set's name is wrong.
@@ -82,7 +82,7 @@ pub fn load(query: Query, source: &str, seed: u64) -> Result<Vec<PairRecord>, Lo
     load_with_notes(query, source, seed).map(|loaded| loaded.pairs)
 }
 
-/// The same, with what reading a file changed.
+/// Loads pairs, and reports what reading a file changed.
 ///
 /// # Errors
 /// Returns the errors of [`load`].
@@ -97,7 +97,7 @@ pub fn load_with_notes(query: Query, source: &str, seed: u64) -> Result<Loaded, 
 /// Whether `file` has a name that can be written: `.csv` or `.npy`.
 ///
 /// # Errors
-/// Returns an error if it has not.
+/// Returns an error if the name has another ending.
 pub fn check_name(file: &Path) -> Result<(), FileError> {
     kind(file).map(drop)
 }
@@ -174,7 +174,7 @@ pub fn write_pairs(query: Query, file: &Path, pairs: &[PairRecord]) -> Result<()
 /// Writes pairs as CSV.
 ///
 /// # Errors
-/// As `out` says.
+/// Returns the errors of `out`.
 pub fn write_pairs_csv(out: impl Write, query: Query, pairs: &[PairRecord]) -> io::Result<()> {
     pairs_csv::write(out, query, pairs)
 }

@@ -3,7 +3,7 @@
 //! NumPy's format is described in its `numpy.lib.format`: a magic string, a version, the length of the text, the text.
 
 const MAGIC: &[u8] = b"\x93NUMPY";
-/// The most bytes of text. An n × 8 array has 118 of them.
+/// The maximum length of the text, in bytes. An n × 8 array has 118 bytes.
 const LONGEST: usize = 1024;
 
 /// The header of an array.

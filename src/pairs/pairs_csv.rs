@@ -32,7 +32,7 @@ fn record(query: Query, row: &Row<'_>, first: usize) -> Result<PairRecord, FileE
     Ok(pair)
 }
 
-/// Every value reads back to the same word, but for a NaN's, which reads back canonical.
+/// Every value reads back as the same word, except NaNs, which read back as the canonical NaN.
 pub fn write(out: impl Write, query: Query, pairs: &[PairRecord]) -> io::Result<()> {
     let mut out = csv::Writer::from_writer(out);
     // The error of the file system itself, by which a closed pipe is known.

@@ -4,8 +4,8 @@ use crate::query::PairRecord;
 use rand::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-/// A generator of what sets of pairs are made of. Nothing but integers and correctly rounded operations is used, so
-/// every machine makes the same numbers.
+/// A generator of the numbers in sets of pairs. It uses only integers and correctly rounded operations, so every
+/// machine makes the same numbers.
 pub(super) struct Source(Xoshiro256PlusPlus);
 
 /// Biased exponents of binary32: those of 1 and of the largest finite numbers.

@@ -107,7 +107,7 @@ fn inside(plot: &Plot, layout: &Layout) -> Markup {
     }
 }
 
-/// The class of a series' colour: a dark ground replaces it by another.
+/// The class of a series' colour, which the style sheet replaces in dark mode.
 fn class(colour: usize) -> String {
     format!("c{}", LIGHT.place(colour))
 }
@@ -129,7 +129,7 @@ fn line(series: &Series, style: Line, path: &str) -> Markup {
     }
 }
 
-/// A sign that can be pointed at, where its point has a name: a ground larger than it helps.
+/// A marker that shows its point's name on hover, if the point has one. A larger invisible area makes it easier to hit.
 fn pointed(name: Option<&String>, (x, y): (f64, f64), sign: Markup) -> Markup {
     let Some(name) = name else { return sign };
     html! {
@@ -141,7 +141,7 @@ fn pointed(name: Option<&String>, (x, y): (f64, f64), sign: Markup) -> Markup {
     }
 }
 
-/// The names beside points. The first series' come first to a place.
+/// The names beside points. Names of the first series are placed first.
 fn beside(plot: &Plot, layout: &Layout) -> Markup {
     let named = plot.series.iter().flat_map(|series| series.points.iter().zip(&series.names));
     let points: Vec<(f64, f64, &str)> = named
@@ -159,7 +159,7 @@ fn beside(plot: &Plot, layout: &Layout) -> Markup {
         g class="names" {
             @for ((_, _, name), place) in points.iter().zip(places) {
                 @if let Some((x, y)) = place {
-                    // Twice: its ground parts a name from lines, in viewers that know no order of painting too.
+                    // Drawn twice: the halo separates the name from lines, also in viewers without `paint-order`.
                     text class="halo" aria-hidden="true" x=(round(x)) y=(round(y)) fill=(LIGHT.ground)
                         stroke=(LIGHT.ground) stroke-width="3" font-size="11" { (name) }
                     text x=(round(x)) y=(round(y)) fill=(LIGHT.ink) font-size="11" { (name) }

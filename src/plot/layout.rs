@@ -16,16 +16,16 @@ pub(super) const ROW: f64 = 18.0;
 /// Length of a line in the legend.
 pub(super) const SAMPLE: f64 = 34.0;
 
-/// The width that a text takes at most, or nearly.
+/// An upper estimate of the width of a text.
 pub(super) fn width(text: &str) -> f64 {
     text.chars().count() as f64 * CHARACTER
 }
 
-/// A picture divided.
+/// The places of the parts of a picture.
 pub(super) struct Layout {
     pub(super) x: Fitted,
     pub(super) y: Fitted,
-    /// Left, top, width and height of what is between the axes.
+    /// Left, top, width and height of the area between the axes.
     pub(super) left: f64,
     pub(super) top: f64,
     pub(super) wide: f64,

@@ -21,9 +21,9 @@ pub use style::STYLE;
 pub struct Plot {
     /// Above the plot.
     pub title: String,
-    /// To the right.
+    /// The horizontal axis.
     pub x: Axis,
-    /// Upwards.
+    /// The vertical axis.
     pub y: Axis,
     /// In the order of the legend; later ones lie over earlier ones.
     pub series: Vec<Series>,
@@ -52,7 +52,7 @@ impl Plot {
         self
     }
 
-    /// The same for a narrow screen: text is as large, and all else has less room.
+    /// The plot for a narrow screen: text keeps its size, and everything else has less room.
     #[must_use]
     pub(crate) fn narrow(mut self) -> Self {
         self.width = layout::NARROW;
@@ -122,7 +122,7 @@ mod tests {
         assert!(!svg.contains("lost"), "a point without a place has no name either");
     }
 
-    /// A viewer that knows no variables of CSS draws nothing where a colour is one.
+    /// A viewer without CSS variables draws nothing where a colour is a variable.
     #[test]
     fn every_element_has_its_colours_as_attributes() {
         let named = Series::new("t", 8, [(3.0, 3.0)]).hollow(Marker::Circle).named(["a name".to_owned()]);

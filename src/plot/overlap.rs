@@ -9,7 +9,7 @@ const NARROW: f64 = 0.5;
 /// Checks that no text of an SVG covers another, or leaves the picture to the left or right.
 ///
 /// # Panics
-/// When one does; it names both.
+/// Panics if a text overlaps another; the message has both.
 pub(crate) fn check(svg: &str) {
     let width: f64 = attribute(svg, "viewBox")
         .and_then(|view| view.split(' ').nth(2)?.parse().ok())

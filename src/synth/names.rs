@@ -53,7 +53,7 @@ impl<'a> Source<'a> {
             let leaving = path[index + 1..].iter().take(2).find(|next| next.kind == "routing");
             let sources = leaving.map_or(&[][..], |net| &net.sources);
             let mut hop = self.name(&segment.to.cell, sources);
-            // Inside a carry chain the name is known at its ends; some cells have none of the source's at all.
+            // Inside a carry chain, names are known only at its ends, and some cells have no name in the source.
             let is_inside = segment.to.cell.contains("CCU2_COMB") && sources.is_empty();
             if let Some(last) = hops.last().filter(|_| is_inside || hop.signal.is_empty()) {
                 hop.signal.clone_from(&last.signal);

@@ -111,7 +111,7 @@ impl Run<'_> {
         })
     }
 
-    /// The latest arrival at each cell from other registers, in ns after the clock; likewise.
+    /// The latest arrival at each cell from other registers, in ns after the clock, from the stored report if possible.
     pub fn arrivals(&self, store: &Store) -> Result<BTreeMap<String, f64>, SynthError> {
         self.kept(store, &["--detailed-timing-report"], |report| {
             let mut latest = BTreeMap::new();

@@ -24,13 +24,13 @@ pub enum Target {
     Xilinx,
 }
 
-/// The name of no [`Target`].
+/// A name that is not one of a [`Target`].
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("unknown target `{0}`: use ecp5, ice40, cyclonev, xilinx")]
 pub struct TargetError(String);
 
 impl Target {
-    /// All of them.
+    /// All targets.
     pub const ALL: [Self; 4] = [Self::Ecp5, Self::Ice40, Self::Cyclonev, Self::Xilinx];
 
     /// Its name on the command line.
@@ -64,7 +64,7 @@ impl Target {
         }
     }
 
-    /// What the device holds, where one is routed for that SCPUs fit in: of the LFE5U-85F as its data sheet says.
+    /// The resources of the device that is routed for, if SCPUs fit in it: those of the LFE5U-85F, by its data sheet.
     pub const fn capacity(self) -> Option<Area> {
         match self {
             Self::Ecp5 => Some(Area { luts: 83_640, ffs: 83_640, dsps: 156, brams: 208 }),
@@ -72,8 +72,8 @@ impl Target {
         }
     }
 
-    /// How long it takes for each operation, and what its multiplier blocks are written as. That of the ECP5 is fitted
-    /// to its router; it serves the others too, whose synthesis finds the multiplier blocks' registers.
+    /// The delay of each operation, and how multiplier blocks are written. The model of the ECP5 is fitted to its
+    /// router. It also serves the other families, whose synthesis finds the registers of multiplier blocks.
     pub fn delays(self) -> DelayModel {
         match self {
             Self::Ecp5 => DelayModel::ecp5()
@@ -94,8 +94,8 @@ impl Target {
         }
     }
 
-    /// An AFU for this family alone. `None` if the Verilog would be the same as for any: the family then has no delays
-    /// and no blocks of its own here.
+    /// An AFU for this family only. `None` if the Verilog would be the same as for any family, because the family has
+    /// no delays and no blocks of its own here.
     pub fn specialise(self, spec: Spec) -> Option<Spec> {
         let its = Spec { delays: self.delays(), target: Some(self.name()), memories: self.memories(), ..spec };
         let is_general = its.delays == DelayModel::default() && its.memories == Memories::default();

@@ -50,7 +50,7 @@ fn operations_say_which_widths_do_not_match() {
     bad!("slice: 2 bits from bit 4294967295 of `a`, which has 8", |g, a, b, c| a.slice(u32::MAX, 2));
     bad!("slice: 0 bits from bit 0 of `a`, which has 8", |g, a, b, c| a.low(0));
     bad!("extend: `a` has 8 bits, more than 5", |g, a, b, c| a.extend(5));
-    bad!("one hot: `a` has 9 bits, more than 8", |g, a, b, c| a.extend(9).one_hot());
+    bad!("one hot: `Concat of 9 bits` has 9 bits, more than 8", |g, a, b, c| a.extend(9).one_hot());
     bad!("constant 256 does not fit 8 bits", |g, a, b, c| a.is(256));
     bad!("constant 0 does not fit 0 bits", |g, a, b, c| g.constant(0, 0));
 }

@@ -21,8 +21,8 @@ pub(super) fn instantiate_multiplier(inner: &mut Inner, id: NodeId, model: &Dela
     Ok(())
 }
 
-/// Puts an instance of a block memory in the place of the table `id`, whose operand is that of its first rank. Its
-/// module belongs to that table alone, in the module of this name.
+/// Replaces the table `id` by an instance of a block memory, whose address is the operand of the table's first rank.
+/// The memory's module is only for this table, in the module of this name.
 pub(super) fn instantiate_table(
     inner: &mut Inner,
     id: NodeId,

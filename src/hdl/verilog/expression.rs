@@ -101,7 +101,7 @@ impl Expressions<'_> {
         Some(format!("{} ? {} : {}", self.term(condition), self.term(value), constant(node.width, 0)))
     }
 
-    /// The complement and a carry in, as carry chains have it: no tool makes two chains and a choice of that.
+    /// Adds the complement with a carry in, as carry chains do. So no tool builds two chains and a multiplexer.
     fn sub_add(&self, node: &Node) -> String {
         let [left, right] = [0, 1].map(|position| self.term(node.operands[position]));
         let add = node.operands[2];

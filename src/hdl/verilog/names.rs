@@ -130,13 +130,13 @@ impl Names {
     }
 }
 
-/// Values that are computed for a named register alone.
+/// Values that only a named register uses.
 fn next_values(module: &Module) -> HashMap<NodeId, &str> {
     let registers = module.nodes.iter().filter(|node| matches!(node.op, Op::Register { .. }));
     registers.filter_map(|node| Some((node.operands[0], node.name.as_deref()?))).collect()
 }
 
-/// The stage a value is available in: a register rank takes it on by one.
+/// The stage in which a value is available. Each rank of registers adds one.
 pub(super) fn stage(module: &Module, id: NodeId) -> Option<u32> {
     let node: &Node = module.node(id);
     match node.op {

@@ -50,9 +50,9 @@ fn mult18x18d(module: &Module) -> String {
     out
 }
 
-/// Ports `a`, `b`, `add` and `result`. A CCU2C has two bits of the chain, each with a table whose upper half is what
-/// passes the carry on, here a ^ b ^ ~add, and whose lowest bits make it where nothing passes it on, here a. The lowest
-/// bit of all only makes the first carry, which is ~add.
+/// Ports `a`, `b`, `add` and `result`. A CCU2C has two bits of the chain, each with a table. The upper half of the
+/// table says when the carry passes, here a ^ b ^ ~add. Its lowest bits make the carry where it does not pass, here a.
+/// The lowest bit of the chain only makes the first carry, ~add.
 fn ccu2c(module: &Module) -> String {
     let width = module.port("result").map_or(1, |(_, port)| port.width);
     let cells = (width + 1).div_ceil(2);
@@ -83,7 +83,7 @@ fn ccu2c(module: &Module) -> String {
 
 /// Bits of a word of a DP16KD; among its initial values each has 20, five hexadecimal digits.
 const WORD: u32 = 18;
-/// Words that one of its initial values holds, how many of these there are, and the words of half of it.
+/// The words in one initial value, the number of initial values, and the words in half of the memory.
 const WORDS: usize = 16;
 const VALUES: usize = 64;
 const HALF: usize = WORDS * VALUES / 2;
@@ -123,8 +123,8 @@ fn modes(bits: u32) -> [String; 2] {
         .map(|port| format!("    .DATA_WIDTH_{port}({bits}), .REGMODE_{port}(\"OUTREG\"), .CSDECODE_{port}(\"0b000\")"))
 }
 
-/// The connections of a port: its address from the lowest bit, what is written, when it writes and reads, and when its
-/// register takes a word. Of the words read port A has the low half, port B the high one.
+/// The connections of a port: its address from the lowest bit, the word to write, when the port writes and reads, and
+/// when its register takes a word. Of a word that is read, port A has the low half and port B the high half.
 fn port(
     letter: &str,
     address: [String; 14],
@@ -142,8 +142,8 @@ fn port(
     ports
 }
 
-/// Ports `index` and `word`: both ports of the memory read, one the low 18 bits of the word in the lower half, the
-/// other one the rest in the upper half.
+/// Ports `index` and `word`. Both ports of the memory read: one the low 18 bits of the word, from the lower half of the
+/// memory, and the other one the remaining bits, from the upper half.
 fn table(module: &Module) -> Block {
     let table = module.nodes.iter().find_map(|node| if let Op::Lookup(table) = &node.op { Some(table) } else { None });
     let part = |address: usize| {
@@ -169,8 +169,8 @@ fn table(module: &Module) -> Block {
 }
 
 /// Ports `write_index`, `write_word`, `read_index` and `word`, of up to 36 bits, and `write`, `read` and `advance`
-/// where there are such: port A writes whole words, port B reads. Of the words read either port has its half, in a
-/// register of its own.
+/// if the module has them. Port A writes whole words, port B reads them. Each port has half of the word that was
+/// read, in its own register.
 fn memory(module: &Module) -> Block {
     let address = |index: &str, low: &str| {
         std::array::from_fn(|place| match place {

@@ -13,7 +13,7 @@ use super::{Memories, Style};
 
 /// Up to this depth a memory goes to look-up tables, above it to block RAM.
 const DEEPEST_DISTRIBUTED: u32 = 64;
-/// But not with more bits than this, a quarter of a block RAM's.
+/// A distributed memory has at most this many bits, a quarter of a block RAM.
 const LARGEST_DISTRIBUTED: u32 = 4096;
 /// A memory narrower than this would waste a block RAM.
 const NARROWEST_BLOCK: u32 = 8;

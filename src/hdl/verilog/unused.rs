@@ -3,7 +3,7 @@
 use super::super::module::{InstanceCount, Module, NodeId, Op};
 use super::names::Names;
 
-/// The text that names every declared bit without a reader; empty if there is none.
+/// The text that names every declared bit without a reader; empty if every bit has one.
 pub(super) fn unused(module: &Module, names: &Names) -> String {
     let used = used_bits(module, names);
     let mut parts = Vec::new();
