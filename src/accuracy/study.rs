@@ -18,7 +18,7 @@ pub struct Task {
     pub seed: u64,
 }
 
-/// Why a study was not completed.
+/// Why a study could not be completed.
 #[derive(Debug, thiserror::Error)]
 pub enum StudyError {
     /// An engine failed.
@@ -33,12 +33,11 @@ pub enum StudyError {
 }
 
 /// Fills `results` with a row for each category and contender: those that the folder's store holds, and the others
-/// measured now. The folder, where there is one, is written after each category. `progress` is called with the pairs
-/// done of a category. Returns how many rows the store held.
+/// measured now. The folder, if there is one, is written after each category. `progress` is called with the category
+/// and the number of pairs done. Returns the number of rows that the store held.
 ///
-/// # Errors
-/// Returns an error if an engine fails, if the folder is not ours or holds another study (`force` takes it all the
-/// same), or if it cannot be read or written.
+/// Returns an error if an engine fails, if the folder is not ours or holds another study (unless forced), or if it
+/// cannot be read or written.
 pub fn fill(
     results: &mut HardResults,
     contenders: &mut [Box<dyn Contender>],
@@ -64,8 +63,8 @@ pub fn fill(
     Ok(all)
 }
 
-/// The store in a folder for results of this schema, which is taken even if it is not ours with `true`; without a
-/// folder one that does not last.
+/// The store in a folder for results of this schema; `true` accepts a folder that is not ours. Without a folder the
+/// store is temporary.
 fn open(folder: Option<(&Path, bool)>, schema: &str) -> Result<Store, StudyError> {
     let Some((folder, force)) = folder else { return Ok(Store::temporary()?) };
     folder::check_study(folder, schema, force)?;

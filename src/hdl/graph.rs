@@ -23,7 +23,7 @@ pub(super) struct Inner {
     pub errors: Vec<Error>,
 }
 
-/// The widest a value may be, in bits: far beyond any line, and a slip of the pen does not fill the memory.
+/// The maximum width of a value in bits: far beyond any line, but small enough that a typo does not fill the memory.
 pub(super) const WIDEST: u32 = 1 << 16;
 
 /// A module under construction. Hand out [`Signal`]s by [`Graph::input`] and the like, combine them, declare
@@ -52,7 +52,7 @@ impl Graph {
         }
     }
 
-    /// Adds a line to what the module's header says it is.
+    /// Adds a line to the description in the module's header.
     pub fn about(&self, line: impl Into<String>) {
         self.inner.borrow_mut().about.push(line.into());
     }
@@ -208,7 +208,7 @@ impl Graph {
         inner.errors.push(Error { module, message, place });
     }
 
-    /// The ids of `signals` if all are sound and of this graph; records the ones that are not.
+    /// The ids of `signals` if all are valid and belong to this graph; otherwise records an error.
     pub(super) fn own(
         &self,
         what: &str,

@@ -68,7 +68,7 @@ pub enum Op {
     },
     /// A register. Operands: next value, then an enable (1 bit) if it has one.
     Register {
-        /// The value on reset; without one it is not reset.
+        /// The value on reset; `None` for a register that is not reset.
         reset: Option<u128>,
     },
     /// The word read from a memory at the last clock edge, or the last at which the enable was set. Operands: address,
@@ -97,9 +97,9 @@ pub struct Node {
     pub width: u32,
     /// The operands.
     pub operands: Vec<NodeId>,
-    /// The name it was given.
+    /// The name of the value, if it has one.
     pub name: Option<String>,
-    /// The pipeline stage it stands in, where a scheduler has placed it.
+    /// The pipeline stage, if a scheduler has placed the node.
     pub stage: Option<u32>,
 }
 
@@ -112,7 +112,7 @@ pub struct Port {
     pub width: u32,
     /// True for an output; then `node` is the value driven.
     pub output: bool,
-    /// The input's own node, or the output's value. Absent where an input is not used by anything.
+    /// The node of the input, or the value of the output. `None` if nothing uses the input.
     pub node: Option<NodeId>,
 }
 
@@ -127,7 +127,7 @@ pub struct Parameter {
     pub min: u32,
     /// Largest allowed value, checked at elaboration.
     pub max: u32,
-    /// Where it is computed: how. Nobody can override it then.
+    /// How the value is computed, for a `localparam`. Nobody can override it.
     pub rounded: Option<Rounded>,
 }
 
@@ -155,7 +155,7 @@ pub struct Memory {
     pub name: String,
     /// Words.
     pub depth: u32,
-    /// Bits a word.
+    /// Bits per word.
     pub width: u32,
     /// Write port: enable, address, data.
     pub write: Option<[NodeId; 3]>,
@@ -254,15 +254,15 @@ pub struct Module {
     pub timing: Option<super::Timing>,
 }
 
-/// A longer delay than this many cycles is not a row of registers with names of their own.
+/// Only a delay of at most this many cycles is a row of registers with their own names.
 pub const LONGEST_REGISTER_DELAY: u32 = 3;
-/// A delay of so many cycles or more is a memory, if it is wide: two registers cost no more than a memory and what it
-/// is read into.
+/// A wide delay of at least this many cycles is a memory. Two registers cost no more than a memory and its output
+/// register.
 const SHORTEST_MEMORY_DELAY: u32 = 3;
 /// A longer delay of fewer bits than this is a shift register: a memory is never narrower than a few bits, and its
 /// pointer costs more than it saves.
 const NARROWEST_MEMORY_DELAY: u32 = 12;
-/// But a shift register never has more bits than this.
+/// A shift register never has more bits than this.
 const MOST_SHIFT_REGISTER_BITS: u32 = 64;
 /// One primitive of distributed memory is so deep on every family (ECP5 16, 7 series and Cyclone V 32). A longer delay
 /// in distributed memory is several, one behind the other: so no choice of primitives lies before the register.

@@ -180,7 +180,7 @@ impl Graph {
         Register(self.fresh(Op::Register { reset: None }, width, vec![], Location::caller()).named(name))
     }
 
-    /// A memory of `depth` ≥ 2 words of `width` bits; its addresses have ⌈log2 depth⌉ bits. Never reset.
+    /// A memory of `depth` ≥ 2 words of `width` bits; its addresses have ⌈log2 depth⌉ bits. It is never reset.
     #[track_caller]
     pub fn memory(&self, name: &str, depth: u32, width: u32) -> MemoryHandle<'_> {
         if depth < 2 || width == 0 || !is_identifier(name) {

@@ -44,7 +44,7 @@ pub(super) enum Message<T> {
     Busy(Busy),
 }
 
-/// What the threads share: the points that are left, and how many of them may be measured.
+/// The state that threads share: the points that are left, and how many of them may be measured.
 struct Queue {
     open: VecDeque<usize>,
     limit: Option<usize>,
@@ -98,7 +98,7 @@ impl Pass<'_> {
         T: Serialize + DeserializeOwned,
         E: PointError + From<StoreError>,
     {
-        // Nobody listens any more: there is nothing to tell.
+        // If the receiver is gone, nobody needs the message.
         let tell = |message| drop(sender.send(message));
         loop {
             let mut claims = Vec::new();

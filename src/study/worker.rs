@@ -37,7 +37,7 @@ pub struct Progress {
     pub seconds_left: Option<f64>,
 }
 
-/// What a process reports while it works.
+/// A progress report of a process.
 #[derive(Debug)]
 pub enum News<'a> {
     /// It begins with a point, or with several at once.

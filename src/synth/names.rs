@@ -1,4 +1,4 @@
-//! A path of cells told in the names of the Verilog it came from.
+//! Translates a path of cells into the names of the Verilog source.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -8,7 +8,7 @@ use super::route::Segment;
 use super::wrapper::UNIT;
 use crate::hdl::Module;
 
-/// What Yosys appends to a signal's name for a cell that drives it or hangs on it.
+/// What Yosys appends to a signal's name to name a cell at that signal.
 const CELLS: [&str; 12] = [
     "_TRELLIS_",
     "_LUT4",
@@ -38,18 +38,18 @@ struct Line {
 }
 
 impl<'a> Source<'a> {
-    /// Of a design's top module and its files.
+    /// The names of a design, from its top module and its files.
     pub fn new(top: &'a Arc<Module>, files: &'a [(String, String)]) -> Self {
         let lines = files.iter().map(|(name, text)| (name.as_str(), lines(text))).collect();
         Self { top, lines }
     }
 
-    /// A path, cell by cell; neighbours of one name are one hop.
+    /// A path, cell by cell. Neighbours with the same name are one hop.
     pub fn tell(&self, path: &[Segment]) -> Vec<Hop> {
         let mut hops: Vec<Hop> = Vec::new();
         for (index, segment) in path.iter().enumerate().filter(|(_, segment)| segment.delay > 0.0) {
             let is_routing = segment.kind == "routing";
-            // The net that leaves the cell knows where it was written.
+            // The net that leaves the cell has its place in the source.
             let leaving = path[index + 1..].iter().take(2).find(|next| next.kind == "routing");
             let sources = leaving.map_or(&[][..], |net| &net.sources);
             let mut hop = self.name(&segment.to.cell, sources);

@@ -1,4 +1,4 @@
-//! A unit through both programs.
+//! Measures a unit with Yosys and nextpnr.
 
 use super::cells::{area, placed};
 use super::figures::{Figures, SCHEMA, Seed, Tools};
@@ -12,18 +12,18 @@ use crate::tools::Program;
 /// How a unit is measured.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Options {
-    /// For which family.
+    /// The FPGA family.
     pub target: Target,
-    /// The placer's seeds; none: cells are counted, nothing is routed.
+    /// The placer's seeds. Without seeds, cells are counted and nothing is routed.
     pub seeds: Vec<u32>,
 }
 
-/// Measures a unit; `progress` is told what is being done.
+/// Measures a unit; `progress` is called at each step.
 ///
-/// Where the target cannot be routed, its cells are counted and there is no clock.
+/// If the target cannot be routed, its cells are counted and there is no clock.
 ///
 /// # Errors
-/// [`SynthError::MissingTool`] when a program is not there; what a program says when it refuses.
+/// Returns [`SynthError::MissingTool`] if a program is missing, and the messages of a program that fails.
 pub fn synthesise(unit: &Unit, options: &Options, mut progress: impl FnMut(&str)) -> Result<Figures, SynthError> {
     let target = options.target;
     let router = target.router().filter(|_| !options.seeds.is_empty());
@@ -53,7 +53,7 @@ pub fn synthesise(unit: &Unit, options: &Options, mut progress: impl FnMut(&str)
     }
     let seeds = routed.iter().map(|(seed, run)| Seed { seed: *seed, clock_mhz: run.clock_mhz }).collect();
     routed.sort_by(|(_, a), (_, b)| a.clock_mhz.total_cmp(&b.clock_mhz));
-    // Of an even number the lower one: no clock is told that no seed reached.
+    // Of an even number of seeds, the lower one of the middle two: a clock that some seed reached.
     let median = routed.get(routed.len().saturating_sub(1) / 2).map(|(_, run)| run);
     let occupied: Option<Area> = median.and_then(|run| placed(target, &run.used));
     let clock_mhz = median.map(|run| run.clock_mhz);
@@ -84,7 +84,7 @@ pub fn synthesise(unit: &Unit, options: &Options, mut progress: impl FnMut(&str)
     })
 }
 
-/// Netlists and routes, which are kept.
+/// The store of netlists and routes.
 pub(super) fn kept() -> Result<Store, SynthError> {
     Ok(Store::of_user("synth")?)
 }

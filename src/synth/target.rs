@@ -1,4 +1,4 @@
-//! The FPGA families, and how each is synthesised for.
+//! The FPGA families, and how designs are synthesised for each.
 
 use std::fmt;
 use std::str::FromStr;
@@ -16,7 +16,7 @@ use crate::hdl::{DelayModel, Primitive};
 pub enum Target {
     /// Lattice ECP5: placed and routed in an LFE5U-85F, speed grade 8.
     Ecp5,
-    /// Lattice iCE40: placed and routed in an HX8K where nextpnr-ice40 is there.
+    /// Lattice iCE40: placed and routed in an HX8K if nextpnr-ice40 is installed.
     Ice40,
     /// Intel Cyclone V: counted only.
     Cyclonev,
@@ -33,7 +33,7 @@ impl Target {
     /// All targets.
     pub const ALL: [Self; 4] = [Self::Ecp5, Self::Ice40, Self::Cyclonev, Self::Xilinx];
 
-    /// Its name on the command line.
+    /// The name on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Ecp5 => "ecp5",
@@ -43,7 +43,7 @@ impl Target {
         }
     }
 
-    /// The command of Yosys that maps to it.
+    /// The Yosys command that maps to the family.
     pub(super) const fn synthesis(self) -> &'static str {
         match self {
             Self::Ecp5 => "synth_ecp5",
@@ -53,7 +53,7 @@ impl Target {
         }
     }
 
-    /// nextpnr's name for its architecture and the options of the device, where it can be routed.
+    /// nextpnr's name for the architecture and the options of the device; `None` if the family cannot be routed.
     pub(crate) const fn router(self) -> Option<(&'static str, &'static [&'static str])> {
         match self {
             Self::Ecp5 => {

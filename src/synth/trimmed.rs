@@ -48,7 +48,7 @@ enum Bit {
 }
 
 impl Trimmed {
-    /// Reads it off a netlist in Yosys's JSON, of a wrapper around `unit`.
+    /// Finds them in a netlist in Yosys's JSON, of a wrapper around `unit`.
     pub(super) fn of(path: &Path, unit: &Module) -> Result<Self, SynthError> {
         let text = fs::read(path).map_err(|e| SynthError::io("read", path, e))?;
         let mut netlist: Netlist = serde_json::from_slice(&text)
@@ -61,7 +61,7 @@ impl Trimmed {
             let bits = names.iter().filter_map(|name| top.netnames.get(name)).flat_map(|net| &net.bits);
             bits.filter(|bit| registers.contains(bit)).collect::<HashSet<_>>().len() as u64
         };
-        // Of two names of a wire Yosys may drop one.
+        // If a wire has two names, Yosys may drop one.
         let inputs = unit.ports.iter().filter(|port| !port.output);
         let inputs = inputs.map(|port| format!("{}.{}", wrapper::UNIT, port.name));
         let operands: Vec<String> = inputs.chain([wrapper::OPERANDS.to_owned()]).collect();

@@ -1,4 +1,4 @@
-//! The files of a study beside its measurements.
+//! Writes the files of a study beside its measurements.
 
 use super::columns::COLUMNS;
 use super::{Study, Time, page, picture};
@@ -6,8 +6,8 @@ use crate::report::folder::{self, replace_csv, replace_file, replace_json};
 use std::path::Path;
 use std::{fs, io};
 
-/// Writes report.html, front.svg (a lone pair), throughput.svg (where areas are known), link.svg, results.csv and
-/// results.json into a folder that [`run`](super::run) made; each is replaced whole, and none of an earlier run stays.
+/// Writes report.html, front.svg (latency of a single pair), throughput.svg (if areas are known), link.svg, results.csv
+/// and results.json into a folder. Each file is replaced as a whole, and no file of an earlier run stays.
 ///
 /// # Errors
 /// Returns an error if the file system refuses.

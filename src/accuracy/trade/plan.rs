@@ -15,15 +15,15 @@ const TARGET: Target = Target::Ecp5;
 /// The extent of a study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Size {
-    /// A configuration a profile, some fifty thousand pairs.
+    /// One configuration per profile, some fifty thousand pairs.
     Profiles,
-    /// Some ten configurations, as many pairs.
+    /// Some ten configurations, the same number of pairs.
     Quick,
     /// One axis at a time from `wide`, the neighbours of the front, a million pairs, routes.
     Full,
 }
 
-/// Pairs that errors are found on.
+/// Pairs on which errors are measured.
 #[derive(Clone, Debug)]
 pub struct Named {
     /// The set's name.
@@ -34,7 +34,7 @@ pub struct Named {
     pub pairs: Vec<PairRecord>,
 }
 
-/// A study to be made.
+/// The plan of a study.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// The configurations, each with its axis.
@@ -65,7 +65,7 @@ pub struct Plan {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Request {
-    /// Its extent.
+    /// The extent of the study.
     pub size: Size,
     /// The profiles that it is limited to; none: all.
     pub profiles: Vec<Profile>,
@@ -104,7 +104,7 @@ impl Request {
         }
     }
 
-    /// Leaves out what programs are needed for that are missing.
+    /// Leaves out the parts of the study whose programs are missing.
     ///
     /// Returns what was left out, with the command that installs it.
     pub fn without_missing_programs(&mut self) -> Vec<String> {

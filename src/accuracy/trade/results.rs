@@ -24,11 +24,11 @@ pub struct SetFigures {
 pub struct Study {
     /// [`SCHEMA`].
     pub schema: String,
-    /// This crate's.
+    /// The version of this crate.
     pub version: String,
     /// The day that software was timed, year first, in UTC; empty if it was not.
     pub date: String,
-    /// The command that made it.
+    /// The command that made the study.
     pub command: String,
     /// The processor that software was timed on; empty if it was not.
     pub processor: String,
@@ -49,7 +49,7 @@ pub struct Study {
 }
 
 impl Study {
-    /// Without points.
+    /// The results of a plan, without points.
     pub(super) fn new(plan: &Plan) -> Self {
         let set = |set: &super::Named| SetFigures {
             name: set.name.clone(),
@@ -72,7 +72,7 @@ impl Study {
         }
     }
 
-    /// The times that any point has: that of a full device is known where areas are.
+    /// The kinds of time that any point has. The time of a full device is known only if areas are.
     pub fn times(&self) -> Vec<Time> {
         let is_known = |time: &Time| self.points.iter().any(|point| time.of(point, self).is_some());
         Time::ALL.into_iter().filter(is_known).collect()
@@ -93,8 +93,8 @@ impl Study {
         self.sets.iter().fold(0, |sum, set| sum.saturating_add(set.pairs))
     }
 
-    /// Whether a point may be compared with others: it was placed and routed, or none was. A clock of the delay model's
-    /// is one that no router gave.
+    /// True if a point may be compared with others: it was placed and routed, or no point was. A clock of the delay
+    /// model cannot be compared with one of a router.
     pub fn is_comparable(&self, point: &Point) -> bool {
         let is_routed = |point: &Point| point.routed_mhz().is_some();
         is_routed(point) || !self.points.iter().any(is_routed)
@@ -115,16 +115,16 @@ impl Study {
         point.errors(&self.scenes()).contact.largest
     }
 
-    /// The mean.
+    /// The mean of a point's relative errors on the scenes.
     pub(crate) fn typical(&self, point: &Point) -> f64 {
         point.errors(&self.scenes()).contact.mean
     }
 }
 
-/// The results that are part of this crate: of the day and by the command that they name.
+/// The results that are part of this crate. They contain the command that made them.
 ///
 /// # Errors
-/// Returns an error if the file of the crate is not what this version reads; a test holds that it is.
+/// Returns an error if the file of the crate is not what this version reads; a test checks that it is.
 pub fn committed() -> Result<Study, serde_json::Error> {
     serde_json::from_str(include_str!("committed.json"))
 }

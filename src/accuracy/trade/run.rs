@@ -1,4 +1,4 @@
-//! A study, carried out.
+//! Carries out a study.
 
 use super::axes::{Choice, is_same, name, neighbours};
 use super::front::{on_fronts, worth_routing};
@@ -24,19 +24,19 @@ use {
     crate::study::Point as Shared,
 };
 
-/// Why a study was not completed.
+/// Why a study could not be completed.
 #[derive(Debug, thiserror::Error)]
 pub enum TradeError {
     /// A kernel failed, or the folder cannot be used.
     #[error(transparent)]
     Study(#[from] StudyError),
-    /// No model, or no end of a job.
+    /// A model could not be built, or a job did not finish.
     #[error(transparent)]
     Verify(#[from] VerifyError),
-    /// A synthesis program refused.
+    /// A synthesis program failed.
     #[error(transparent)]
     Synth(#[from] SynthError),
-    /// The link cannot be at a point's clock.
+    /// The link cannot be modelled at a point's clock.
     #[error(transparent)]
     Link(#[from] LinkError),
 }
@@ -67,10 +67,10 @@ impl PointError for TradeError {
 /// The schema of the manifest in a study's folder.
 const FOLDER: &str = "contact-afu/accuracy-store/2";
 
-/// What a process brought a study to.
+/// The state of a study when a process ends.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ended {
-    /// The results of what is there.
+    /// The results of the points that are measured.
     pub results: Study,
     /// True if the rest of the study depends on points of others that are missing.
     pub is_waiting: bool,
@@ -129,7 +129,7 @@ fn all<F: FnMut(News<'_>)>(stages: &mut Stages<'_, F>, results: &mut Study) -> R
     Ok(true)
 }
 
-/// Last of all, when nothing else runs.
+/// Times software. This is the last step, so that nothing else runs.
 fn time_software(plan: &Plan, results: &mut Study) {
     let pairs = plan.sets.iter().rfind(|set| set.is_scene).map_or(&[][..], |set| &set.pairs);
     results.kernels = software::kernels(pairs);
@@ -138,7 +138,8 @@ fn time_software(plan: &Plan, results: &mut Study) {
     }
 }
 
-/// Configurations a step from those on a front that are not there yet: as many as the plan has, those of each in turn.
+/// New configurations one step from those on a front, at most as many as the plan says. Each point on a front gives one
+/// in turn.
 fn beside_the_front(plan: &Plan, results: &Study) -> Vec<Choice> {
     let mut around: Vec<VecDeque<Choice>> =
         on_fronts(results).into_iter().map(|index| neighbours(&results.points[index].config).into()).collect();
@@ -155,8 +156,8 @@ fn beside_the_front(plan: &Plan, results: &Study) -> Vec<Choice> {
     more
 }
 
-/// Places and routes the points that fronts may be drawn through. Which are worth it is looked anew after each round: a
-/// clock that place and route lowers may bring another point there. Each is tried once, so that comes to an end.
+/// Places and routes the points that may be on a front. They are chosen again after each round, because a clock that
+/// place and route lowers may bring another point to the front. Each point is tried once, so this terminates.
 fn route<F: FnMut(News<'_>)>(stages: &mut Stages<'_, F>, results: &mut Study) -> Result<bool, TradeError> {
     let seeds = &stages.plan.placer_seeds;
     let mut tried: Vec<usize> = Vec::new();
@@ -227,7 +228,7 @@ fn add<F: FnMut(News<'_>)>(
     Ok(!stages.worker.is_missing_any())
 }
 
-/// Where each arithmetic leads the diamond's spheres: an arithmetic once.
+/// Measures the drift of the diamond's spheres, once per arithmetic.
 #[cfg(feature = "ode")]
 fn drifts<F: FnMut(News<'_>)>(stages: &mut Stages<'_, F>, results: &mut Study) -> Result<(), TradeError> {
     let mut arithmetics: Vec<(String, &Config)> = Vec::new();
@@ -250,7 +251,7 @@ fn drifts<F: FnMut(News<'_>)>(stages: &mut Stages<'_, F>, results: &mut Study) -
         let one = |&index: &usize| Ok(scene.drift(&mut arithmetics[index].1.reference()).map_err(fail)?);
         at.iter().map(one).collect()
     };
-    // All at once: what ODE itself does is found once for them.
+    // All at once, so that ODE's own result is computed once.
     let found = stages.measure(points, usize::MAX, follow)?;
     let names = arithmetics.into_iter().map(|(name, _)| name);
     let drifts: Vec<(String, Option<Drift>)> = names.zip(found.values.into_iter().map(Option::flatten)).collect();

@@ -1,4 +1,4 @@
-//! The stages of a study, each of which has points: errors, areas and routes, cycles, drifts.
+//! The stages of a study: errors, areas and routes, cycles, drifts. Each has points.
 
 use super::axes::name;
 use super::cost::{Cycles, Hardware, cycles, cycles_hash, hardware, hardware_hash};
@@ -16,10 +16,10 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::thread;
 
-/// Arithmetics whose answers are judged at once: the truth about a set is found anew for each so many.
+/// The number of arithmetics that are judged at once. The truth about a set is computed again for each such group.
 const AT_ONCE: usize = 16;
 
-/// A plan, and the process that carries it out.
+/// A plan, and the worker that carries it out.
 pub(super) struct Stages<'a, F> {
     pub plan: &'a Plan,
     pub store: &'a Store,
@@ -190,7 +190,7 @@ impl<F: FnMut(News<'_>)> Stages<'_, F> {
     }
 }
 
-/// What the generator says of each configuration; found on all processors.
+/// What the generator knows about each configuration, computed on all processors.
 fn facts(configs: &[&Config]) -> Result<Vec<Cost>, TradeError> {
     let fact = |config: &Config| {
         let unit = Unit::scpu(config)?;

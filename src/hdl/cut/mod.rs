@@ -18,7 +18,8 @@ use super::module::{Module, Node, NodeId, Op};
 /// The timing of a pipeline's stages, by the delay model that they were cut with.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Timing {
-    /// The clock it attains. Below the one asked for where a single operation takes longer than its period.
+    /// The clock that the stages reach. It is below the requested one if a single operation takes longer than its
+    /// period.
     pub clock_mhz: f64,
     /// The slowest stage, counted from 0.
     pub stage: u32,
@@ -37,7 +38,6 @@ pub struct Timing {
 /// becomes an instance of one, and so does a table that fits a block memory; a difference that may be a sum one of the
 /// target's carry chain, if the model names it.
 ///
-/// # Errors
 /// A clock that is not a positive number; anything in `module` that is clocked, and instances.
 #[track_caller]
 pub fn cut(module: &Module, model: &DelayModel, clock_mhz: f64) -> Result<Arc<Module>, BuildErrors> {

@@ -1,4 +1,4 @@
-//! In which stage each operation stands.
+//! Chooses the stage of each operation.
 //!
 //! First as soon as possible, which gives the fewest stages there can be. Then operations move within their slack,
 //! one at a time, where that saves register bits: a sweep from the outputs moves them later, one from the inputs
@@ -17,7 +17,7 @@ const MOST_SWEEPS: u32 = 24;
 /// Sums of the same delays in another order may differ by this much, in ns.
 const ROUNDING: f64 = 1e-9;
 
-/// Stages of a module's operations. All lists go by node.
+/// Stages of a module's operations. All lists are indexed by node.
 pub(super) struct Plan<'a> {
     module: &'a Module,
     budget: f64,
@@ -26,17 +26,17 @@ pub(super) struct Plan<'a> {
     delay: Vec<f64>,
     /// Register ranks inside an operation: it takes its operands that many stages before the one it stands in.
     pub ranks: Vec<u32>,
-    /// Who uses a value, each once.
+    /// The users of a value, each once.
     users: Vec<Vec<NodeId>>,
     /// True if a value drives an output.
     is_output: Vec<bool>,
     /// Bits that a register of the value takes: constant parts of it need none.
     bits: Vec<u64>,
-    /// From the beginning of the stage to the result.
+    /// The delay from the beginning of the stage to the result.
     arrival: Vec<f64>,
-    /// From the result to the end of the stage.
+    /// The delay from the result to the end of the stage.
     tail: Vec<f64>,
-    /// Made of constants and parameters alone: good in any stage.
+    /// True if only constants and parameters are used: the value is valid in any stage.
     pub invariant: Vec<bool>,
     pub stage: Vec<u32>,
     /// The number of stages.
@@ -189,7 +189,7 @@ impl<'a> Plan<'a> {
             self.sweep(sweep);
             let bits = self.register_bits();
             idle = if bits < best.0 { 0 } else { idle + 1 };
-            // Of equals the later ones: fields and extensions then stand with their use, and what waits is whole.
+            // Among equals the later stage: fields and extensions then stand beside their use, and whole values wait.
             if bits < best.0 || bits == best.0 && sweep == Sweep::Later {
                 best = (bits, self.stage.clone());
             }

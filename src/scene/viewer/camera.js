@@ -1,4 +1,4 @@
-// Where the eye is: it turns around a target, which it follows until the reader's hand or a contact says otherwise.
+// The camera: it orbits a target, which it follows until the user drags it or selects a contact.
 const ANGLE = 0.6;
 const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
 

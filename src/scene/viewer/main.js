@@ -1,4 +1,4 @@
-// The view: what is drawn, when, and the reader's hands on it.
+// The view: what is drawn, when, and how the user controls it.
 class View {
   constructor(canvas, gl) {
     Object.assign(this, { canvas, gl });

@@ -13,7 +13,7 @@ class Playback {
     this.play.addEventListener("click", () => this.run(!this.running));
     this.at.addEventListener("input", () => { this.run(false); this.seek(Number(this.at.value)); });
     window.addEventListener("keydown", (event) => this.key(event));
-    // Whoever wants less motion starts it by hand.
+    // A user who prefers reduced motion starts it by hand.
     this.run(!still);
   }
 
