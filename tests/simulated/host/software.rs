@@ -267,7 +267,7 @@ fn hits_that_are_missing_or_of_no_pair_are_refused() {
     });
     assert_eq!(error, HostError::Hit(HitError::Number { index: 1, number: 0, after: Some(0), pairs: 3 }));
     let error = run(|device, first| device.memory_mut().set(first, &[3; 16]));
-    assert!(error.to_string().starts_with("contact 0 is of pair 3, after none, of 3 pairs, although"), "{error}");
+    assert!(error.to_string().starts_with("contact 0 is of pair 3, after no other, of 3 pairs, although"), "{error}");
 }
 
 /// A second job without restarting SPL, after results and after an error.
