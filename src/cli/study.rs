@@ -23,7 +23,7 @@ pub struct Shared {
     #[arg(long, value_name = "DIR", group = "place")]
     pub store: Option<PathBuf>,
     /// Measure only part K of M of the points, 1/4 to 4/4 for example; their content decides the part
-    #[arg(long, value_name = "K/M", requires = "store", conflicts_with = "out")]
+    #[arg(long, value_name = "K/M", requires = "store", conflicts_with_all = ["out", "json"])]
     shard: Option<Shard>,
     /// Take up the point of a process that gave no sign of life for so many seconds, 1 to 86400
     #[arg(long, value_name = "SECONDS", default_value_t = 60, requires = "store",

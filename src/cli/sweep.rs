@@ -13,11 +13,11 @@ use super::machine::{Machine, warn_of_unused_scpus};
 use super::study::Shared;
 use super::{link, output, progress, study};
 
-/// Run the same job on AFUs of different sizes: throughput, latency and simulation time
+/// Run the same job on AFUs of different sizes: throughput and latency
 ///
-/// The table has one row per AFU: pairs per second at the clock, cycles per pair, latency, mismatches, and the seconds
-/// to build its model and to simulate. Each row is written when it is measured. If the command is stopped, or the lists
-/// grow, the same command measures only the rows that are missing.
+/// The table has one row per AFU: pairs per second at the clock, cycles per pair, latency, mismatches. Each row is
+/// written when it is measured, and host.csv has the seconds that its model and its simulation took. If the command is
+/// stopped, or the lists grow, the same command measures only the rows that are missing.
 #[derive(Args, Debug)]
 pub struct Sweep {
     /// Numbers of SCPUs (sphere collision processing units), 1 to 64: 1,2,4 or 1..16 (includes 16)

@@ -122,7 +122,7 @@ mod tests {
         assert!(!svg.contains("lost"), "a point without a place has no name either");
     }
 
-    /// A viewer without CSS variables draws nothing where a colour is a variable.
+    /// A viewer that does not support CSS variables leaves out elements whose colour is one.
     #[test]
     fn every_element_has_its_colours_as_attributes() {
         let named = Series::new("t", 8, [(3.0, 3.0)]).hollow(Marker::Circle).named(["a name".to_owned()]);

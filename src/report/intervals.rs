@@ -95,7 +95,7 @@ pub fn page(all: &[Figures]) -> String {
     page
 }
 
-/// The area as a share of that at interval 1, over the interval.
+/// Plots the area over the interval, relative to the area at interval 1.
 pub fn picture(all: &[Figures]) -> Plot {
     let rows = rows(all);
     let counted = |row: &Row<'_>| row.counted.or(row.routed).map(|of| of.area);

@@ -186,6 +186,7 @@ fn wrong_options_of_a_shared_study_are_exit_2() {
         (&["synth", "--shard", "1/2"][..], "--store <DIR>"),
         (&["synth", "--store", "s", "--shard", "3/2"], "expected K/M with 1 ≤ K ≤ M"),
         (&["synth", "--store", "s", "--shard", "1/2", "--out", "o"], "cannot be used with"),
+        (&["synth", "--store", "s", "--shard", "1/2", "--json", "-"], "cannot be used with"),
         (&["sweep", "--lease", "5", "--out", "o"], "--store <DIR>"),
         (&["sweep"], "--out <DIR>"),
         (&["merge", "--store", "s"], "--out <DIR>"),
