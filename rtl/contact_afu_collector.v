@@ -51,7 +51,10 @@ module contact_afu_collector (
   wire port_free = ~rd_req_valid | rd_req_ready;
   wire issue = may_ask & port_free;
   wire request_stays = rd_req_valid & ~rd_req_ready;
-  wire may_ask_next = run & (issue ? |lines_to_request[31:1] : |lines_to_request) & ~(~taken & (reserved[6] | (&reserved[5:0] & issue)));
+  wire may_ask_next =
+      run
+      & (issue ? |lines_to_request[31:1] : |lines_to_request)
+      & ~(~taken & (reserved[6] | (&reserved[5:0] & issue)));
   wire start_or_issue = start | issue;
   wire oldest_goes = came[0] & ~two_valid;
   wire [63:0] marked = came | (answered ? (64'd1 << arrived_age) : 64'd0);
@@ -96,10 +99,10 @@ module contact_afu_collector (
       may_ask <= may_ask_next;
       if (start_or_issue) lines_to_request <= start ? lines : (lines_to_request - 32'd1);
       taken <= take & ~start;
-      if (start | (issue ^ taken)) reserved <= start ? 7'd0 : (issue ? (reserved + 7'd1) : (reserved - 7'd1));
+      if (start | (issue ^ taken)) reserved <= start ? 7'd0 : issue ? (reserved + 7'd1) : (reserved - 7'd1);
       if (start_or_issue) next_slot <= start ? 6'd0 : (next_slot + 6'd1);
       line_valid <= ~start & (oldest_goes | two_valid | (line_valid & ~take));
-      came <= start ? 64'd0 : (oldest_goes ? {1'b0, marked[63:1]} : marked);
+      came <= start ? 64'd0 : oldest_goes ? {1'b0, marked[63:1]} : marked;
       two_valid <= ~start & ~take & (two_valid | (line_valid & oldest_goes));
       answered <= is_awaited & ~start;
       awaited <= start ? 64'd0 : ((awaited & ~answers) | asked);
@@ -108,7 +111,7 @@ module contact_afu_collector (
       if (start | take) head <= start ? 6'd0 : (head + 6'd1);
       failed <= is_awaited & rd_rsp_error & ~start;
       unexpected <= run & is_current & ~is_awaited & ~start;
-      if (start | (issue ^ answered)) outstanding <= start ? 7'd0 : (issue ? (outstanding + 7'd1) : (outstanding - 7'd1));
+      if (start | (issue ^ answered)) outstanding <= start ? 7'd0 : issue ? (outstanding + 7'd1) : (outstanding - 7'd1);
     end
   end
 

@@ -70,7 +70,13 @@ module contact_afu_control (
   wire accept = start & ~busy;
   wire mode_any = |mode;
   wire refuses = accept & mode_any;
-  wire [3:0] cause = abort_job ? 4'd1 : (read_failed_heard ? 4'd2 : (write_failed_heard ? 4'd3 : ((unexpected_heard & ~begin_job) ? 4'd7 : (expired ? 4'd4 : 4'd0))));
+  wire [3:0] cause =
+      abort_job                       ? 4'd1 :
+      read_failed_heard               ? 4'd2 :
+      write_failed_heard              ? 4'd3 :
+      (unexpected_heard & ~begin_job) ? 4'd7 :
+      expired                         ? 4'd4 :
+      4'd0;
   assign run = running & ~begin_job;
   wire completes = run & complete;
   wire failing = running & |cause & ~completes;

@@ -100,9 +100,9 @@ module contact_afu_dispatcher (
       may_send <= run & ~(~oldest_goes & (reserved[6] | (&reserved[5:0] & goes)));
       read_valid <= ~start & (take | (read_valid & ~goes));
       ready <= ~start & (line_valid | (|stored[8:1] | (stored[0] & ~take)));
-      if (start | (line_valid ^ take)) stored <= start ? 9'd0 : (line_valid ? (stored + 9'd1) : (stored - 9'd1));
-      came <= start ? 64'd0 : (oldest_goes ? {1'b0, marked[63:1]} : marked);
-      if (start | (goes ^ oldest_goes)) reserved <= start ? 7'd0 : (goes ? (reserved + 7'd1) : (reserved - 7'd1));
+      if (start | (line_valid ^ take)) stored <= start ? 9'd0 : line_valid ? (stored + 9'd1) : (stored - 9'd1);
+      came <= start ? 64'd0 : oldest_goes ? {1'b0, marked[63:1]} : marked;
+      if (start | (goes ^ oldest_goes)) reserved <= start ? 7'd0 : goes ? (reserved + 7'd1) : (reserved - 7'd1);
       answered <= is_awaited & ~start;
       awaited <= start ? 64'd0 : ((awaited & ~answers) | asked);
       leftover_request <= request_stays & (start | leftover_request);
@@ -113,7 +113,7 @@ module contact_afu_dispatcher (
       line_left <= take & ~start;
       failed <= is_awaited & wr_rsp_error & ~start;
       unexpected <= run & is_current & ~is_awaited & ~start;
-      if (start | (goes ^ answered)) outstanding <= start ? 7'd0 : (goes ? (outstanding + 7'd1) : (outstanding - 7'd1));
+      if (start | (goes ^ answered)) outstanding <= start ? 7'd0 : goes ? (outstanding + 7'd1) : (outstanding - 7'd1);
     end
   end
 

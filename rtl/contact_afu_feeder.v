@@ -63,23 +63,29 @@ module contact_afu_feeder (
   wire turn_after_1_below_scpus_wide = turn_after_1 < scpus_wide;
   wire unit_1 = turn_after_1_below_scpus_wide & ~turn[0];
   wire go_1 = go_0 & present_1 & unit_1;
-  wire [1:0] group = go_1 ? 2'd2 : (go_0 ? 2'd1 : 2'd0);
+  wire [1:0] group = go_1 ? 2'd2 : go_0 ? 2'd1 : 2'd0;
   wire [2:0] place_after_2 = place_after_0 + 3'd2;
   wire line_done_after_2 = last_wide < place_after_2;
-  wire line_done = go_1 ? line_done_after_2 : (go_0 ? line_done_after_1 : line_done_after_0);
+  wire line_done = go_1 ? line_done_after_2 : go_0 ? line_done_after_1 : line_done_after_0;
   assign take = line_comes & (line_done | ~in_hand);
   wire lines_left_31_1_any = |lines_left[31:1];
-  wire one_lines_left_next = start ? (lines[0] & ~|lines[31:1]) : (take ? (~|lines_left[31:2] & lines_left[1] & ~lines_left[0]) : (lines_left[0] & ~lines_left_31_1_any));
+  wire one_lines_left_next =
+      start ? (lines[0] & ~|lines[31:1]) :
+      take  ? (~|lines_left[31:2] & lines_left[1] & ~lines_left[0]) :
+      (lines_left[0] & ~lines_left_31_1_any);
   wire [7:0] turn_after_2 = turn_after_0 + 8'd2;
   wire turn_wraps_after_2 = turn_after_2 >= scpus_wide;
   wire [7:0] wrapped_turn_after_2 = turn_wraps_after_2 ? (turn_after_2 - scpus_wide) : turn_after_2;
   wire turn_wraps_after_1 = ~turn_after_1_below_scpus_wide;
   wire [7:0] wrapped_turn_after_1 = turn_wraps_after_1 ? (turn_after_1 - scpus_wide) : turn_after_1;
-  wire [6:0] next_turn = go_1 ? wrapped_turn_after_2[6:0] : (go_0 ? wrapped_turn_after_1[6:0] : turn);
-  wire next_place = go_1 ? place_after_2[0] : (go_0 ? place_after_1[0] : place);
-  wire turn_wraps = go_1 ? turn_wraps_after_2 : (go_0 ? turn_wraps_after_1 : 1'b0);
+  wire [6:0] next_turn = go_1 ? wrapped_turn_after_2[6:0] : go_0 ? wrapped_turn_after_1[6:0] : turn;
+  wire next_place = go_1 ? place_after_2[0] : go_0 ? place_after_1[0] : place;
+  wire turn_wraps = go_1 ? turn_wraps_after_2 : go_0 ? turn_wraps_after_1 : 1'b0;
   wire [2:0] turn_0_0_wide = {2'd0, turn[0]};
-  wire ends_block = go_1 ? ((turn_0_0_wide + 3'd2) == 3'd2) : (go_0 ? ((turn_0_0_wide + 3'd1) == 3'd2) : (turn_0_0_wide == 3'd2));
+  wire ends_block =
+      go_1 ? ((turn_0_0_wide + 3'd2) == 3'd2) :
+      go_0 ? ((turn_0_0_wide + 3'd1) == 3'd2) :
+      (turn_0_0_wide == 3'd2);
   wire [1023:0] window = {line, held};
   wire [1023:0] aligned_by_1 = first_place ? {256'd0, window[1023:256]} : window;
   wire [511:0] aligned = aligned_by_1[511:0];
@@ -114,11 +120,14 @@ module contact_afu_feeder (
     end else begin
       group_rank_0 <= group;
       phase <= (phase == 3'd4) ? 3'd0 : (phase + 3'd1);
-      turn_phase <= (start | turn_wraps) ? 3'd0 : (ends_block ? ((turn_phase == 3'd4) ? 3'd0 : (turn_phase + 3'd1)) : turn_phase);
+      turn_phase <=
+          (start | turn_wraps) ? 3'd0 :
+          ends_block           ? ((turn_phase == 3'd4) ? 3'd0 : (turn_phase + 3'd1)) :
+          turn_phase;
       in_hand <= ~start & (take | (in_hand & ~line_done));
       place <= (start | ~in_hand) ? 1'b0 : next_place;
       turn <= start ? 7'd0 : next_turn;
-      any_lines_left <= start ? |lines : (take ? lines_left_31_1_any : |lines_left);
+      any_lines_left <= start ? |lines : take ? lines_left_31_1_any : |lines_left;
       one_lines_left <= one_lines_left_next;
       if (start | take) lines_left <= start ? lines : (lines_left - 32'd1);
       issue_group <= group_rank_0;

@@ -88,10 +88,13 @@ module contact_afu_packer (
       place <= start_or_flushes ? 1'b0 : wrapped_place[0];
       all_seen <= ~start & (emerged == count);
       emerged <= start ? 32'd0 : (emerged + {30'd0, group});
-      filling <= emptied ? 512'd0 : (full ? {256'd0, merged[767:512]} : merged[511:0]);
+      filling <= emptied ? 512'd0 : full ? {256'd0, merged[767:512]} : merged[511:0];
       contact_count <= start ? 32'd0 : (contact_count + {30'd0, {1'b0, contact_0} + {1'b0, contact_1}});
       invalid_count <= start ? 32'd0 : (invalid_count + {30'd0, {1'b0, invalid_0} + {1'b0, invalid_1}});
-      first_invalid_pair <= start ? 32'hffffffff : ((some_invalid & none_invalid) ? (invalid_0 ? emerged_before : (emerged_before + 32'd1)) : first_invalid_pair);
+      first_invalid_pair <=
+          start                         ? 32'hffffffff :
+          (some_invalid & none_invalid) ? (invalid_0 ? emerged_before : (emerged_before + 32'd1)) :
+          first_invalid_pair;
       none_invalid <= start | (none_invalid & ~some_invalid);
     end
   end

@@ -138,7 +138,10 @@ module fp_add_e10f23z_normal (
   wire sticky = |normalise_by_1[2:0];
   wire [23:0] significand = normalise_by_1[27:4];
   wire round_up = guard & (sticky | significand[0]);
-  wire [4:0] leading_zeros = {normalise_top_16_clear_s5, normalise_top_8_clear_s5, normalise_top_4_clear_s5, normalise_top_2_clear, normalise_top_1_clear};
+  wire [4:0] leading_zeros = {
+    normalise_top_16_clear_s5, normalise_top_8_clear_s5, normalise_top_4_clear_s5, normalise_top_2_clear,
+    normalise_top_1_clear
+  };
   wire [10:0] normalised_exponent = ({1'b0, large_exponent_s5} + 11'd1) - {5'd0, {1'b0, leading_zeros}};
   wire [10:0] result_exponent = normalise_by_1[27] ? normalised_exponent : 11'd0;
   wire is_exact_zero = ~normalise_by_1[27];

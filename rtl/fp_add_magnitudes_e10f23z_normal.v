@@ -83,7 +83,8 @@ module fp_add_magnitudes_e10f23z_normal (
     large_significand_s2 <= large_significand_s1;
     align_distance_0_0_s2 <= align_distance_0_0_s1;
     align_by_2_s2 <= align_by_2;
-    align_by_16_loses_or_or_or_or_s2 <= align_by_16_loses | align_by_8_loses | align_by_4_loses | align_by_2_loses | align_by_1_loses;
+    align_by_16_loses_or_or_or_or_s2 <=
+        align_by_16_loses | align_by_8_loses | align_by_4_loses | align_by_2_loses | align_by_1_loses;
     large_exponent_s2 <= large_exponent_s1;
     sign_s2 <= sign_s1;
   end

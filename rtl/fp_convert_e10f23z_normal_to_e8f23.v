@@ -48,7 +48,8 @@ module fp_convert_e10f23z_normal_to_e8f23 (
     a_significand_wide_s1 <= a_significand_wide;
     a_significand_wide_15_0_any_s1 <= |a_significand_wide[15:0];
     is_infinity_s1 <= is_infinity;
-    a_rebiased_exponent_7_0_and_s1 <= (~a_rebiased_exponent[10] & |a_rebiased_exponent) ? a_rebiased_exponent[7:0] : 8'd0;
+    a_rebiased_exponent_7_0_and_s1 <=
+        (~a_rebiased_exponent[10] & |a_rebiased_exponent) ? a_rebiased_exponent[7:0] : 8'd0;
     a_sign_s1 <= a_sign;
   end
   wire [4:0] denormalise_distance = missing_places_capped_and_s1 | {5{is_special_s1}};

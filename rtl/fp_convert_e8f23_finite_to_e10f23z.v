@@ -22,21 +22,37 @@ module fp_convert_e8f23_finite_to_e10f23z (
   wire a_significand_23_16_is_zero = ~|a_significand[23:16];
   wire a_significand_15_12_is_zero = ~|a_fraction[15:12];
   wire a_significand_11_10_is_zero = ~|a_fraction[11:10];
-  wire [1:0] a_significand_11_8_zeros = {a_significand_11_10_is_zero, a_significand_11_10_is_zero ? ~a_fraction[9] : ~a_fraction[11]};
+  wire [1:0] a_significand_11_8_zeros = {
+    a_significand_11_10_is_zero, a_significand_11_10_is_zero ? ~a_fraction[9] : ~a_fraction[11]
+  };
   wire a_significand_15_14_is_zero = ~|a_fraction[15:14];
-  wire [1:0] a_significand_15_12_zeros = {a_significand_15_14_is_zero, a_significand_15_14_is_zero ? ~a_fraction[13] : ~a_fraction[15]};
-  wire [2:0] a_significand_15_8_zeros = {a_significand_15_12_is_zero, a_significand_15_12_is_zero ? a_significand_11_8_zeros : a_significand_15_12_zeros};
+  wire [1:0] a_significand_15_12_zeros = {
+    a_significand_15_14_is_zero, a_significand_15_14_is_zero ? ~a_fraction[13] : ~a_fraction[15]
+  };
+  wire [2:0] a_significand_15_8_zeros = {
+    a_significand_15_12_is_zero, a_significand_15_12_is_zero ? a_significand_11_8_zeros : a_significand_15_12_zeros
+  };
   wire a_significand_23_20_is_zero = ~|a_significand[23:20];
   wire a_significand_19_18_is_zero = ~|a_fraction[19:18];
-  wire [1:0] a_significand_19_16_zeros = {a_significand_19_18_is_zero, a_significand_19_18_is_zero ? ~a_fraction[17] : ~a_fraction[19]};
+  wire [1:0] a_significand_19_16_zeros = {
+    a_significand_19_18_is_zero, a_significand_19_18_is_zero ? ~a_fraction[17] : ~a_fraction[19]
+  };
   wire a_significand_23_22_is_zero = ~|a_significand[23:22];
-  wire [1:0] a_significand_23_20_zeros = {a_significand_23_22_is_zero, a_significand_23_22_is_zero ? ~a_fraction[21] : ~a_hidden};
-  wire [2:0] a_significand_23_16_zeros = {a_significand_23_20_is_zero, a_significand_23_20_is_zero ? a_significand_19_16_zeros : a_significand_23_20_zeros};
+  wire [1:0] a_significand_23_20_zeros = {
+    a_significand_23_22_is_zero, a_significand_23_22_is_zero ? ~a_fraction[21] : ~a_hidden
+  };
+  wire [2:0] a_significand_23_16_zeros = {
+    a_significand_23_20_is_zero, a_significand_23_20_is_zero ? a_significand_19_16_zeros : a_significand_23_20_zeros
+  };
   wire a_significand_7_4_is_zero = ~|a_fraction[7:4];
   wire a_significand_3_2_is_zero = ~|a_fraction[3:2];
-  wire [1:0] a_significand_3_0_zeros = {a_significand_3_2_is_zero, a_significand_3_2_is_zero ? ~a_fraction[1] : ~a_fraction[3]};
+  wire [1:0] a_significand_3_0_zeros = {
+    a_significand_3_2_is_zero, a_significand_3_2_is_zero ? ~a_fraction[1] : ~a_fraction[3]
+  };
   wire a_significand_7_6_is_zero = ~|a_fraction[7:6];
-  wire [1:0] a_significand_7_4_zeros = {a_significand_7_6_is_zero, a_significand_7_6_is_zero ? ~a_fraction[5] : ~a_fraction[7]};
+  wire [1:0] a_significand_7_4_zeros = {
+    a_significand_7_6_is_zero, a_significand_7_6_is_zero ? ~a_fraction[5] : ~a_fraction[7]
+  };
   wire a_is_zero = ~a_hidden & ~|a_fraction;
   wire a_sign = a[31];
 
@@ -57,7 +73,8 @@ module fp_convert_e8f23_finite_to_e10f23z (
     a_significand_7_4_is_zero_s1 <= a_significand_7_4_is_zero;
     a_significand_3_0_zeros_if_s1 <= a_significand_7_4_is_zero ? a_significand_3_0_zeros : a_significand_7_4_zeros;
     a_significand_23_16_is_zero_s1 <= a_significand_23_16_is_zero;
-    a_significand_15_8_zeros_if_s1 <= a_significand_23_16_is_zero ? a_significand_15_8_zeros : a_significand_23_16_zeros;
+    a_significand_15_8_zeros_if_s1 <=
+        a_significand_23_16_is_zero ? a_significand_15_8_zeros : a_significand_23_16_zeros;
     a_fraction_7_0_s1 <= a_fraction[7:0];
     a_significand_s1 <= a_significand;
     a_exponent_7_1_s1 <= a_exponent[7:1];
@@ -68,9 +85,11 @@ module fp_convert_e8f23_finite_to_e10f23z (
   wire a_significand_23_8_is_zero = ~a_significand_23_8_any_s1;
   wire [2:0] a_significand_7_0_zeros = {a_significand_7_4_is_zero_s1, a_significand_3_0_zeros_if_s1};
   wire [3:0] a_significand_23_8_zeros = {a_significand_23_16_is_zero_s1, a_significand_15_8_zeros_if_s1};
-  wire [3:0] a_significand_7_0_zeros_wide_if = a_significand_23_8_is_zero ? {1'b0, a_significand_7_0_zeros} : a_significand_23_8_zeros;
+  wire [3:0] a_significand_7_0_zeros_wide_if =
+      a_significand_23_8_is_zero ? {1'b0, a_significand_7_0_zeros} : a_significand_23_8_zeros;
   wire [23:0] a_normalise_by_16 = a_significand_23_8_is_zero ? {a_fraction_7_0_s1, 16'd0} : a_significand_s1;
-  wire [23:0] a_normalise_by_8 = a_significand_7_0_zeros_wide_if[3] ? {a_normalise_by_16[15:0], 8'd0} : a_normalise_by_16;
+  wire [23:0] a_normalise_by_8 =
+      a_significand_7_0_zeros_wide_if[3] ? {a_normalise_by_16[15:0], 8'd0} : a_normalise_by_16;
   wire [23:0] a_normalise_by_4 = a_significand_7_0_zeros_wide_if[2] ? {a_normalise_by_8[19:0], 4'd0} : a_normalise_by_8;
   wire [23:0] a_normalise_by_2 = a_significand_7_0_zeros_wide_if[1] ? {a_normalise_by_4[21:0], 2'd0} : a_normalise_by_4;
   wire [7:0] a_effective_exponent = {a_exponent_7_1_s1, a_exponent_0_0_or_not_a_hidden_s1};
@@ -90,7 +109,8 @@ module fp_convert_e8f23_finite_to_e10f23z (
     a_significand_7_0_zeros_wide_if_0_0_s2 <= a_significand_7_0_zeros_wide_if[0];
     a_normalise_by_2_s2 <= a_normalise_by_2;
   end
-  wire [23:0] a_normalise_by_1 = a_significand_7_0_zeros_wide_if_0_0_s2 ? {a_normalise_by_2_s2[22:0], 1'b0} : a_normalise_by_2_s2;
+  wire [23:0] a_normalise_by_1 =
+      a_significand_7_0_zeros_wide_if_0_0_s2 ? {a_normalise_by_2_s2[22:0], 1'b0} : a_normalise_by_2_s2;
   wire [22:0] fraction_field = a_normalise_by_1[22:0];
   wire [32:0] truncated = {exponent_field_s2, fraction_field};
 

@@ -26,7 +26,10 @@ module fp_greater_e10f23z_normal (
   wire [32:0] a_magnitude = {a_exponent, a_fraction};
   wire b_magnitude_is_smaller = b_magnitude < a_magnitude;
   wire same_magnitude = a_magnitude == b_magnitude;
-  wire not_a_sign_and_b_sign_or_or = (~a_sign & b_sign) | (~a_sign & ~b_sign & b_magnitude_is_smaller) | (a_sign & b_sign & ~b_magnitude_is_smaller & ~same_magnitude);
+  wire not_a_sign_and_b_sign_or_or =
+      (~a_sign & b_sign)
+      | (~a_sign & ~b_sign & b_magnitude_is_smaller)
+      | (a_sign & b_sign & ~b_magnitude_is_smaller & ~same_magnitude);
   wire a_hidden = |a_exponent;
   wire a_is_zero = ~a_hidden;
   wire b_hidden = |b_exponent;

@@ -109,7 +109,9 @@ module fp_mul_e10f23z_normal (
   always @(posedge clk) begin
     product_sign_s4_line <= {product_sign_s4_line[1:0], product_sign};
     product_sign_s4 <= product_sign_s4_line[2];
-    product_exponent_9_0_and_s4_line <= {product_exponent_9_0_and_s4_line[19:0], ~is_zero ? product_exponent[9:0] : 10'd0};
+    product_exponent_9_0_and_s4_line <= {
+      product_exponent_9_0_and_s4_line[19:0], ~is_zero ? product_exponent[9:0] : 10'd0
+    };
     product_exponent_9_0_and_s4 <= product_exponent_9_0_and_s4_line[29:20];
     significand_22_0_and_s4 <= significand_22_0_and;
     product_at_least_two_and_s4 <= product_at_least_two & not_is_zero_s3;

@@ -29,9 +29,11 @@ module scpu (
   wire [31:0] kernel_depth;
 
   // ---- logic ----
-  wire [1:0] flow = invalid_out ? 2'd0 : (hit ? (grazing ? 2'd2 : 2'd3) : 2'd1);
+  wire [1:0] flow = invalid_out ? 2'd0 : hit ? (grazing ? 2'd2 : 2'd3) : 2'd1;
   wire [31:0] flags = {28'd0, {invalid_out, flow, hit}};
-  assign record = {flags, kernel_depth, kernel_normal_z, kernel_normal_y, kernel_normal_x, kernel_pos_z, kernel_pos_y, kernel_pos_x};
+  assign record = {
+    flags, kernel_depth, kernel_normal_z, kernel_normal_y, kernel_normal_x, kernel_pos_z, kernel_pos_y, kernel_pos_x
+  };
   wire [31:0] x1 = pair[31:0];
   wire [31:0] y1 = pair[63:32];
   wire [31:0] z1 = pair[95:64];
@@ -50,7 +52,9 @@ module scpu (
   wire z2_not_finite = &z2[30:23];
   wire r2_not_finite = &r2[30:23];
   wire r2_negative = r2[31] & |r2[30:0];
-  wire invalid = x1_not_finite | y1_not_finite | z1_not_finite | r1_not_finite | r1_negative | x2_not_finite | y2_not_finite | z2_not_finite | r2_not_finite | r2_negative;
+  wire invalid =
+      x1_not_finite | y1_not_finite | z1_not_finite | r1_not_finite | r1_negative | x2_not_finite | y2_not_finite
+      | z2_not_finite | r2_not_finite | r2_negative;
 
   sphere_kernel kernel (
     .clk          (clk),

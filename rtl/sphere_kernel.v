@@ -284,38 +284,71 @@ module sphere_kernel (
     if (phase_4) hit_early_kept_2 <= hit_early_kept_1;
     if (phase_4) hit_early_kept_1 <= hit_early;
     if (phase_4) valid_kept_11 <= valid_kept_10;
-    add_magnitudes_unit_0_a <= add_magnitudes_unit_0_a_choice[1] ? mul_unit_0_result : (add_magnitudes_unit_0_a_choice[0] ? convert_unit_2_result : dx_squared_plus_dy_squared_kept_1);
+    add_magnitudes_unit_0_a <=
+        add_magnitudes_unit_0_a_choice[1] ? mul_unit_0_result :
+        add_magnitudes_unit_0_a_choice[0] ? convert_unit_2_result :
+        dx_squared_plus_dy_squared_kept_1;
     if (phase_4) dx_squared_plus_dy_squared_kept_1 <= add_magnitudes_unit_0_result;
-    convert_unit_2_a <= mul_unit_1_a_choice[1] ? (mul_unit_1_a_choice[0] ? r1 : z1) : (mul_unit_1_a_choice[0] ? x2 : x1);
-    mul_unit_0_a <= add_unit_0_a_choice[2] ? add_unit_0_result : (add_unit_0_a_choice[1] ? (add_unit_0_a_choice[0] ? add_unit_0_result : mul_unit_1_result) : (add_unit_0_a_choice[0] ? mul_unit_1_result : dy_kept_1));
+    convert_unit_2_a <= mul_unit_1_a_choice[1] ? (mul_unit_1_a_choice[0] ? r1 : z1) : mul_unit_1_a_choice[0] ? x2 : x1;
+    mul_unit_0_a <=
+        add_unit_0_a_choice[2] ? add_unit_0_result :
+        add_unit_0_a_choice[1] ? (add_unit_0_a_choice[0] ? add_unit_0_result : mul_unit_1_result) :
+        add_unit_0_a_choice[0] ? mul_unit_1_result :
+        dy_kept_1;
     dy_kept_1 <= dy_kept_1_words[place_of_16_in_phase_3_next];
-    add_unit_1_a <= add_unit_1_a_choice[1] ? (add_unit_1_a_choice[0] ? y1_e10f23z_kept_2 : radius_sum_kept_1) : (add_unit_1_a_choice[0] ? convert_unit_3_result : y1_e10f23z_kept_1);
+    add_unit_1_a <=
+        add_unit_1_a_choice[1] ? (add_unit_1_a_choice[0] ? y1_e10f23z_kept_2 : radius_sum_kept_1) :
+        add_unit_1_a_choice[0] ? convert_unit_3_result :
+        y1_e10f23z_kept_1;
     y1_e10f23z_kept_2 <= y1_e10f23z_kept_2_words[place_of_19_in_phase_4_next];
     radius_sum_kept_1 <= radius_sum_kept_1_words[place_of_10_in_phase_2_next];
     if (phase_4) y1_e10f23z_kept_1 <= convert_unit_3_result;
-    convert_unit_3_a <= mul_unit_1_a_choice[1] ? (mul_unit_1_a_choice[0] ? r2 : z2) : (mul_unit_1_a_choice[0] ? y2 : y1);
-    add_unit_1_b <= add_unit_1_a_choice[1] ? (add_unit_1_a_choice[0] ? ny_times_offset_kept_1 : not_distance_33_33_wide) : (add_unit_1_a_choice[0] ? not_convert_unit_2_result_33_33_wide : not_convert_unit_3_result_33_33_wide);
+    convert_unit_3_a <= mul_unit_1_a_choice[1] ? (mul_unit_1_a_choice[0] ? r2 : z2) : mul_unit_1_a_choice[0] ? y2 : y1;
+    add_unit_1_b <=
+        add_unit_1_a_choice[1] ? (add_unit_1_a_choice[0] ? ny_times_offset_kept_1 : not_distance_33_33_wide) :
+        add_unit_1_a_choice[0] ? not_convert_unit_2_result_33_33_wide :
+        not_convert_unit_3_result_33_33_wide;
     if (phase_3) ny_times_offset_kept_1 <= mul_unit_1_result;
-    mul_unit_1_a <= mul_unit_1_a_choice[1] ? (mul_unit_1_a_choice[0] ? add_unit_1_result : ny_kept_1) : (mul_unit_1_a_choice[0] ? dz_kept_1 : dx_kept_1);
+    mul_unit_1_a <=
+        mul_unit_1_a_choice[1] ? (mul_unit_1_a_choice[0] ? add_unit_1_result : ny_kept_1) :
+        mul_unit_1_a_choice[0] ? dz_kept_1 :
+        dx_kept_1;
     if (phase_1) ny_kept_1 <= mul_unit_0_result;
     dz_kept_1 <= dz_kept_1_words[place_of_16_in_phase_4_next];
     dx_kept_1 <= dx_kept_1_words[place_of_16_in_phase_3_next];
-    mul_unit_1_b <= mul_unit_1_a_choice[1] ? (mul_unit_1_a_choice[0] ? add_unit_1_result : offset_kept_5) : (mul_unit_1_a_choice[0] ? inverse_distance_kept_1 : inverse_distance);
+    mul_unit_1_b <=
+        mul_unit_1_a_choice[1] ? (mul_unit_1_a_choice[0] ? add_unit_1_result : offset_kept_5) :
+        mul_unit_1_a_choice[0] ? inverse_distance_kept_1 :
+        inverse_distance;
     if (phase_2) offset_kept_5 <= offset_kept_4;
     if (phase_0) inverse_distance_kept_1 <= inverse_distance;
     if (phase_2) offset_kept_4 <= offset_kept_3;
     if (phase_2) offset_kept_3 <= offset_kept_2;
     if (phase_2) offset_kept_2 <= offset_kept_1;
     if (phase_2) offset_kept_1 <= offset;
-    add_unit_0_a <= add_unit_0_a_choice[2] ? z1_e10f23z_kept_1 : (add_unit_0_a_choice[1] ? (add_unit_0_a_choice[0] ? r2_e10f23z_minus_r1_e10f23z_kept_1 : x1_e10f23z_kept_2) : (add_unit_0_a_choice[0] ? convert_unit_2_result : x1_e10f23z_kept_1));
+    add_unit_0_a <=
+        add_unit_0_a_choice[2] ? z1_e10f23z_kept_1 :
+        add_unit_0_a_choice[1] ? (add_unit_0_a_choice[0] ? r2_e10f23z_minus_r1_e10f23z_kept_1 : x1_e10f23z_kept_2) :
+        add_unit_0_a_choice[0] ? convert_unit_2_result :
+        x1_e10f23z_kept_1;
     z1_e10f23z_kept_1 <= z1_e10f23z_kept_1_words[place_of_20_in_phase_1_next];
     r2_e10f23z_minus_r1_e10f23z_kept_1 <= r2_e10f23z_minus_r1_e10f23z_kept_1_words[place_of_10_in_phase_0_next];
     x1_e10f23z_kept_2 <= x1_e10f23z_kept_2_words[place_of_19_in_phase_4_next];
     if (phase_4) x1_e10f23z_kept_1 <= convert_unit_2_result;
-    add_unit_0_b <= add_unit_0_a_choice[2] ? nz_times_offset_kept_1 : (add_unit_0_a_choice[1] ? (add_unit_0_a_choice[0] ? not_distance_33_33_wide : mul_unit_0_result) : (add_unit_0_a_choice[0] ? not_convert_unit_3_result_33_33_wide : not_convert_unit_2_result_33_33_wide));
+    add_unit_0_b <=
+        add_unit_0_a_choice[2] ? nz_times_offset_kept_1 :
+        add_unit_0_a_choice[1] ? (add_unit_0_a_choice[0] ? not_distance_33_33_wide : mul_unit_0_result) :
+        add_unit_0_a_choice[0] ? not_convert_unit_3_result_33_33_wide :
+        not_convert_unit_2_result_33_33_wide;
     if (phase_3) nz_times_offset_kept_1 <= mul_unit_0_result;
-    mul_unit_0_b <= mul_unit_0_b_choice[1] ? add_unit_0_result : (mul_unit_0_b_choice[0] ? offset_kept_5 : inverse_distance);
-    add_magnitudes_unit_0_b <= add_magnitudes_unit_0_a_choice[1] ? mul_unit_1_result : (add_magnitudes_unit_0_a_choice[0] ? convert_unit_3_result : dz_squared_kept_1);
+    mul_unit_0_b <=
+        mul_unit_0_b_choice[1] ? add_unit_0_result :
+        mul_unit_0_b_choice[0] ? offset_kept_5 :
+        inverse_distance;
+    add_magnitudes_unit_0_b <=
+        add_magnitudes_unit_0_a_choice[1] ? mul_unit_1_result :
+        add_magnitudes_unit_0_a_choice[0] ? convert_unit_3_result :
+        dz_squared_kept_1;
     if (phase_0) dz_squared_kept_1 <= mul_unit_0_result;
     if (phase_4) valid_kept_10 <= valid_kept_9;
     if (phase_4) valid_kept_9 <= valid_kept_8;
@@ -339,14 +372,21 @@ module sphere_kernel (
     if (phase_4) grazing_early_kept_2 <= grazing_early_kept_1;
     if (phase_4) grazing_early_kept_1 <= grazing_early;
     if (phase_0) position_x_kept_1 <= convert_unit_0_result;
-    convert_unit_0_a <= convert_unit_0_a_choice[1] ? (convert_unit_0_a_choice[0] ? position_z_e10f23z_kept_1 : normal_y_e10f23z_kept_1) : (convert_unit_0_a_choice[0] ? depth_e10f23z_kept_1 : position_x_e10f23z_kept_1);
+    convert_unit_0_a <=
+        convert_unit_0_a_choice[1] ?
+            (convert_unit_0_a_choice[0] ? position_z_e10f23z_kept_1 : normal_y_e10f23z_kept_1) :
+        convert_unit_0_a_choice[0] ? depth_e10f23z_kept_1 :
+        position_x_e10f23z_kept_1;
     if (phase_2) position_z_e10f23z_kept_1 <= position_z_e10f23z;
     if (phase_1) normal_y_e10f23z_kept_1 <= normal_y_e10f23z;
     if (phase_1) depth_e10f23z_kept_1 <= depth_e10f23z;
     if (phase_0) position_x_e10f23z_kept_1 <= position_x_e10f23z;
     if (phase_0) x1_e10f23z_kept_3 <= x1_e10f23z_kept_2;
     if (phase_2) z1_e10f23z_kept_2 <= z1_e10f23z_kept_1;
-    convert_unit_1_a <= convert_unit_1_a_choice[1] ? position_y_e10f23z_kept_1 : (convert_unit_1_a_choice[0] ? normal_z_e10f23z_kept_1 : normal_x_e10f23z_kept_1);
+    convert_unit_1_a <=
+        convert_unit_1_a_choice[1] ? position_y_e10f23z_kept_1 :
+        convert_unit_1_a_choice[0] ? normal_z_e10f23z_kept_1 :
+        normal_x_e10f23z_kept_1;
     if (phase_2) position_y_e10f23z_kept_1 <= position_y_e10f23z;
     if (phase_2) normal_z_e10f23z_kept_1 <= normal_z_e10f23z;
     if (phase_1) normal_x_e10f23z_kept_1 <= normal_x_e10f23z;

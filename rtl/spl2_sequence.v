@@ -121,9 +121,26 @@ module spl2_sequence (
   wire aborts = answered & has_abort & runs;
   wire [511:0] latency_line = {416'd0, {job_sequence, first_write, first_read}};
   wire [63:0] ran_wide = {64{ran}};
-  wire [511:0] performance_line = {288'd0, {job_sequence, cycles_output & ran_wide, cycles_input & ran_wide, cycles_busy & ran_wide}};
+  wire [511:0] performance_line = {
+    288'd0, {job_sequence, cycles_output & ran_wide, cycles_input & ran_wide, cycles_busy & ran_wide}
+  };
   wire [31:0] ran_wide_2 = {32{ran}};
-  wire [511:0] status_line = {128'd0, {128'hf885f92148fc4b0b8fd1f127a3a0b8e2, capability, 32'd2, first_invalid | {32{refused}}, invalid & ran_wide_2, contacts & ran_wide_2, job_sequence, 20'd0, ran ? core_error : 4'd8, 7'd0, 1'b1}};
+  wire [511:0] status_line = {
+    128'd0,
+    {
+      128'hf885f92148fc4b0b8fd1f127a3a0b8e2,
+      capability,
+      32'd2,
+      first_invalid | {32{refused}},
+      invalid & ran_wide_2,
+      contacts & ran_wide_2,
+      job_sequence,
+      20'd0,
+      ran ? core_error : 4'd8,
+      7'd0,
+      1'b1
+    }
+  };
   wire [511:0] written_line = to_dsm ? (at_latency ? latency_line : performance_line) : status_line;
 
   // ---- at the clock edge ----
@@ -188,7 +205,9 @@ module spl2_sequence (
       context_due <= context_written | (context_due & ~reads_context);
       waiting <= rd_granted | (waiting & ~answered & ~overdue);
       at_run <= start | (at_run & ~core_done);
-      pause <= ~at_status ? ((answered & ~at_context) ? (runs ? 10'd512 : 10'd32) : (pause_any ? (pause - 10'd1) : pause)) : 10'd0;
+      pause <=
+          ~at_status ? ((answered & ~at_context) ? (runs ? 10'd512 : 10'd32) : pause_any ? (pause - 10'd1) : pause) :
+          10'd0;
       answered <= is_own & waiting & ~answered;
       some_job <= some_job | got_job;
       at_status <= (at_fence & written) | (at_status & ~written);

@@ -87,10 +87,33 @@ module spl2_transmit (
     is_register <= register_wr_valid;
     core_wr_turn <= discards | (~own_wr_waits & ~wr_almostfull);
     tx_rd_valid <= reading & ~power_on;
-    tx_rd_hdr <= {6'd1, own_rd_address_if_own_rd_granted[57:32], 1'b1, 10'd0, 4'd4, 6'd0, own_rd_address_if_own_rd_granted[31:0], own_rd_granted ? {2'd1, read_number} : {2'd0, {epoch, core_rd_tag[5:0]}}};
+    tx_rd_hdr <= {
+      6'd1,
+      own_rd_address_if_own_rd_granted[57:32],
+      1'b1,
+      10'd0,
+      4'd4,
+      6'd0,
+      own_rd_address_if_own_rd_granted[31:0],
+      own_rd_granted ? {2'd1, read_number} : {2'd0, {epoch, core_rd_tag[5:0]}}
+    };
     tx_wr_valid <= writing & ~power_on;
-    tx_wr_hdr <= own_wr_turn ? own_header : {6'd1, core_wr_address[57:32], 1'b1, 10'd0, 4'd2, 6'd0, core_wr_address[31:0], {2'd0, {epoch, core_wr_tag[5:0]}}};
-    own_header <= {6'd1, register_wr_address_if[57:32], register_wr_valid ? 1'b0 : end_wr_virtual, 10'd0, is_fence ? 4'd5 : 4'd2, 6'd0, register_wr_address_if[31:0], {2'd1, write_number}};
+    tx_wr_hdr <=
+        own_wr_turn ? own_header :
+        {
+          6'd1, core_wr_address[57:32], 1'b1, 10'd0, 4'd2, 6'd0, core_wr_address[31:0],
+          {2'd0, {epoch, core_wr_tag[5:0]}}
+        };
+    own_header <= {
+      6'd1,
+      register_wr_address_if[57:32],
+      register_wr_valid ? 1'b0 : end_wr_virtual,
+      10'd0,
+      is_fence ? 4'd5 : 4'd2,
+      6'd0,
+      register_wr_address_if[31:0],
+      {2'd1, write_number}
+    };
     if (own_granted | power_on) write_number <= (write_number + 12'd1) & not_power_on_wide;
     tx_data <= own_wr_turn ? own_data : core_wr_data;
     own_data <= register_wr_valid ? register_wr_data : end_wr_data;

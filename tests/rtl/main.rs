@@ -4,6 +4,7 @@
 
 mod adopt;
 mod cocotb;
+mod text;
 
 use contact_afu::query::Query;
 use std::fs;

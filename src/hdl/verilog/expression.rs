@@ -55,7 +55,7 @@ impl Expressions<'_> {
             Op::Mul => self.product(node),
             Op::Equal => infix("=="),
             Op::Less => infix("<"),
-            Op::Mux => format!("{} ? {} : {}", term(0), term(1), term(2)),
+            Op::Mux => format!("{} ? {} : {}", term(0), term(1), self.otherwise(node.operands[2])),
             Op::Concat => self.concatenation(node),
             Op::Slice { low } => self.slice(node, *low),
             Op::OneHot => format!("{} << {}", constant(node.width, 1), term(0)),
@@ -80,6 +80,12 @@ impl Expressions<'_> {
             && self.gated(self.module.node(left)).is_none();
         let first = if same { self.definition(left) } else { self.term(left) };
         format!("{first} {operator} {}", self.term(right))
+    }
+
+    /// The last operand of a choice: another choice needs no parentheses there.
+    fn otherwise(&self, id: NodeId) -> String {
+        let is_choice = self.module.node(id).op == Op::Mux && self.names.declared[id.index()].is_none();
+        if is_choice { self.definition(id) } else { self.term(id) }
     }
 
     /// Not less is at least; not equal has a sign of its own; otherwise the complement.

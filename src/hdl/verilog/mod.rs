@@ -4,6 +4,7 @@
 mod delay;
 mod expression;
 mod instances;
+mod layout;
 mod lookup;
 mod names;
 mod primitive;

@@ -3,6 +3,7 @@
 use super::super::module::{Module, NodeId, Op, Parameter, Rounded};
 use super::Style;
 use super::expression::{Expressions, range};
+use super::layout::lay_out;
 use super::names::Names;
 use super::primitive;
 use super::sections::Sections;
@@ -25,7 +26,7 @@ pub(super) fn print(module: &Module, style: &Style) -> String {
         None => body,
     };
     out += "\nendmodule\n\n`default_nettype wire\n";
-    out
+    lay_out(&out)
 }
 
 fn header(module: &Module, style: &Style) -> String {

@@ -12,7 +12,7 @@ const CONTROL: Rows = &[(
 )];
 
 const ROUNDS: Rows = &[
-    ("every SCPU has phase 0", "(ends_block ? ", "(1'b0 ? ", 12, "phase_is_the_scpu_s"),
+    ("every SCPU has phase 0", "1'b0 : ends_block ? ", "1'b0 : 1'b0 ? ", 12, "phase_is_the_scpu_s"),
     (
         "a group crosses its block",
         "wire unit_1 = turn_after_1_below_scpus_wide & ~turn[0];",
@@ -58,7 +58,7 @@ const BACKLOG: Rows = &[
 ];
 
 const STORE: Rows =
-    &[("a line counts as nine", "(line_valid ? (stored + 5'd1)", "(line_valid ? (stored + 5'd9)", 26, "lines_fit")];
+    &[("a line counts as nine", "line_valid ? (stored + 5'd1)", "line_valid ? (stored + 5'd9)", 26, "lines_fit")];
 
 const JOB_DISPATCHER: Rows = &[
     ("every other line is written", "(next_address + 58'd1)", "(next_address + 58'd2)", 28, "in_order"),
@@ -69,7 +69,7 @@ const JOB_PACKER: Rows = &[
     ("a last line without hits", "wire flushes = all_out & place & ", "wire flushes = all_out & ", 27, "only_hits"),
     (
         "the last line keeps the one before",
-        "filling <= emptied ? 64'd0 : (full ? {32'd0, merged[95:64]} : merged[63:0]);",
+        "filling <= emptied ? 64'd0 : full ? {32'd0, merged[95:64]} : merged[63:0];",
         "filling <= merged[63:0];",
         28,
         "rest_is_zero",

@@ -69,8 +69,8 @@ const COLLECTOR: Rows = &[
 const DISPATCHER: Rows = &[
     (
         "a line counts as nine",
-        "(line_valid ? (stored + 4'd1) : (stored - 4'd1))",
-        "(line_valid ? (stored + 4'd9) : (stored - 4'd1))",
+        "line_valid ? (stored + 4'd1) : (stored - 4'd1)",
+        "line_valid ? (stored + 4'd9) : (stored - 4'd1)",
         3,
         "fifo_fits",
     ),

@@ -37,7 +37,7 @@ const FEEDER: Rows = &[
     ("pairs enter after an abort", "wire go_0 = may_enter & ", "wire go_0 = ", 11, "only_in_a_job"),
     ("takes a line that is not there", "wire line_comes = line_valid & ", "wire line_comes = ", 3, "takes_a_line"),
     ("a turn too many", "turn_after_2 >= scpus_wide;", "turn_after_2 > scpus_wide;", 11, "turn_is_an_scpu"),
-    ("two pairs count as one", "go_1 ? 2'd2 : (go_0", "go_1 ? 2'd1 : (go_0", 11, "each_once"),
+    ("two pairs count as one", "go_1 ? 2'd2 : go_0", "go_1 ? 2'd1 : go_0", 11, "each_once"),
     ("counts no line that it takes", "if (start | take) lines_left", "if (start) lines_left", 10, "flags_are_right"),
     ("every line is short", "one_lines_left ? last_place : 1'b1", "last_place", 10, "only_last_is_short"),
 ];
@@ -56,8 +56,8 @@ const PACKER: Rows = &[(
 const STORE: Rows = &[
     (
         "a line counts as nine",
-        "(line_valid ? (stored + 4'd1) : (stored - 4'd1))",
-        "(line_valid ? (stored + 4'd9) : (stored - 4'd1))",
+        "line_valid ? (stored + 4'd1) : (stored - 4'd1)",
+        "line_valid ? (stored + 4'd9) : (stored - 4'd1)",
         19,
         "fits",
     ),
