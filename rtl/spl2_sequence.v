@@ -155,7 +155,7 @@ module spl2_sequence (
     compared <= rsp_data;
     source_lines <= job_count_wide_plus_1_32_1_wide + 33'd1;
     if (got_job) job_sequence <= compared[127:96];
-    is_own <= rsp_valid & ((rsp_mdata[13:12] == 2'd1) & (rsp_mdata[11:0] == expected));
+    is_own <= rsp_valid & waiting & ((rsp_mdata[13:12] == 2'd1) & (rsp_mdata[11:0] == expected));
     if (rd_granted) expected <= read_number;
     age <= rd_granted ? 17'd0 : (age + 17'd1);
     if (reads_context) job_context_line <= context_line;

@@ -59,9 +59,10 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     // The shell's own reads, one at a time. If a response is overdue, the read is repeated.
     let waiting = graph.register("waiting", 1, 0);
     let expected = graph.data_register("expected", NUMBER_BITS);
-    // A response is compared with the outstanding read before it is used.
+    // A response is compared with the outstanding read before it is used. One that arrives as the next read is granted
+    // belongs to an earlier read, from before a reset.
     let response = received.delay(1).named("compared");
-    let own = (response_valid & is_own(response_mdata, expected.value())).delay(1).named("is_own");
+    let own = (response_valid & *waiting & is_own(response_mdata, expected.value())).delay(1).named("is_own");
     let answered = graph.register("answered", 1, 0);
     answered.next(own & *waiting & !*answered);
     let answered = answered.value();
@@ -237,4 +238,58 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     graph.output("wr_address", to_dsm.select(dsm_address, status_address).delay(1));
     graph.output("wr_data", to_dsm.select(dsm_data, status_line).named("written_line").delay(1));
     graph.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::Config;
+    use crate::hdl::Evaluator;
+
+    /// The shell's own read of this number, as `mdata`.
+    fn own(number: u64) -> u64 {
+        1 << NUMBER_BITS | number
+    }
+
+    /// Steps until the shell asks for a line, grants the read with this number, and says what arrives in that cycle.
+    fn grant(run: &mut Evaluator, number: u64, arrives: Option<u64>) {
+        for _ in 0..100 {
+            run.step();
+            if run.get("rd_valid") == 1 {
+                run.set("rd_granted", 1);
+                run.set("read_number", number.into());
+                run.set("rsp_valid", u128::from(arrives.is_some()));
+                run.set("rsp_mdata", arrives.unwrap_or_default().into());
+                run.step();
+                run.set("rd_granted", 0);
+                run.set("rsp_valid", 0);
+                return;
+            }
+        }
+        panic!("the shell asks for no line");
+    }
+
+    /// The answer to a read from before a reset arrives in the cycle in which the next read is granted. It once was taken
+    /// for that read's, so a job read whatever its line held.
+    #[test]
+    fn an_answer_from_before_a_reset_answers_no_new_read() {
+        let module = sequence(&Spec::from(Config::default())).expect("a module");
+        for (arrives, answered) in [(None, false), (Some(own(5)), false), (Some(own(6)), false)] {
+            let mut run = Evaluator::new(&module, &[]).expect("a module");
+            let poll = run.probe("at_poll").expect("a state");
+            run.reset();
+            run.set("context_valid", 1);
+            grant(&mut run, 5, None);
+            run.reset();
+            grant(&mut run, 6, arrives);
+            (0..10).for_each(|_| run.step());
+            assert_eq!(run.read(poll) == 1, answered, "{arrives:?} arrives as read 6 is granted");
+            run.set("rsp_valid", 1);
+            run.set("rsp_mdata", own(6).into());
+            run.step();
+            run.set("rsp_valid", 0);
+            (0..10).for_each(|_| run.step());
+            assert_eq!(run.read(poll), 1, "the answer of read 6");
+        }
+    }
 }
