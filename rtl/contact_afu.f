@@ -6,11 +6,12 @@ spl2_transmit.v
 spl2_sequence.v
 spl2_registers.v
 contact_afu_control.v
-line_memory_64x512.v
-contact_afu_collector.v
+contact_afu_packer.v
 line_memory_256x512.v
 contact_afu_dispatcher.v
-contact_afu_packer.v
+line_memory_64x512.v
+contact_afu_collector.v
+contact_afu_credits.v
 contact_afu_feeder.v
 fp_greater_e10f23z_normal.v
 fp_sqrt_e10f23z_normal_every_5_last.v

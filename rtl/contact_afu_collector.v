@@ -14,7 +14,8 @@ module contact_afu_collector (
   input  wire [57:0]  source,
   input  wire [31:0]  lines,
   input  wire [3:0]   epoch,
-  input  wire         take,
+  input  wire         taken,
+  input  wire [5:0]   place,
   input  wire         rd_req_ready,
   input  wire         rd_rsp_valid,
   input  wire [9:0]   rd_rsp_tag,
@@ -23,94 +24,119 @@ module contact_afu_collector (
   output reg          rd_req_valid,
   output reg  [57:0]  rd_req_address,
   output reg  [9:0]   rd_req_tag,
-  output reg          line_valid,
+  output reg          line_comes,
   output wire [511:0] line,
   output reg          answered,
   output reg          failed,
   output reg          unexpected,
-  output wire         idle
+  output reg          idle
 );
 
   // ---- state ----
+  reg rd_req_spare_valid;
   reg may_ask;
   reg [31:0] lines_to_request;
-  reg taken;
+  reg freed;
   reg [6:0] reserved;
+  reg [57:0] rd_req_spare_address;
   reg [57:0] next_address;
+  reg [9:0] rd_req_spare_tag;
   reg [5:0] next_slot;
   reg [63:0] came;
-  reg two_valid;
   reg [5:0] arrived_age;
   reg [63:0] awaited;
-  reg leftover_request;
+  reg [63:0] answers;
+  reg [5:0] response_slot;
+  reg is_current;
+  reg [63:0] asked;
+  reg [5:0] accepted_slot;
+  reg accepted;
+  reg rd_req_of_job;
+  reg [5:0] slot_then;
   reg [5:0] oldest;
-  reg [5:0] head;
+  reg [511:0] response_line;
+  reg error_then;
+  reg rd_rsp_error_d1;
+  reg is_response;
   reg [6:0] outstanding;
 
   // ---- logic ----
-  wire port_free = ~rd_req_valid | rd_req_ready;
-  wire issue = may_ask & port_free;
-  wire request_stays = rd_req_valid & ~rd_req_ready;
+  wire rd_req_next_valid = ~start & (rd_req_spare_valid | may_ask);
+  wire rd_req_moves = ~rd_req_valid | rd_req_ready;
+  wire issue = may_ask & ~rd_req_spare_valid;
   wire may_ask_next =
       run
       & (issue ? |lines_to_request[31:1] : |lines_to_request)
-      & ~(~taken & (reserved[6] | (&reserved[5:0] & issue)));
+      & ~(~freed & (reserved[6] | (&reserved[5:0] & issue)));
   wire start_or_issue = start | issue;
-  wire oldest_goes = came[0] & ~two_valid;
+  wire [9:0] rd_req_spare_tag_next = {epoch, next_slot};
+  wire oldest_goes = came[0];
   wire [63:0] marked = came | (answered ? (64'd1 << arrived_age) : 64'd0);
-  wire [5:0] response_slot = rd_rsp_tag[5:0];
-  wire [3:0] response_epoch = rd_rsp_tag[9:6];
-  wire is_current = rd_rsp_valid & (response_epoch == epoch);
-  wire [63:0] answers = is_current ? (64'd1 << response_slot) : 64'd0;
   wire is_awaited = |(awaited & answers);
-  wire accepted = rd_req_valid & rd_req_ready & ~leftover_request;
-  wire [63:0] asked = accepted ? (64'd1 << rd_req_tag[5:0]) : 64'd0;
+  wire is_response_next = is_current & ~start;
   wire [5:0] next_oldest = oldest + {5'd0, oldest_goes};
-  assign idle = ~|outstanding & ~rd_req_valid & ~may_ask;
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
-    if (issue) rd_req_address <= next_address;
+    if (rd_req_moves) rd_req_address <= rd_req_spare_valid ? rd_req_spare_address : next_address;
+    if (~rd_req_spare_valid) rd_req_spare_address <= next_address;
     if (start_or_issue) next_address <= start ? source : (next_address + 58'd1);
-    if (issue) rd_req_tag <= {epoch, next_slot};
-    arrived_age <= response_slot - next_oldest;
+    if (rd_req_moves) rd_req_tag <= rd_req_spare_valid ? rd_req_spare_tag : rd_req_spare_tag_next;
+    if (~rd_req_spare_valid) rd_req_spare_tag <= rd_req_spare_tag_next;
+    arrived_age <= slot_then - next_oldest;
+    response_slot <= rd_rsp_tag[5:0];
+    accepted_slot <= rd_req_tag[5:0];
+    slot_then <= response_slot;
+    response_line <= rd_rsp_data;
+    error_then <= rd_rsp_error_d1;
+    rd_rsp_error_d1 <= rd_rsp_error;
   end
   always @(posedge clk) begin
     if (rst) begin
       rd_req_valid <= 1'b0;
+      rd_req_spare_valid <= 1'b0;
       may_ask <= 1'b0;
       lines_to_request <= 32'd0;
-      taken <= 1'b0;
+      freed <= 1'b0;
       reserved <= 7'd0;
       next_slot <= 6'd0;
-      line_valid <= 1'b0;
+      line_comes <= 1'b0;
       came <= 64'd0;
-      two_valid <= 1'b0;
       answered <= 1'b0;
       awaited <= 64'd0;
-      leftover_request <= 1'b0;
+      answers <= 64'd0;
+      is_current <= 1'b0;
+      asked <= 64'd0;
+      accepted <= 1'b0;
+      rd_req_of_job <= 1'b0;
       oldest <= 6'd0;
-      head <= 6'd0;
       failed <= 1'b0;
       unexpected <= 1'b0;
+      is_response <= 1'b0;
+      idle <= 1'b0;
       outstanding <= 7'd0;
     end else begin
-      rd_req_valid <= issue | request_stays;
+      rd_req_valid <= rd_req_next_valid | ~rd_req_moves;
+      rd_req_spare_valid <= rd_req_next_valid & ~rd_req_moves;
       may_ask <= may_ask_next;
       if (start_or_issue) lines_to_request <= start ? lines : (lines_to_request - 32'd1);
-      taken <= take & ~start;
-      if (start | (issue ^ taken)) reserved <= start ? 7'd0 : issue ? (reserved + 7'd1) : (reserved - 7'd1);
+      freed <= taken & ~start;
+      if (start | (issue ^ freed)) reserved <= start ? 7'd0 : issue ? (reserved + 7'd1) : (reserved - 7'd1);
       if (start_or_issue) next_slot <= start ? 6'd0 : (next_slot + 6'd1);
-      line_valid <= ~start & (oldest_goes | two_valid | (line_valid & ~take));
+      line_comes <= oldest_goes & ~start;
       came <= start ? 64'd0 : oldest_goes ? {1'b0, marked[63:1]} : marked;
-      two_valid <= ~start & ~take & (two_valid | (line_valid & oldest_goes));
       answered <= is_awaited & ~start;
       awaited <= start ? 64'd0 : ((awaited & ~answers) | asked);
-      leftover_request <= request_stays & (start | leftover_request);
+      answers <= is_response_next ? (64'd1 << response_slot) : 64'd0;
+      is_current <= rd_rsp_valid & (rd_rsp_tag[9:6] == epoch);
+      asked <= (accepted & ~start) ? (64'd1 << accepted_slot) : 64'd0;
+      accepted <= rd_req_valid & rd_req_ready & rd_req_of_job & ~start;
+      rd_req_of_job <= ~start & (rd_req_moves | rd_req_of_job);
       oldest <= start ? 6'd0 : next_oldest;
-      if (start | take) head <= start ? 6'd0 : (head + 6'd1);
-      failed <= is_awaited & rd_rsp_error & ~start;
-      unexpected <= run & is_current & ~is_awaited & ~start;
+      failed <= is_awaited & error_then & ~start;
+      unexpected <= run & is_response & ~is_awaited & ~start;
+      is_response <= is_response_next;
+      idle <= ~|outstanding & (~rd_req_valid & ~rd_req_spare_valid) & ~may_ask;
       if (start | (issue ^ answered)) outstanding <= start ? 7'd0 : issue ? (outstanding + 7'd1) : (outstanding - 7'd1);
     end
   end
@@ -119,8 +145,8 @@ module contact_afu_collector (
     .clk         (clk),
     .write       (is_current),
     .write_index (response_slot),
-    .write_word  (rd_rsp_data),
-    .read_index  (head),
+    .write_word  (response_line),
+    .read_index  (place),
     .read        (1'b1),
     .advance     (1'b1),
     .word        (line)

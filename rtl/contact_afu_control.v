@@ -17,16 +17,18 @@ module contact_afu_control (
   input  wire [3:0]  epoch,
   input  wire [31:0] watchdog,
   input  wire        abort_job,
-  input  wire        read_failed,
-  input  wire        write_failed,
-  input  wire        unexpected,
-  input  wire        response,
-  input  wire        link_idle,
   input  wire        packer_done,
   input  wire        dispatched,
-  input  wire [1:0]  entered,
-  input  wire [1:0]  emerged,
-  input  wire        line_left,
+  input  wire        read_failed,
+  input  wire        write_failed,
+  input  wire        none_inside,
+  input  wire        filled,
+  input  wire        read_unexpected,
+  input  wire        write_unexpected,
+  input  wire        read_answered,
+  input  wire        write_answered,
+  input  wire        read_idle,
+  input  wire        write_idle,
   input  wire        waits_for_input,
   input  wire        waits_for_output,
   output reg  [63:0] cycles_busy,
@@ -36,34 +38,37 @@ module contact_afu_control (
   output reg         done,
   output reg  [3:0]  error,
   output reg         begin_job,
-  output wire        run,
+  output reg         run,
   output reg  [57:0] job_source,
   output reg  [57:0] job_destination,
   output reg  [31:0] job_count,
   output reg  [3:0]  job_epoch,
   output wire [31:0] lines,
-  output reg         last_place,
-  output reg         may_enter
+  output reg         last_place
 );
 
   // ---- state ----
+  reg first_cycle;
   reg running;
   reg draining;
   reg read_failed_heard;
   reg write_failed_heard;
-  reg unexpected_heard;
+  reg read_unexpected_heard;
+  reg write_unexpected_heard;
   reg expired;
   reg complete;
-  reg stopped;
-  reg [9:0] pairs_inside;
+  reg [2:0] cycles_draining;
+  reg none_inside_heard;
   reg link_idle_heard;
   reg given_up;
-  reg response_heard;
+  reg read_answered_heard;
+  reg write_answered_heard;
+  reg link_idle_before;
   reg [31:0] job_watchdog;
   reg [31:0] silence;
+  reg waits_to_begin;
+  reg filled_heard;
   reg [31:0] job_lines;
-  reg [9:0] room;
-  reg [9:0] room_change;
 
   // ---- logic ----
   assign busy = running | draining;
@@ -71,50 +76,58 @@ module contact_afu_control (
   wire mode_any = |mode;
   wire refuses = accept & mode_any;
   wire [3:0] cause =
-      abort_job                       ? 4'd1 :
-      read_failed_heard               ? 4'd2 :
-      write_failed_heard              ? 4'd3 :
-      (unexpected_heard & ~begin_job) ? 4'd7 :
-      expired                         ? 4'd4 :
+      abort_job ? 4'd1 :
+      read_failed_heard ? 4'd2 :
+      write_failed_heard ? 4'd3 :
+      ((read_unexpected_heard | write_unexpected_heard) & ~begin_job) ? 4'd7 :
+      expired ? 4'd4 :
       4'd0;
-  assign run = running & ~begin_job;
   wire completes = run & complete;
   wire failing = running & |cause & ~completes;
-  wire none_inside = ~|pairs_inside & ~|entered;
-  wire drained = draining & stopped & none_inside & (link_idle_heard | given_up);
+  wire stopped = &cycles_draining;
+  wire drained = draining & stopped & none_inside_heard & (link_idle_heard | given_up);
   wire gives_up = busy & expired & ~completes;
-  wire [9:0] entered_wide = {8'd0, entered};
-  wire not_waiting = response_heard | link_idle_heard;
+  wire link_idle = read_idle & write_idle;
+  wire not_waiting = read_answered_heard | write_answered_heard | link_idle_before;
   wire has_watchdog = |job_watchdog;
+  wire begins_to_drain = draining & ~|cycles_draining;
+  wire waits_to_begin_and_not_failing = waits_to_begin & ~failing;
+  wire accept_and_not_refuses = accept & ~refuses;
   wire [3:0] failed = failing ? cause : error;
   wire [3:0] ended = gives_up ? 4'd4 : failed;
   wire [32:0] rounded_count = {1'b0, count} + 33'd1;
-  wire [9:0] next_room = room + room_change;
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
-    if (accept) job_source <= source;
-    if (accept) job_destination <= destination;
+    if (~busy) job_source <= source;
+    if (~busy) job_destination <= destination;
     if (accept) last_place <= count[0] - 1'b1;
   end
   always @(posedge clk) begin
     if (rst) begin
       cycles_busy <= 64'd0;
-      begin_job <= 1'b0;
+      first_cycle <= 1'b0;
       running <= 1'b0;
       draining <= 1'b0;
       read_failed_heard <= 1'b0;
       write_failed_heard <= 1'b0;
-      unexpected_heard <= 1'b0;
+      read_unexpected_heard <= 1'b0;
+      write_unexpected_heard <= 1'b0;
+      begin_job <= 1'b0;
       expired <= 1'b0;
+      run <= 1'b0;
       complete <= 1'b0;
-      stopped <= 1'b0;
-      pairs_inside <= 10'd0;
+      cycles_draining <= 3'd0;
+      none_inside_heard <= 1'b0;
       link_idle_heard <= 1'b0;
       given_up <= 1'b0;
-      response_heard <= 1'b0;
+      read_answered_heard <= 1'b0;
+      write_answered_heard <= 1'b0;
+      link_idle_before <= 1'b0;
       job_watchdog <= 32'd0;
       silence <= 32'd0;
+      waits_to_begin <= 1'b0;
+      filled_heard <= 1'b0;
       cycles_input <= 64'd0;
       cycles_output <= 64'd0;
       done <= 1'b0;
@@ -122,36 +135,37 @@ module contact_afu_control (
       job_count <= 32'd0;
       job_epoch <= 4'd0;
       job_lines <= 32'd0;
-      may_enter <= 1'b0;
-      room <= 10'd512;
-      room_change <= 10'd0;
     end else begin
-      if (begin_job | busy) cycles_busy <= begin_job ? 64'd1 : (cycles_busy + 64'd1);
-      begin_job <= accept;
-      running <= (accept & ~refuses) | (running & ~completes & ~failing);
+      if (first_cycle | busy) cycles_busy <= first_cycle ? 64'd1 : (cycles_busy + 64'd1);
+      first_cycle <= accept;
+      running <= accept_and_not_refuses | (running & ~completes & ~failing);
       draining <= refuses | failing | (draining & ~drained);
       read_failed_heard <= read_failed;
       write_failed_heard <= write_failed;
-      unexpected_heard <= unexpected;
+      read_unexpected_heard <= read_unexpected;
+      write_unexpected_heard <= write_unexpected;
+      begin_job <= (accept | waits_to_begin_and_not_failing) & filled_heard;
       expired <= busy & ~not_waiting & has_watchdog & (job_watchdog < silence);
+      run <= (run | begin_job) & running & ~completes & ~failing;
       complete <= run & packer_done & dispatched & link_idle;
-      stopped <= draining;
-      pairs_inside <= (pairs_inside + entered_wide) - {8'd0, emerged};
+      cycles_draining <= draining ? (stopped ? cycles_draining : (cycles_draining + 3'd1)) : 3'd0;
+      none_inside_heard <= none_inside;
       link_idle_heard <= link_idle;
       given_up <= ~accept & (given_up | gives_up);
-      response_heard <= response;
+      read_answered_heard <= read_answered;
+      write_answered_heard <= write_answered;
+      link_idle_before <= link_idle_heard;
       if (accept | (draining & ~has_watchdog)) job_watchdog <= draining ? 32'h10000 : watchdog;
-      silence <= (not_waiting | ~busy | failing) ? 32'd0 : (silence + 32'd1);
-      if (begin_job | (waits_for_input & running)) cycles_input <= begin_job ? 64'd0 : (cycles_input + 64'd1);
-      if (begin_job | (waits_for_output & running)) cycles_output <= begin_job ? 64'd0 : (cycles_output + 64'd1);
+      silence <= (not_waiting | ~busy | begins_to_drain) ? 32'd0 : (silence + 32'd1);
+      waits_to_begin <= (accept_and_not_refuses | waits_to_begin_and_not_failing) & ~filled_heard;
+      filled_heard <= filled;
+      if (first_cycle | (waits_for_input & run)) cycles_input <= first_cycle ? 64'd0 : (cycles_input + 64'd1);
+      if (first_cycle | (waits_for_output & run)) cycles_output <= first_cycle ? 64'd0 : (cycles_output + 64'd1);
       done <= ~accept & (done | completes | drained);
       error <= accept ? (mode_any ? 4'd5 : 4'd0) : ended;
       if (accept) job_count <= count;
       if (accept) job_epoch <= epoch;
       if (accept) job_lines <= rounded_count[32:1];
-      may_enter <= run & |next_room[9:3];
-      room <= begin_job ? 10'd512 : next_room;
-      room_change <= ~begin_job ? ((line_left ? 10'd2 : 10'd0) - entered_wide) : 10'd0;
     end
   end
 

@@ -22,16 +22,18 @@ module contact_afu_dispatcher (
   output reg          wr_req_valid,
   output reg  [57:0]  wr_req_address,
   output reg  [9:0]   wr_req_tag,
-  output wire [511:0] wr_req_data,
+  output reg  [511:0] wr_req_data,
   output reg          line_left,
   output reg          answered,
   output reg          failed,
   output reg          unexpected,
-  output wire         idle,
-  output wire         empty
+  output reg          idle,
+  output reg          empty
 );
 
   // ---- state ----
+  reg wr_req_spare_valid;
+  reg line_in_word;
   reg may_send;
   reg read_valid;
   reg ready;
@@ -40,44 +42,72 @@ module contact_afu_dispatcher (
   reg [6:0] reserved;
   reg [5:0] arrived_age;
   reg [63:0] awaited;
-  reg leftover_request;
+  reg [63:0] answers;
+  reg [5:0] response_slot;
+  reg is_current;
+  reg [63:0] asked;
+  reg [5:0] accepted_slot;
+  reg accepted;
+  reg wr_req_of_job;
+  reg [9:0] wr_req_spare_tag;
+  reg [9:0] word_tag;
   reg [5:0] next_slot;
+  reg [5:0] slot_then;
   reg [5:0] oldest;
+  reg [57:0] wr_req_spare_address;
+  reg [57:0] word_address;
   reg [57:0] next_address;
+  reg [511:0] wr_req_spare_data;
   reg [7:0] tail;
   reg [7:0] head;
+  reg error_then;
+  reg wr_rsp_error_d1;
+  reg is_response;
   reg [6:0] outstanding;
 
+  // ---- outputs of instances ----
+  wire [511:0] wr_req_spare_data_next;
+
   // ---- logic ----
+  wire wr_req_next_valid = ~start & (wr_req_spare_valid | line_in_word);
+  wire wr_req_moves = ~wr_req_valid | wr_req_ready;
   wire has_line = may_send & read_valid;
-  wire port_free = ~wr_req_valid | wr_req_ready;
-  wire goes = has_line & port_free;
-  wire request_stays = wr_req_valid & ~wr_req_ready;
+  wire room_at_port = ~wr_req_spare_valid;
+  wire word_free = ~line_in_word | room_at_port;
+  wire goes = has_line & word_free;
   wire read = ~read_valid | goes;
   wire take = read & ready;
   wire oldest_goes = came[0];
   wire [63:0] marked = came | (answered ? (64'd1 << arrived_age) : 64'd0);
-  wire [3:0] response_epoch = wr_rsp_tag[9:6];
-  wire is_current = wr_rsp_valid & (response_epoch == epoch);
-  wire [63:0] answers = is_current ? (64'd1 << wr_rsp_tag[5:0]) : 64'd0;
   wire is_awaited = |(awaited & answers);
-  wire accepted = wr_req_valid & wr_req_ready & ~leftover_request;
-  wire [63:0] asked = accepted ? (64'd1 << wr_req_tag[5:0]) : 64'd0;
+  wire is_response_next = is_current & ~start;
   wire start_or_goes = start | goes;
   wire [5:0] next_oldest = oldest + {5'd0, oldest_goes};
-  assign idle = ~|outstanding & ~wr_req_valid & ~has_line;
-  assign empty = ~|stored & ~read_valid;
+  wire is_idle = ~|outstanding & ~line_in_word & (~wr_req_valid & room_at_port);
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
-    arrived_age <= wr_rsp_tag[5:0] - next_oldest;
-    if (goes) wr_req_tag <= {epoch, next_slot};
-    if (goes) wr_req_address <= next_address;
+    arrived_age <= slot_then - next_oldest;
+    response_slot <= wr_rsp_tag[5:0];
+    accepted_slot <= wr_req_tag[5:0];
+    if (wr_req_moves) wr_req_tag <= wr_req_spare_valid ? wr_req_spare_tag : word_tag;
+    if (room_at_port) wr_req_spare_tag <= word_tag;
+    if (goes) word_tag <= {epoch, next_slot};
+    slot_then <= response_slot;
+    if (wr_req_moves) wr_req_address <= wr_req_spare_valid ? wr_req_spare_address : word_address;
+    if (room_at_port) wr_req_spare_address <= word_address;
+    if (goes) word_address <= next_address;
     if (start_or_goes) next_address <= start ? destination : (next_address + 58'd1);
+    if (wr_req_moves) wr_req_data <= wr_req_spare_valid ? wr_req_spare_data : wr_req_spare_data_next;
+    if (room_at_port) wr_req_spare_data <= wr_req_spare_data_next;
+    error_then <= wr_rsp_error_d1;
+    wr_rsp_error_d1 <= wr_rsp_error;
   end
   always @(posedge clk) begin
     if (rst) begin
       wr_req_valid <= 1'b0;
+      wr_req_spare_valid <= 1'b0;
+      line_in_word <= 1'b0;
       may_send <= 1'b0;
       read_valid <= 1'b0;
       ready <= 1'b0;
@@ -86,7 +116,11 @@ module contact_afu_dispatcher (
       reserved <= 7'd0;
       answered <= 1'b0;
       awaited <= 64'd0;
-      leftover_request <= 1'b0;
+      answers <= 64'd0;
+      is_current <= 1'b0;
+      asked <= 64'd0;
+      accepted <= 1'b0;
+      wr_req_of_job <= 1'b0;
       next_slot <= 6'd0;
       oldest <= 6'd0;
       tail <= 8'd0;
@@ -94,9 +128,14 @@ module contact_afu_dispatcher (
       line_left <= 1'b0;
       failed <= 1'b0;
       unexpected <= 1'b0;
+      is_response <= 1'b0;
+      idle <= 1'b0;
       outstanding <= 7'd0;
+      empty <= 1'b0;
     end else begin
-      wr_req_valid <= goes | request_stays;
+      wr_req_valid <= wr_req_next_valid | ~wr_req_moves;
+      wr_req_spare_valid <= wr_req_next_valid & ~wr_req_moves;
+      line_in_word <= ~start & (goes | (line_in_word & ~room_at_port));
       may_send <= run & ~(~oldest_goes & (reserved[6] | (&reserved[5:0] & goes)));
       read_valid <= ~start & (take | (read_valid & ~goes));
       ready <= ~start & (line_valid | (|stored[8:1] | (stored[0] & ~take)));
@@ -105,15 +144,22 @@ module contact_afu_dispatcher (
       if (start | (goes ^ oldest_goes)) reserved <= start ? 7'd0 : goes ? (reserved + 7'd1) : (reserved - 7'd1);
       answered <= is_awaited & ~start;
       awaited <= start ? 64'd0 : ((awaited & ~answers) | asked);
-      leftover_request <= request_stays & (start | leftover_request);
+      answers <= is_response_next ? (64'd1 << response_slot) : 64'd0;
+      is_current <= wr_rsp_valid & (wr_rsp_tag[9:6] == epoch);
+      asked <= (accepted & ~start) ? (64'd1 << accepted_slot) : 64'd0;
+      accepted <= wr_req_valid & wr_req_ready & wr_req_of_job & ~start;
+      wr_req_of_job <= ~start & (wr_req_moves | wr_req_of_job);
       if (start_or_goes) next_slot <= start ? 6'd0 : (next_slot + 6'd1);
       oldest <= start ? 6'd0 : next_oldest;
       if (start | line_valid) tail <= start ? 8'd0 : (tail + 8'd1);
       if (start | take) head <= start ? 8'd0 : (head + 8'd1);
       line_left <= take & ~start;
-      failed <= is_awaited & wr_rsp_error & ~start;
-      unexpected <= run & is_current & ~is_awaited & ~start;
+      failed <= is_awaited & error_then & ~start;
+      unexpected <= run & is_response & ~is_awaited & ~start;
+      is_response <= is_response_next;
+      idle <= is_idle;
       if (start | (goes ^ answered)) outstanding <= start ? 7'd0 : goes ? (outstanding + 7'd1) : (outstanding - 7'd1);
+      empty <= ~start & ~|stored & ~read_valid;
     end
   end
 
@@ -125,7 +171,7 @@ module contact_afu_dispatcher (
     .read_index  (head),
     .read        (read),
     .advance     (goes),
-    .word        (wr_req_data)
+    .word        (wr_req_spare_data_next)
   );
 
 endmodule

@@ -14,30 +14,36 @@ module contact_afu_feeder (
   input  wire [6:0]   scpus,
   input  wire [31:0]  lines,
   input  wire         last_place,
-  input  wire         line_valid,
+  input  wire         line_comes,
   input  wire [511:0] line,
   input  wire         may_enter,
-  output wire [1:0]   entered,
-  output reg  [1:0]   issue_group,
-  output reg  [6:0]   issue_turn,
-  output reg  [511:0] issue_pairs,
-  output wire         take,
+  output reg  [1:0]   entered,
+  output reg  [1:0]   carries,
+  output reg  [13:0]  targets,
+  output reg  [511:0] pairs,
+  output reg  [5:0]   head,
+  output reg          taken,
   output reg          waits_for_input,
   output reg          waits_for_output
 );
 
   // ---- state ----
-  reg [1:0] group_rank_0;
+  reg may_go_on;
   reg [2:0] phase;
   reg [2:0] turn_phase;
   reg in_hand;
   reg last;
   reg place;
-  reg [6:0] turn;
+  reg any_lines_waiting;
   reg any_lines_left;
   reg one_lines_left;
+  reg turn_within;
+  reg block_is_last;
+  reg [6:0] turn_block;
   reg [31:0] lines_left;
-  reg [6:0] turn_d1;
+  reg [6:0] lines_waiting;
+  reg [1:0] carries_rank_0;
+  reg [6:0] turn;
   reg first_place;
   reg [511:0] held;
   reg takes_line;
@@ -50,42 +56,48 @@ module contact_afu_feeder (
   wire [2:0] place_after_0 = {2'd0, place};
   wire line_done_after_0 = last_wide < place_after_0;
   wire present_0 = ~line_done_after_0;
-  wire [7:0] turn_after_0 = {1'b0, turn};
-  wire [7:0] scpus_wide = {1'b0, scpus};
-  wire unit_0 = turn_after_0 < scpus_wide;
-  wire go_0 = may_enter & may_go & in_hand & present_0 & unit_0;
+  wire go_0 = may_go_on & may_go & in_hand & present_0;
   wire [2:0] place_after_1 = place_after_0 + 3'd1;
   wire line_done_after_1 = last_wide < place_after_1;
-  wire line_comes = line_valid & any_lines_left;
+  wire line_waits = any_lines_waiting & any_lines_left;
   wire next_last = one_lines_left ? last_place : 1'b1;
-  wire present_1 = ~line_done_after_1 | (|place_after_1[2:1] & line_comes & (next_last >= place_after_1[0]));
-  wire [7:0] turn_after_1 = turn_after_0 + 8'd1;
-  wire turn_after_1_below_scpus_wide = turn_after_1 < scpus_wide;
-  wire unit_1 = turn_after_1_below_scpus_wide & ~turn[0];
+  wire present_1 = ~line_done_after_1 | (|place_after_1[2:1] & line_waits & (next_last >= place_after_1[0]));
+  wire [1:0] turn_within_wide = {1'b0, turn_within};
+  wire [1:0] turn_within_wide_plus_1 = turn_within_wide + 2'd1;
+  wire [1:0] scpus_0_0_wide = {1'b0, scpus[0]};
+  wire [1:0] block_size = (block_is_last & |scpus_0_0_wide) ? scpus_0_0_wide : 2'd2;
+  wire unit_1 = turn_within_wide_plus_1 < block_size;
   wire go_1 = go_0 & present_1 & unit_1;
-  wire [1:0] group = go_1 ? 2'd2 : go_0 ? 2'd1 : 2'd0;
+  wire [1:0] turn_within_wide_plus_2 = turn_within_wide + 2'd2;
+  wire ends_block =
+      go_1 ? (turn_within_wide_plus_2 == block_size) :
+      go_0 ? (turn_within_wide_plus_1 == block_size) :
+      (turn_within_wide == block_size);
+  wire round_ends = ends_block & block_is_last;
+  wire round_begins = start | round_ends;
+  wire [7:0] scpus_wide = {1'b0, scpus};
+  wire [7:0] scpus_wide_plus_1 = scpus_wide + 8'd1;
+  wire [7:0] blocks = {1'b0, scpus_wide_plus_1[7:1]};
+  wire one_block = blocks == 8'd1;
+  wire before_last_block = ({1'b0, turn_block} + 8'd2) == blocks;
+  wire next_within = go_1 ? turn_within_wide_plus_2[0] : go_0 ? turn_within_wide_plus_1[0] : turn_within;
   wire [2:0] place_after_2 = place_after_0 + 3'd2;
   wire line_done_after_2 = last_wide < place_after_2;
   wire line_done = go_1 ? line_done_after_2 : go_0 ? line_done_after_1 : line_done_after_0;
-  assign take = line_comes & (line_done | ~in_hand);
+  wire take = line_waits & (line_done | ~in_hand);
   wire lines_left_31_1_any = |lines_left[31:1];
   wire one_lines_left_next =
       start ? (lines[0] & ~|lines[31:1]) :
       take  ? (~|lines_left[31:2] & lines_left[1] & ~lines_left[0]) :
       (lines_left[0] & ~lines_left_31_1_any);
-  wire [7:0] turn_after_2 = turn_after_0 + 8'd2;
-  wire turn_wraps_after_2 = turn_after_2 >= scpus_wide;
-  wire [7:0] wrapped_turn_after_2 = turn_wraps_after_2 ? (turn_after_2 - scpus_wide) : turn_after_2;
-  wire turn_wraps_after_1 = ~turn_after_1_below_scpus_wide;
-  wire [7:0] wrapped_turn_after_1 = turn_wraps_after_1 ? (turn_after_1 - scpus_wide) : turn_after_1;
-  wire [6:0] next_turn = go_1 ? wrapped_turn_after_2[6:0] : go_0 ? wrapped_turn_after_1[6:0] : turn;
+  wire start_or_take = start | take;
   wire next_place = go_1 ? place_after_2[0] : go_0 ? place_after_1[0] : place;
-  wire turn_wraps = go_1 ? turn_wraps_after_2 : go_0 ? turn_wraps_after_1 : 1'b0;
-  wire [2:0] turn_0_0_wide = {2'd0, turn[0]};
-  wire ends_block =
-      go_1 ? ((turn_0_0_wide + 3'd2) == 3'd2) :
-      go_0 ? ((turn_0_0_wide + 3'd1) == 3'd2) :
-      (turn_0_0_wide == 3'd2);
+  wire [7:0] turn_wide = {1'b0, turn};
+  wire [7:0] turn_plus_1 = turn_wide + 8'd1;
+  wire [7:0] turn_after_1 = (turn_plus_1 >= scpus_wide) ? (turn_plus_1 - scpus_wide) : turn_plus_1;
+  wire [7:0] turn_plus_2 = turn_wide + 8'd2;
+  wire [7:0] turn_after_2 = (turn_plus_2 >= scpus_wide) ? (turn_plus_2 - scpus_wide) : turn_plus_2;
+  wire [6:0] next_turn = (entered == 2'd2) ? turn_after_2[6:0] : (entered == 2'd1) ? turn_after_1[6:0] : turn;
   wire [1023:0] window = {line, held};
   wire [1023:0] aligned_by_1 = first_place ? {256'd0, window[1023:256]} : window;
   wire [511:0] aligned = aligned_by_1[511:0];
@@ -94,50 +106,66 @@ module contact_afu_feeder (
   // ---- at the clock edge ----
   always @(posedge clk) begin
     if (take) last <= next_last;
-    issue_turn <= turn_d1;
-    turn_d1 <= turn;
-    issue_pairs <= aligned;
+    targets <= {turn_after_1[6:0], turn};
+    pairs <= aligned;
     first_place <= place_d1;
     if (takes_line) held <= line;
     takes_line <= take_d1;
     take_d1 <= take;
     place_d1 <= place;
     waits_for_input <= waits & ~in_hand;
-    waits_for_output <= waits & in_hand & ~may_enter;
+    waits_for_output <= waits & in_hand & ~may_go_on;
   end
   always @(posedge clk) begin
     if (rst) begin
-      group_rank_0 <= 2'd0;
+      entered <= 2'd0;
+      may_go_on <= 1'b0;
       phase <= 3'd0;
       turn_phase <= 3'd0;
       in_hand <= 1'b0;
       place <= 1'b0;
-      turn <= 7'd0;
+      any_lines_waiting <= 1'b0;
       any_lines_left <= 1'b0;
       one_lines_left <= 1'b0;
+      turn_within <= 1'b0;
+      block_is_last <= 1'b0;
+      turn_block <= 7'd0;
       lines_left <= 32'd0;
-      issue_group <= 2'd0;
+      lines_waiting <= 7'd0;
+      carries <= 2'd0;
+      carries_rank_0 <= 2'd0;
+      turn <= 7'd0;
+      head <= 6'd0;
+      taken <= 1'b0;
     end else begin
-      group_rank_0 <= group;
+      entered <= go_1 ? 2'd2 : go_0 ? 2'd1 : 2'd0;
+      may_go_on <= may_enter;
       phase <= (phase == 3'd4) ? 3'd0 : (phase + 3'd1);
-      turn_phase <=
-          (start | turn_wraps) ? 3'd0 :
-          ends_block           ? ((turn_phase == 3'd4) ? 3'd0 : (turn_phase + 3'd1)) :
-          turn_phase;
+      turn_phase <= round_begins ? 3'd0 : ends_block ? ((turn_phase == 3'd4) ? 3'd0 : (turn_phase + 3'd1)) : turn_phase;
       in_hand <= ~start & (take | (in_hand & ~line_done));
       place <= (start | ~in_hand) ? 1'b0 : next_place;
-      turn <= start ? 7'd0 : next_turn;
+      any_lines_waiting <= ~start & (line_comes | |lines_waiting[6:1] | (lines_waiting[0] & ~take));
       any_lines_left <= start ? |lines : take ? lines_left_31_1_any : |lines_left;
       one_lines_left <= one_lines_left_next;
-      if (start | take) lines_left <= start ? lines : (lines_left - 32'd1);
-      issue_group <= group_rank_0;
+      turn_within <= (start | ends_block) ? 1'b0 : next_within;
+      block_is_last <= round_begins ? one_block : ends_block ? before_last_block : block_is_last;
+      turn_block <= round_begins ? 7'd0 : ends_block ? (turn_block + 7'd1) : turn_block;
+      if (start_or_take) lines_left <= start ? lines : (lines_left - 32'd1);
+      if (start | (line_comes ^ take)) lines_waiting <=
+          start      ? 7'd0 :
+          line_comes ? (lines_waiting + 7'd1) :
+          (lines_waiting - 7'd1);
+      carries <= carries_rank_0;
+      carries_rank_0 <= {go_1, go_0};
+      turn <= start ? 7'd0 : next_turn;
+      if (start_or_take) head <= start ? 6'd0 : (head + 6'd1);
+      taken <= take & ~start;
     end
   end
 
-  assign entered = group_rank_0;
-
   // Bits that nothing needs.
-  wire unused = &{1'b0, wrapped_turn_after_2[7], wrapped_turn_after_1[7], aligned_by_1[1023:512]};
+  wire unused = &{1'b0, scpus_wide_plus_1[0], turn_after_1[7], turn_after_2[7],
+    aligned_by_1[1023:512]};
 
 endmodule
 

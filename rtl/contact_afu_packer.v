@@ -11,7 +11,8 @@ module contact_afu_packer (
   input  wire         rst,
   input  wire         start,
   input  wire [31:0]  count,
-  input  wire [1:0]   group,
+  input  wire         filled,
+  input  wire [1:0]   leaves,
   input  wire [255:0] record_0,
   input  wire         contact_0,
   input  wire         invalid_0,
@@ -20,80 +21,100 @@ module contact_afu_packer (
   input  wire         invalid_1,
   output reg          line_valid,
   output reg  [511:0] line,
-  output wire         done,
+  output reg          done,
   output wire [31:0]  contacts,
   output wire [31:0]  invalid,
   output wire [31:0]  first_invalid
 );
 
   // ---- state ----
-  reg goes;
+  reg comes;
   reg went;
+  reg filled_here;
   reg place;
   reg all_seen;
   reg [31:0] emerged;
-  reg [511:0] filling;
-  reg [767:0] shifted;
-  reg first_place;
+  reg [31:0] count_here;
+  reg [3:0] enters_1;
+  reg [255:0] entering_1;
+  reg [3:0] enters_0;
+  reg [255:0] entering_0;
+  reg [255:0] filling_0;
   reg emptied;
-  reg full;
-  reg fills_d1;
-  reg start_or_flushes_d1;
+  reg start_or_flushes_or_fills_d1;
+  reg first_place;
+  reg [1:0] carried;
   reg [31:0] contact_count;
+  reg [1:0] leaves_here;
   reg [31:0] invalid_count;
   reg [31:0] first_invalid_pair;
   reg none_invalid;
   reg [31:0] emerged_before;
 
   // ---- logic ----
-  wire [2:0] next_place = {2'd0, place} + {1'b0, group};
-  wire fills = next_place >= 3'd2;
-  wire flushes = all_seen & place & ~|group;
+  wire [1:0] leaves_now = filled_here ? leaves : 2'd0;
+  wire [1:0] place_wide = {1'b0, place};
+  wire [1:0] place_behind = leaves_now[1] ? (place_wide + 2'd2) : leaves_now[0] ? (place_wide + 2'd1) : place_wide;
+  wire fills = place_behind >= 2'd2;
+  wire flushes = all_seen & place & ~|leaves_now;
+  wire [1:0] group = leaves_now[1] ? 2'd2 : leaves_now[0] ? 2'd1 : 2'd0;
   wire start_or_flushes = start | flushes;
-  wire [2:0] wrapped_place = fills ? (next_place - 3'd2) : next_place;
-  wire [767:0] merged = {256'd0, filling} | shifted;
-  wire [511:0] record_1_wide = {record_1, record_0};
-  wire [767:0] moved_by_1 = first_place ? {record_1_wide, 256'd0} : {256'd0, record_1_wide};
-  assign done = all_seen & ~place & ~went & ~goes & ~line_valid;
-  wire some_invalid = invalid_0 | invalid_1;
+  wire [1:0] place_behind_minus_2_if_fills = fills ? (place_behind - 2'd2) : place_behind;
+  wire next_place = place_behind_minus_2_if_fills[0];
+  wire [3:0] first_place_one_hot_wide = {2'd0, 2'd1 << first_place};
+  wire done_next = ~start & (all_seen & ~place & ~went & ~comes) & ~line_valid;
+  wire contact_here_0 = contact_0 & leaves_here[0];
+  wire contact_here_1 = contact_1 & leaves_here[1];
+  wire invalid_here_0 = invalid_0 & leaves_here[0];
+  wire invalid_here_1 = invalid_1 & leaves_here[1];
+  wire some_invalid = invalid_here_0 | invalid_here_1;
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
-    line <= merged[511:0];
-    shifted <= moved_by_1;
+    count_here <= count;
+    line <= {enters_1[1] ? entering_1 : enters_0[1] ? entering_0 : 256'd0, enters_0[0] ? entering_0 : filling_0};
+    enters_1 <= carried[1] ? {first_place_one_hot_wide[2:0], 1'b0} : 4'd0;
+    entering_1 <= record_1;
+    enters_0 <= carried[0] ? first_place_one_hot_wide : 4'd0;
+    entering_0 <= record_0;
+    emptied <= start_or_flushes_or_fills_d1;
+    start_or_flushes_or_fills_d1 <= start_or_flushes | fills;
     first_place <= place;
-    emptied <= start_or_flushes_d1;
-    full <= fills_d1;
-    fills_d1 <= fills;
-    start_or_flushes_d1 <= start_or_flushes;
+    carried <= leaves_now;
     emerged_before <= emerged;
   end
   always @(posedge clk) begin
     if (rst) begin
       line_valid <= 1'b0;
-      goes <= 1'b0;
+      comes <= 1'b0;
       went <= 1'b0;
+      filled_here <= 1'b0;
       place <= 1'b0;
       all_seen <= 1'b0;
       emerged <= 32'd0;
-      filling <= 512'd0;
+      filling_0 <= 256'd0;
+      done <= 1'b0;
       contact_count <= 32'd0;
+      leaves_here <= 2'd0;
       invalid_count <= 32'd0;
       first_invalid_pair <= 32'hffffffff;
       none_invalid <= 1'b1;
     end else begin
-      line_valid <= ~start & goes;
-      goes <= ~start & went;
+      line_valid <= ~start & comes;
+      comes <= ~start & went;
       went <= ~start & (fills | flushes);
-      place <= start_or_flushes ? 1'b0 : wrapped_place[0];
-      all_seen <= ~start & (emerged == count);
+      filled_here <= filled;
+      place <= start_or_flushes ? 1'b0 : next_place;
+      all_seen <= ~start & (emerged == count_here);
       emerged <= start ? 32'd0 : (emerged + {30'd0, group});
-      filling <= emptied ? 512'd0 : full ? {256'd0, merged[767:512]} : merged[511:0];
-      contact_count <= start ? 32'd0 : (contact_count + {30'd0, {1'b0, contact_0} + {1'b0, contact_1}});
-      invalid_count <= start ? 32'd0 : (invalid_count + {30'd0, {1'b0, invalid_0} + {1'b0, invalid_1}});
+      if (enters_1[2] | emptied | enters_0[0]) filling_0 <= enters_1[2] ? entering_1 : emptied ? 256'd0 : entering_0;
+      done <= done_next;
+      contact_count <= start ? 32'd0 : (contact_count + {30'd0, {1'b0, contact_here_0} + {1'b0, contact_here_1}});
+      leaves_here <= leaves_now;
+      invalid_count <= start ? 32'd0 : (invalid_count + {30'd0, {1'b0, invalid_here_0} + {1'b0, invalid_here_1}});
       first_invalid_pair <=
           start                         ? 32'hffffffff :
-          (some_invalid & none_invalid) ? (invalid_0 ? emerged_before : (emerged_before + 32'd1)) :
+          (some_invalid & none_invalid) ? (invalid_here_0 ? emerged_before : (emerged_before + 32'd1)) :
           first_invalid_pair;
       none_invalid <= start | (none_invalid & ~some_invalid);
     end
@@ -104,7 +125,7 @@ module contact_afu_packer (
   assign first_invalid = first_invalid_pair;
 
   // Bits that nothing needs.
-  wire unused = &{1'b0, wrapped_place[2:1]};
+  wire unused = &{1'b0, place_behind_minus_2_if_fills[1], enters_1[0], enters_1[3], enters_0[3:2]};
 
 endmodule
 

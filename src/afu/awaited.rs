@@ -5,17 +5,10 @@ use crate::hdl::{Graph, Signal};
 
 use super::in_order::Arrival;
 
-/// Cycles from a response to [`Answers`]: compared with the mask, registered.
-pub(super) const CYCLES_TO_ANSWER: u32 = 1;
+/// Cycles from a response of this job, registered, to [`Answers`]: its slot decoded, compared with the marks.
+pub(super) const CYCLES_TO_ANSWER: u32 = 2;
 
-/// The port on which requests wait for acceptance.
-pub(super) struct Port<'g> {
-    pub(super) valid: Signal<'g>,
-    pub(super) ready: Signal<'g>,
-    pub(super) slot: Signal<'g>,
-}
-
-/// Responses of this job, one cycle after they arrived.
+/// Responses of this job, [two cycles](CYCLES_TO_ANSWER) after they arrived.
 pub(super) struct Answers<'g> {
     /// A response to a waiting request.
     pub(super) answered: Signal<'g>,
@@ -25,29 +18,33 @@ pub(super) struct Answers<'g> {
     pub(super) failed: Signal<'g>,
 }
 
-/// Marks a slot when its request is accepted, and clears the mark when its response arrives in a later cycle. `start`
-/// clears all marks. A request that is still on the port then belongs to an earlier job and is not marked.
+/// Marks a slot once its request was `accepted` at the port, and clears the mark when its response arrives. Both are decoded
+/// first and registered, so the mark is there when a response of the cycle after the acceptance is compared with it.
+/// `start` clears all marks.
 pub(super) fn awaited<'g>(
     graph: &'g Graph,
     slots: u32,
     [start, run]: [Signal<'g>; 2],
-    port: &Port<'g>,
+    [accepted, slot]: [Signal<'g>; 2],
     response: &Arrival<'g>,
     error: Signal<'g>,
 ) -> Answers<'g> {
-    let leftover = graph.register("leftover_request", 1, 0);
-    let stays = (port.valid & !port.ready).named("request_stays");
-    leftover.next(stays & (start | *leftover));
-    let accepted = (port.valid & port.ready & !*leftover).named("accepted");
+    let registered = |happens: Signal<'g>, name: &str| (happens & !start).registered(name);
+    let accepted = registered(accepted, "accepted");
+    let asked = registered_marks(slot.delay(1).named("accepted_slot"), accepted, start, "asked");
+    let answers = registered_marks(response.slot, response.valid, start, "answers");
     let awaited = graph.register("awaited", slots, 0);
-    let asked = port.slot.one_hot().gate(accepted).named("asked");
-    let answers = response.slot.one_hot().gate(response.valid).named("answers");
     awaited.next(start.select(awaited.same(0), (*awaited & !answers) | asked));
     let is_awaited = (*awaited & answers).any().named("is_awaited");
-    let registered = |happens: Signal<'g>, name: &str| (happens & !start).registered(name);
+    let is_response = registered(response.valid, "is_response");
     Answers {
         answered: registered(is_awaited, "answered"),
-        unexpected: registered(run & response.valid & !is_awaited, "unexpected"),
-        failed: registered(is_awaited & error, "failed"),
+        unexpected: registered(run & is_response & !is_awaited, "unexpected"),
+        failed: registered(is_awaited & error.delay(1).named("error_then"), "failed"),
     }
+}
+
+/// The mark of `slot`, if `happens`, in the next cycle.
+fn registered_marks<'g>(slot: Signal<'g>, happens: Signal<'g>, start: Signal<'g>, name: &str) -> Signal<'g> {
+    slot.one_hot().gate(happens & !start).registered(name)
 }

@@ -6,25 +6,27 @@
 
 use std::sync::Arc;
 
-use crate::config::Results;
 use crate::hdl::{BuildErrors, Graph, Module};
 
 use super::port::{JobInputs, JobOutputs};
-use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, JobError, Spec, feeder};
+use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, JobError, Spec};
 
 /// Cycles without a response after which a job that is being stopped ends, if it has no watchdog.
 pub const DRAIN_CYCLES: u32 = 1 << 16;
 
+/// Cycles from what another part tells to control's knowing it.
+pub(super) const CYCLES_TO_HEAR: u32 = 1;
 /// Cycles from `start` high to the first cycle in which the parts run.
 pub(super) const CYCLES_TO_RUN: u32 = 2;
-/// Cycles from the end of all work to `done`.
+/// Cycles from the end of all work, as the parts tell it, to `done`.
 pub(super) const CYCLES_TO_DONE: u32 = 2;
+/// Cycles, a power of two, after which all parts have stopped and control has heard it.
+const CYCLES_TO_STOP: u32 = 8;
 
-/// Builds the module `contact_afu_control`; `capacity` is the number of results there is room for.
-pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, BuildErrors> {
+/// Builds the module `contact_afu_control`.
+pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new("contact_afu_control");
     graph.about("takes a job, watches it, ends it");
-    let room_bits = room_bits(capacity);
     let layout = spec.layout();
 
     let job = JobInputs::of(spec);
@@ -32,37 +34,37 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, BuildEr
         [&job.start, &job.source, &job.destination, &job.count, &job.mode, &job.epoch, &job.watchdog, &job.abort_job]
             .map(|port| port.input(&graph));
     let told = JobOutputs::of(spec);
-    // Inputs from distant parts are registered first.
-    let heard = |name: &str| graph.input(name, 1).registered(&format!("{name}_heard"));
-    let [read_failed, write_failed, unexpected] = ["read_failed", "write_failed", "unexpected"].map(heard);
-    let response = heard("response");
-    let link_idle_now = graph.input("link_idle", 1);
-    let packed = graph.input("packer_done", 1);
-    let dispatched = graph.input("dispatched", 1);
-    let entered = graph.input("entered", spec.group_bits());
-    let emerged = graph.input("emerged", spec.group_bits());
-    let freed = match spec.config.results {
-        Results::All => graph.input("line_left", 1),
-        Results::Hits => graph.input("places_freed", spec.group_bits() + 1),
-    };
-    let waits_for_input = graph.input("waits_for_input", 1);
-    let waits_for_output = graph.input("waits_for_output", 1);
+    // What other parts tell comes from registers, and most of it is registered first.
+    let begin = graph.register("begin_job", 1, 0);
+    let input = |name: &str| graph.input(name, 1);
+    let heard = |name: &str| input(name).registered(&format!("{name}_heard"));
+    let [packed, dispatched] = ["packer_done", "dispatched"].map(input);
+    let [read_failed, write_failed, none_inside, filled] =
+        ["read_failed", "write_failed", "none_inside", "filled"].map(heard);
+    let [read_unexpected, write_unexpected] = ["read_unexpected", "write_unexpected"].map(heard);
+    let [read_answered, write_answered] = ["read_answered", "write_answered"].map(heard);
+    let [read_idle, write_idle] = ["read_idle", "write_idle"].map(input);
+    let unexpected = read_unexpected | write_unexpected;
+    let response = read_answered | write_answered;
+    let link_idle_now = (read_idle & write_idle).named("link_idle");
+    let link_idle = link_idle_now.registered("link_idle_heard");
+    let [waits_for_input, waits_for_output] = ["waits_for_input", "waits_for_output"].map(input);
 
     let running = graph.register("running", 1, 0);
     let draining = graph.register("draining", 1, 0);
     let done = graph.register("done", 1, 0);
     let error = graph.register("error", JobError::BITS, 0);
-    let begin = graph.register("begin_job", 1, 0);
-    let run = (*running & !*begin).named("run");
+    let waits = graph.register("waits_to_begin", 1, 0);
+    let run = graph.register("run", 1, 0);
     let busy = (*running | *draining).named("busy");
     let accept = (start & !busy).named("accept");
 
-    // The job, held from its start; everything downstream begins a cycle later.
-    begin.next(accept);
+    // The job, held from its start; everything downstream begins a cycle later. The addresses, which are wide, are taken in
+    // every cycle without a job, so that they do not depend on `start`.
     let job_source = graph.data_register("job_source", ADDRESS_BITS);
-    job_source.next_if(accept, source);
+    job_source.next_if(!busy, source);
     let job_destination = graph.data_register("job_destination", ADDRESS_BITS);
-    job_destination.next_if(accept, destination);
+    job_destination.next_if(!busy, destination);
     let job_count = graph.register("job_count", COUNT_BITS, 0);
     job_count.next_if(accept, count);
     let job_epoch = graph.register("job_epoch", EPOCH_BITS, 0);
@@ -80,36 +82,23 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, BuildEr
     let fewer = count.low(shift.max(1)).minus(1);
     last_place.next_if(accept, if shift == 0 { fewer.same(0) } else { fewer });
 
-    // Pairs inside, and room for results. A pair takes its place when it enters, and a line frees its places when it
-    // leaves for memory. If only hits are written, a pair without contact frees its place as soon as the decision is
-    // known, and a contact when it leaves the backlog.
-    let room = graph.register("room", room_bits, u128::from(capacity));
-    let returned = match spec.config.results {
-        Results::All => graph.constant(room_bits, u128::from(layout.contacts_per_line())).gate(freed),
-        Results::Hits => freed.extend(room_bits),
-    };
-    let change = (returned - entered.extend(room_bits)).gate(!*begin).registered("room_change");
-    let next_room = (room.value() + change).named("next_room");
-    room.next(begin.select(room.same(u128::from(capacity)), next_room));
-    // True if a group may enter, whatever the size of earlier groups that are not counted yet.
-    let may_enter = graph.register("may_enter", 1, 0);
-    may_enter.next(run & next_room.drop_low(feeder::room_to_enter(spec).ilog2()).any());
-    let inside = graph.register("pairs_inside", room_bits, 0);
-    inside.next(inside.value() + entered.extend(room_bits) - emerged.extend(room_bits));
+    let stopping = graph.register("cycles_draining", CYCLES_TO_STOP.ilog2(), 0);
+    let stopped = stopping.all().named("stopped");
+    stopping.next(stopped.select(*stopping, stopping.plus(1)).gate(*draining));
+    let stops = (*draining & !stopping.any()).named("begins_to_drain");
 
     // Watchdog: cycles since the last response while a request is outstanding. The count restarts when the job is to
     // end. The register does not make a timely response late.
     let silence = graph.register("silence", COUNT_BITS, 0);
-    let link_idle = link_idle_now.registered("link_idle_heard");
-    let quiet = (response | link_idle).named("not_waiting");
+    let quiet = (response | link_idle.registered("link_idle_before")).named("not_waiting");
     let failing = graph.wire("failing", 1);
-    silence.next((quiet | !busy | failing).select(silence.same(0), silence.plus(1)));
+    silence.next((quiet | !busy | stops).select(silence.same(0), silence.plus(1)));
     let expired = graph.register("expired", 1, 0);
     expired.next(busy & !quiet & has_watchdog & silence.greater_than(*job_watchdog));
 
     // The end.
-    let complete = (run & packed & dispatched & link_idle_now).registered("complete");
-    let complete = (run & complete).named("completes");
+    let complete = (*run & packed & dispatched & link_idle_now).registered("complete");
+    let complete = (*run & complete).named("completes");
     let refuses = (accept & mode.any()).named("refuses");
     let causes = [
         (abort, JobError::Aborted),
@@ -129,11 +118,13 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, BuildEr
     let gives_up = (busy & *expired & !complete).named("gives_up");
     let given_up = graph.register("given_up", 1, 0);
     given_up.next(!accept & (*given_up | gives_up));
-    // The parts are stopped one cycle later.
-    let stopped = draining.registered("stopped");
-    let empty = (!inside.any() & !entered.any()).named("none_inside");
-    let drained = (*draining & stopped & empty & (link_idle | *given_up)).named("drained");
+    // The parts are stopped some cycles later.
+    let drained = (*draining & stopped & none_inside & (link_idle | *given_up)).named("drained");
     running.next((accept & !refuses) | (*running & !complete & !failing));
+    // A job begins once the delay lines are filled, and runs a cycle later.
+    begin.next((accept | (*waits & !failing)) & filled);
+    waits.next(((accept & !refuses) | (*waits & !failing)) & !filled);
+    run.next((*run | *begin) & *running & !complete & !failing);
     draining.next(refuses | failing | (*draining & !drained));
     done.next(!accept & (*done | complete | drained));
     let failed = failing.select(cause, *error).named("failed");
@@ -152,32 +143,27 @@ pub(super) fn control(spec: &Spec, capacity: u32) -> Result<Arc<Module>, BuildEr
     let begun = mode.any().select(error.same(JobError::Mode.code().into()), error.same(0));
     error.next(accept.select(begun, ended));
 
-    // The counts begin one cycle after the job, and include that cycle, in which nothing waits yet.
+    // The counts begin one cycle after the start, and include that cycle, in which nothing waits yet.
+    let first_cycle = accept.registered("first_cycle");
     for (port, counts, first) in [
         (told.cycles_busy, busy, 1),
-        (told.cycles_input, waits_for_input & *running, 0),
-        (told.cycles_output, waits_for_output & *running, 0),
+        (told.cycles_input, waits_for_input & *run, 0),
+        (told.cycles_output, waits_for_output & *run, 0),
     ] {
         let counter = graph.register(port.name, port.bits, 0);
-        counter.next_if(*begin | counts, begin.select(counter.same(first), counter.plus(1)));
+        counter.next_if(first_cycle | counts, first_cycle.select(counter.same(first), counter.plus(1)));
         graph.output(port.name, counter.value());
     }
     graph.output("busy", busy);
     graph.output("done", done.value());
     graph.output("error", error.value());
     graph.output("begin_job", begin.value());
-    graph.output("run", run);
+    graph.output("run", run.value());
     graph.output("job_source", job_source.value());
     graph.output("job_destination", job_destination.value());
     graph.output("job_count", job_count.value());
     graph.output("job_epoch", job_epoch.value());
     graph.output("lines", job_lines.value());
     graph.output("last_place", last_place.value());
-    graph.output("may_enter", may_enter.value());
     graph.finish()
-}
-
-/// Bits that hold a number of results up to `capacity`.
-fn room_bits(capacity: u32) -> u32 {
-    capacity.ilog2() + 1
 }

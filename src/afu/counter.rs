@@ -47,3 +47,22 @@ pub(super) fn all_used<'g>(reserved: Register<'g>, takes: Signal<'g>, frees: Sig
     let slots = reserved.width() - 1;
     !frees & (reserved.msb() | (reserved.low(slots).all() & takes))
 }
+
+/// A counter like that of [`up_down`] for up to `2^(width − 1)` things, with a flag that is set while it is not 0. It goes
+/// down only while the flag is set.
+pub(super) fn waiting<'g>(
+    graph: &'g Graph,
+    name: &str,
+    width: u32,
+    start: Signal<'g>,
+    up: Signal<'g>,
+) -> (Signal<'g>, impl FnOnce(Signal<'g>) + use<'g>) {
+    let count = graph.register(name, width, 0);
+    let some = graph.register(&format!("any_{name}"), 1, 0);
+    let connect = move |down: Signal<'g>| {
+        up_down(count, start, up, down);
+        let more = count.drop_low(1).any();
+        some.next(!start & (up | more | (count.bit(0) & !down)));
+    };
+    (some.value(), connect)
+}

@@ -10,17 +10,18 @@ use std::sync::Arc;
 use crate::config::Results;
 use crate::hdl::{BuildErrors, Graph, Module};
 
-use super::awaited::{self, Port, awaited};
+use super::awaited::{self, awaited};
 use super::counter::{Countdown, all_used, up_down};
 use super::in_order::{Arrival, goes_in_order};
 use super::lines::{Access, line_memory};
 use super::port::{WriteInputs, WriteOutputs, outputs};
+use super::slice::slice;
 use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, Spec};
 
-/// Cycles from a line to its write request: stored, at the head, registered.
-pub(super) const CYCLES_TO_REQUEST: u32 = 3;
+/// Cycles from a line to its write request: stored, at the head, in the memory's register, at the port.
+pub(super) const CYCLES_TO_REQUEST: u32 = 4;
 /// Cycles from an acknowledgement until it is counted.
-pub(super) const CYCLES_TO_IDLE: u32 = awaited::CYCLES_TO_ANSWER + 1;
+pub(super) const CYCLES_TO_IDLE: u32 = 1 + awaited::CYCLES_TO_ANSWER + 2;
 
 /// Builds the module `contact_afu_dispatcher`, with room for `depth` (a power of two) lines.
 pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildErrors> {
@@ -56,17 +57,17 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
     ready.next(!start & (line_valid | some_left));
     read_valid.next(!start & (take | (*read_valid & !goes)));
 
-    // Write requests. Whether one may be sent is decided one cycle ahead.
+    // Write requests. Whether one may be sent is decided one cycle ahead. The line is in the memory's register while its
+    // address and tag are in registers beside it; then it enters the port's slice.
     let next_address = graph.data_register("next_address", ADDRESS_BITS);
     let next_slot = graph.register("next_slot", slot_bits, 0);
     let reserved = graph.register("reserved", slot_bits + 1, 0);
     let may_send = graph.register("may_send", 1, 0);
-    let request_valid = graph.register("wr_req_valid", 1, 0);
-    let request_address = graph.data_register("wr_req_address", ADDRESS_BITS);
-    let request_tag = graph.data_register("wr_req_tag", spec.tag_bits());
-    let port_free = (!*request_valid | link.wr_req_ready).named("port_free");
+    let in_word = graph.register("line_in_word", 1, 0);
+    let room_at_port = graph.wire("room_at_port", 1);
+    let word_free = (!*in_word | room_at_port).named("word_free");
     let has_line = (*may_send & *read_valid).named("has_line");
-    goes.drive(has_line & port_free);
+    goes.drive(has_line & word_free);
     let send = if bounded {
         let lines = graph.input("lines", COUNT_BITS);
         let room = Countdown::new(&graph, "lines_of_room", COUNT_BITS);
@@ -82,32 +83,38 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
     } else {
         goes
     };
-    request_valid.next(send | (*request_valid & !link.wr_req_ready));
-    request_address.next_if(send, next_address.value());
-    request_tag.next_if(send, epoch.concat(next_slot.value()));
-    // The memory's own register is the port's.
+    in_word.next(!start & (send | (*in_word & !room_at_port)));
     let access =
         Access { write: line_valid, write_index: tail.value(), line, read, read_index: head.value(), advance: send };
-    let request_data = line_memory(&graph, spec, "finished", depth, &access)?;
+    let word = line_memory(&graph, spec, "finished", depth, &access)?;
+    let word_address = graph.data_register("word_address", ADDRESS_BITS);
+    word_address.next_if(send, next_address.value());
+    let word_tag = graph.data_register("word_tag", spec.tag_bits());
+    word_tag.next_if(send, epoch.concat(next_slot.value()));
+    let fields = [("address", word_address.value()), ("tag", word_tag.value()), ("data", word)];
+    let port = slice(&graph, "wr_req", start, *in_word, &fields, link.wr_req_ready);
+    let [request_address, request_tag, request_data] = [0, 1, 2].map(|field| port.fields[field]);
+    room_at_port.drive(port.has_room);
     next_address.next_if(start | send, start.select(destination, next_address.plus(1)));
     next_slot.next_if(start | send, start.select(next_slot.same(0), next_slot.plus(1)));
 
     // Acknowledgements, in any order.
-    let response_epoch = link.wr_rsp_tag.high(EPOCH_BITS).named("response_epoch");
-    let response = (link.wr_rsp_valid & response_epoch.equals(epoch)).named("is_current");
-    let arrival = Arrival { valid: response, slot: link.wr_rsp_tag.low(slot_bits) };
-    let port = Port { valid: request_valid.value(), ready: link.wr_req_ready, slot: request_tag.low(slot_bits) };
-    let answers = awaited(&graph, slots, [start, run], &port, &arrival, link.wr_rsp_error);
-    let freed = goes_in_order(&graph, slots, start, arrival.slot, answers.answered, graph.constant(1, 1));
+    let is_current = link.wr_rsp_tag.high(EPOCH_BITS).equals(epoch);
+    let response = (link.wr_rsp_valid & is_current).registered("is_current");
+    let response_slot = link.wr_rsp_tag.low(slot_bits).delay(1).named("response_slot");
+    let arrival = Arrival { valid: response, slot: response_slot };
+    let error = link.wr_rsp_error.delay(1).named("response_error");
+    let answers = awaited(&graph, slots, [start, run], [port.accepted, request_tag.low(slot_bits)], &arrival, error);
+    let freed = goes_in_order(&graph, slots, start, arrival.slot, answers.answered);
     up_down(reserved, start, send, freed);
     may_send.next(run & !all_used(reserved, send, freed));
     let outstanding = graph.register("outstanding", slot_bits + 1, 0);
     up_down(outstanding, start, send, answers.answered);
 
     let requests = WriteOutputs {
-        wr_req_valid: request_valid.value(),
-        wr_req_address: request_address.value(),
-        wr_req_tag: request_tag.value(),
+        wr_req_valid: port.valid,
+        wr_req_address: request_address,
+        wr_req_tag: request_tag,
         wr_req_data: request_data,
     };
     outputs(&graph, requests.named());
@@ -117,7 +124,9 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
     graph.output("answered", answers.answered);
     graph.output("failed", answers.failed);
     graph.output("unexpected", answers.unexpected);
-    graph.output("idle", !outstanding.any() & !*request_valid & !has_line);
-    graph.output("empty", !stored.any() & !*read_valid);
+    // A line that has not reached the word's register is stored, so it is not empty.
+    let idle = (!outstanding.any() & !*in_word & port.is_empty).named("is_idle");
+    graph.output("idle", idle.registered("idle"));
+    graph.output("empty", (!start & !stored.any() & !*read_valid).registered("empty"));
     graph.finish()
 }

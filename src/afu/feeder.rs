@@ -1,12 +1,14 @@
 //! The feeder: takes pairs from lines and gives them to the SCPUs in turn. In each cycle it gives as many as there are
 //! pairs, turns and room for their results. Pair p of a job goes to SCPU p mod N, at an interval above 1 in the
 //! [phase](super::rounds) of that SCPU.
+//!
+//! The decision which pairs leave needs only counts. The SCPUs' numbers and the pairs themselves follow it.
 
 use std::sync::Arc;
 
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
-use super::counter::Countdown;
+use super::counter::{Countdown, waiting};
 use super::lines::CYCLES_TO_WORD;
 use super::rounds::Rounds;
 use super::{COUNT_BITS, SCPU_BITS, Spec};
@@ -14,15 +16,15 @@ use super::{COUNT_BITS, SCPU_BITS, Spec};
 /// Register ranks from the decision which pairs leave to the pairs themselves. Their data arrive as late as lines do,
 /// and are registered.
 const RANKS: u32 = CYCLES_TO_WORD + 1;
-/// Register ranks from the decision to the size and the first SCPU of a group. The slots get these one cycle before the
-/// pairs, so that each knows which pair it takes.
+/// Register ranks from the decision to the lanes that carry pairs and the SCPUs that these are for. The slots get them
+/// one cycle before the pairs, so that each knows which pair it takes.
 const RANKS_TO_GROUP: u32 = RANKS - 1;
-/// Cycles from a line that is offered to a group of its pairs that leaves for the slots: the line in hand, and the
-/// ranks of the decision.
-pub(super) const CYCLES_TO_ISSUE: u32 = 1 + RANKS;
+/// Cycles from a line that is announced to a group of its pairs that leaves for the slots: the line is counted, it is in
+/// hand, and the ranks of the decision.
+pub(super) const CYCLES_TO_ISSUE: u32 = 2 + RANKS;
 /// The number of groups, including the new one, whose results are not counted yet when the room for the new one is
 /// checked.
-const UNSEEN_GROUPS: u32 = 3;
+const UNSEEN_GROUPS: u32 = 4;
 
 /// The number of results, a power of two, for which there must be room when a group enters: its own, and those of
 /// earlier groups that are not yet counted.
@@ -43,25 +45,25 @@ pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let scpus = graph.input("scpus", SCPU_BITS);
     let lines = graph.input("lines", COUNT_BITS);
     let last_place = graph.input("last_place", place_bits);
-    let offered = graph.input("line_valid", 1);
+    let comes = graph.input("line_comes", 1);
     let line = graph.input("line", spec.line_bits);
-    let may_enter = graph.input("may_enter", 1);
+    let may_enter = graph.input("may_enter", 1).registered("may_go_on");
 
-    // A window of two lines: the line in hand, and the line that the collector offers. Their contents arrive later.
+    // A window of two lines: the line in hand, and the oldest that waits in the collector. Their contents arrive later.
     // These are the places of the next pair and of the last pair in the line in hand.
     let in_hand = graph.register("in_hand", 1, 0);
     let place = graph.register("place", place_bits, 0);
     let last = graph.data_register("last", place_bits);
-    let turn = graph.register("turn", SCPU_BITS, 0);
     let lines_left = Countdown::new(&graph, "lines_left", COUNT_BITS);
     let (some_left, last_is_next) = (lines_left.any, lines_left.one);
+    let (announced, took) = waiting(&graph, "lines_waiting", spec.max_outstanding.ilog2() + 1, start, comes);
     // Even if the link brings data that was not requested, no more than the job's lines are taken.
-    let line_valid = (offered & some_left).named("line_comes");
+    let line_waits = (announced & some_left).named("line_waits");
     let of_full = graph.constant(place_bits, u128::from(per_line - 1));
     let next_last = last_is_next.select(last_place, of_full).named("next_last");
 
     // Lane j carries a pair if all lanes before it do.
-    let rounds = Rounds::new(&graph, spec, scpus, turn.value());
+    let rounds = Rounds::new(&graph, spec, scpus);
     let after = |pairs: u32| {
         let place_after = place.extend(place_bits + 2).plus(u128::from(pairs));
         place_after.named(&format!("place_after_{pairs}"))
@@ -74,19 +76,18 @@ pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let mut go = Vec::new();
     for lane in 0..lanes {
         let reach = after(lane);
-        let is_next = reach.drop_low(place_bits).any() & line_valid & reach.low(place_bits).at_most(next_last);
-        let is_next = if lane == 0 { graph.constant(1, 0) } else { is_next };
-        let present = (!beyond(lane) | is_next).named(&format!("present_{lane}"));
+        let is_next = reach.drop_low(place_bits).any() & line_waits & reach.low(place_bits).at_most(next_last);
+        // A line may have been used up by a group that began in the line before it.
+        let present = if lane == 0 { !beyond(0) } else { !beyond(lane) | is_next };
+        let present = present.named(&format!("present_{lane}"));
         let unit = rounds.as_ref().map_or_else(|| more_than(scpus, lane), |rounds| rounds.admits(lane));
         let unit = unit.named(&format!("unit_{lane}"));
         going = (going & present & unit).named(&format!("go_{lane}"));
         go.push(going);
     }
-    let group_bits = spec.group_bits();
-    let group = by_group(&go, |pairs| graph.constant(group_bits, pairs.into())).named("group");
-
     let line_done = by_group(&go, beyond).named("line_done");
-    let take = (line_valid & (line_done | !*in_hand)).named("take");
+    let take = (line_waits & (line_done | !*in_hand)).named("take");
+    took(take);
     in_hand.next(!start & (take | (*in_hand & !line_done)));
     last.next_if(take, next_last);
     // In the next line, if the present one is finished; after the last line there is none, and the value is not used.
@@ -94,28 +95,12 @@ pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let next_place = by_group(&go, place_after).named("next_place");
     place.next((start | !*in_hand).select(place.same(0), next_place));
     lines_left.connect(start, lines, take);
-
-    let all = scpus.extend(SCPU_BITS + 1);
-    let turn_after = |pairs: u32| {
-        let turn_after = turn.extend(SCPU_BITS + 1).plus(u128::from(pairs));
-        turn_after.named(&format!("turn_after_{pairs}"))
-    };
-    let wraps_after = |pairs: u32| match pairs {
-        0 => graph.constant(1, 0),
-        _ => turn_after(pairs).at_least(all).named(&format!("turn_wraps_after_{pairs}")),
-    };
-    let next_turn = by_group(&go, |pairs| {
-        let next = turn_after(pairs);
-        let wrapped = wraps_after(pairs).select(next - all, next);
-        wrapped.named(&format!("wrapped_turn_after_{pairs}")).low(SCPU_BITS)
-    });
-    turn.next(start.select(turn.same(0), next_turn.named("next_turn")));
+    // The place in the collector's memory of the line after the one in hand.
+    let head = graph.register("head", spec.max_outstanding.ilog2(), 0);
+    head.next_if(start | take, start.select(head.same(0), head.plus(1)));
     if let Some(rounds) = &rounds {
-        rounds.advance(
-            start,
-            by_group(&go, |pairs| rounds.ends_block(pairs)),
-            by_group(&go, wraps_after).named("turn_wraps"),
-        );
+        let ends_block = by_group(&go, |pairs| rounds.ends_block(pairs)).named("ends_block");
+        rounds.advance(start, ends_block, by_group(&go, |pairs| rounds.within_after(pairs)).named("next_within"));
     }
 
     // The window itself, as late as lines arrive, and its pairs from the decided place on.
@@ -132,23 +117,40 @@ pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     }
     let aligned = aligned.low(lanes * pair_bits).named("aligned");
 
-    // Registered on the way to the slots.
-    let ranks = (0..RANKS_TO_GROUP).scan(group, |before, rank| {
-        let last = rank + 1 == RANKS_TO_GROUP;
-        let name = if last { "issue_group".to_owned() } else { format!("group_rank_{rank}") };
-        *before = before.registered(&name);
-        Some(*before)
+    // On the way to the slots: how many pairs, on which lanes, for which SCPUs.
+    let group = by_group(&go, |pairs| graph.constant(spec.group_bits(), pairs.into())).registered("entered");
+    let going = go.into_iter().rev().reduce(Signal::concat).unwrap_or(*in_hand);
+    let carries = (0..RANKS_TO_GROUP).fold(going, |before, rank| {
+        let is_last = rank + 1 == RANKS_TO_GROUP;
+        before.registered(&if is_last { "carries".to_owned() } else { format!("carries_rank_{rank}") })
     });
-    let ranks: Vec<_> = ranks.collect();
-    graph.output("entered", ranks[0]);
-    graph.output("issue_group", ranks[RANKS_TO_GROUP as usize - 1]);
-    graph.output("issue_turn", turn.delay(RANKS_TO_GROUP).named("issue_turn"));
-    graph.output("issue_pairs", aligned.delay(1).named("issue_pairs"));
-    graph.output("take", take);
+    let targets = targets(&graph, start, scpus, group, lanes);
+    graph.output("entered", group);
+    graph.output("carries", carries);
+    graph.output("targets", targets.delay(RANKS_TO_GROUP - 1).named("targets"));
+    graph.output("pairs", aligned.delay(1).named("pairs"));
+    graph.output("head", head.value());
+    graph.output("taken", (take & !start).registered("taken"));
     let waits = (run & (*in_hand | some_left)).named("waits");
     graph.output("waits_for_input", (waits & !*in_hand).delay(1));
     graph.output("waits_for_output", (waits & *in_hand & !may_enter).delay(1));
     graph.finish()
+}
+
+/// The SCPUs that the lanes of a group are for, lane 0 in the lowest bits. `group` is the number of its pairs.
+fn targets<'g>(graph: &'g Graph, start: Signal<'g>, scpus: Signal<'g>, group: Signal<'g>, lanes: u32) -> Signal<'g> {
+    let turn = graph.register("turn", SCPU_BITS, 0);
+    let all = scpus.extend(SCPU_BITS + 1);
+    let behind = |pairs: u32| {
+        let sum = turn.extend(SCPU_BITS + 1).plus(u128::from(pairs)).named(&format!("turn_plus_{pairs}"));
+        // There are never more pairs in a group than SCPUs.
+        let wrapped = sum.at_least(all).select(sum - all, sum).named(&format!("turn_after_{pairs}"));
+        wrapped.low(SCPU_BITS)
+    };
+    let next = (1..=lanes).fold(turn.value(), |fewer, pairs| group.is(u128::from(pairs)).select(behind(pairs), fewer));
+    turn.next(start.select(turn.same(0), next.named("next_turn")));
+    let lanes: Vec<_> = (0..lanes).rev().map(|lane| if lane == 0 { turn.value() } else { behind(lane) }).collect();
+    Signal::join(&lanes)
 }
 
 /// `of` applied to the number of pairs that enter. Its value is computed for each possible number; the number itself

@@ -12,11 +12,11 @@ pub(super) struct Arrival<'g> {
     pub(super) slot: Signal<'g>,
 }
 
-/// True if the oldest of `slots` (a power of two) slots is answered and leaves, in a cycle in which `may_go` is set.
-/// Slots are used in turn, from 0 at `start`, and are reused only after they left.
+/// True if the oldest of `slots` (a power of two) slots is answered; it leaves in that cycle. Slots are used in turn, from
+/// 0 at `start`, and are reused only after they left.
 ///
-/// `answered` is set one cycle after the response to an outstanding request arrived. `slot` is the response's slot in
-/// the cycle of its arrival. The marks are ordered by age and move up when the oldest leaves, so no search for the
+/// `answered` is set when the response to an outstanding request has been [recognised](super::awaited). `slot` is the
+/// response's slot in the cycle of its arrival. The marks are ordered by age and move up when the oldest leaves, so no search for the
 /// oldest is needed.
 pub(super) fn goes_in_order<'g>(
     graph: &'g Graph,
@@ -24,16 +24,16 @@ pub(super) fn goes_in_order<'g>(
     start: Signal<'g>,
     slot: Signal<'g>,
     answered: Signal<'g>,
-    may_go: Signal<'g>,
 ) -> Signal<'g> {
     let oldest = graph.register("oldest", slot.width(), 0);
     let came = graph.register("came", slots, 0);
-    let goes = (came.bit(0) & may_go).named("oldest_goes");
+    let goes = came.bit(0).named("oldest_goes");
     let next_oldest = (oldest.value() + goes.extend(oldest.width())).named("next_oldest");
     oldest.next(start.select(oldest.same(0), next_oldest));
 
     // The age of an arrival is computed first, and marked one cycle later.
     let age = graph.data_register("arrived_age", slot.width());
+    let slot = slot.delay(super::awaited::CYCLES_TO_ANSWER - 1).named("slot_then");
     age.next(slot - next_oldest);
     let marked = (*came | age.one_hot().gate(answered)).named("marked");
     let moved = marked.drop_low(1).extend(slots);

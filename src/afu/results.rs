@@ -25,6 +25,7 @@ impl Room {
     /// Enough room for every pair in SCPUs of this latency.
     pub(super) fn of(spec: &Spec, slot_latency: u32) -> Self {
         let layout = spec.layout();
+        let slot_latency = slot_latency + spec.max_hops;
         // Results that are in the SCPUs or wait for their write request, and some more to bridge a stall of the link.
         let in_flight = (feeder::CYCLES_TO_ISSUE + slot_latency + spec.dispatch_cycles) * spec.lanes();
         let least_lines = spec.dispatch_cycles.next_power_of_two();
@@ -69,16 +70,16 @@ impl Parts {
         Ok(Self { packer: packer::packer(spec)?, before })
     }
 
-    /// The instances. `lanes` has the slots' outputs by name, which arrive one cycle after their number, `group`.
+    /// The instances. `lanes` has the slots' outputs by name, which arrive one cycle after `leaves` says on which lanes.
     /// `accepts` is high while the dispatcher has room.
     pub(super) fn instances<'g>(
         &self,
         graph: &'g Graph,
-        [begin, count, group]: [Signal<'g>; 3],
+        [begin, count, filled, leaves]: [Signal<'g>; 4],
         lanes: &[(String, Signal<'g>)],
         accepts: Option<Signal<'g>>,
     ) -> Packed<'g> {
-        let mut inputs = vec![("start", begin), ("count", count), ("group", group)];
+        let mut inputs = vec![("start", begin), ("count", count), ("filled", filled), ("leaves", leaves)];
         inputs.extend(lanes.iter().map(|(name, signal)| (name.as_str(), *signal)));
         let (Some([sieve, backlog]), Some(accepts)) = (&self.before, accepts) else {
             let packer = graph.instance("packer", &self.packer, &inputs);

@@ -29,8 +29,8 @@ pub(super) fn sieve(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
 
     let start = graph.input("start", 1);
     let count = graph.input("count", COUNT_BITS);
-    // It arrives one cycle before the results that it counts.
-    let group = graph.input("group", group_bits).registered("group_here");
+    let results = status::results(&graph, lanes);
+    let group = results.group.registered("group_here");
     let mut records = Vec::new();
     let mut contacts = Vec::new();
     let mut invalids = Vec::new();
@@ -38,8 +38,8 @@ pub(super) fn sieve(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
         if result_bits > 0 {
             records.push(graph.input(&format!("record_{lane}"), result_bits));
         }
-        contacts.push(graph.input(&format!("contact_{lane}"), 1));
-        invalids.push(graph.input(&format!("invalid_{lane}"), 1));
+        contacts.push(results.of(lane, "contact"));
+        invalids.push(results.of(lane, "invalid"));
     }
     let (emerged, all_seen) = status::emerged(&graph, start, group, count);
 

@@ -1,5 +1,8 @@
-//! One SCPU's place among the others: it takes a pair from the lanes when it is its turn, and puts the result on the
-//! lane its pair came from. All slots see the same lanes; the results are or-ed together outside.
+//! One SCPU's place in the chain: it takes the pair that names it from the lanes that pass, and puts the result on the same
+//! lane as it passes behind the SCPUs.
+//!
+//! Pairs and results go from slot to slot, a register each. A pair that goes further in comes out nearer to the end, so
+//! every pair takes the same number of cycles, and results leave in the order of their pairs.
 
 use std::sync::Arc;
 
@@ -10,7 +13,8 @@ use super::{SCPU_BITS, Spec};
 /// Register ranks before the SCPU: the chosen pair is registered.
 const RANKS_BEFORE: u32 = 1;
 
-/// Cycles from the lanes to the results, for an SCPU of that latency.
+/// Cycles from a pair before its slot to its result behind the SCPU, for an SCPU of that latency. The chain's registers, as
+/// many as there are slots, come on top.
 pub(super) fn latency(kernel_latency: u32) -> u32 {
     RANKS_BEFORE + kernel_latency
 }
@@ -18,54 +22,64 @@ pub(super) fn latency(kernel_latency: u32) -> u32 {
 /// Builds the module `scpu_slot`.
 pub(super) fn slot(spec: &Spec, scpu: &Arc<Module>) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new("scpu_slot");
-    graph.about("an SCPU's place: takes a pair in its turn, answers on the lane the pair came from");
-    let (layout, lanes, group_bits) = (spec.layout(), spec.lanes(), spec.group_bits());
+    graph.about("an SCPU's place in the chain: takes the pairs that name it, answers on the lane a pair came from");
+    let (layout, lanes) = (spec.layout(), spec.lanes());
+    let pair_bits = layout.pair_bits();
 
     let index = graph.input("index", SCPU_BITS);
     let scpus = graph.input("scpus", SCPU_BITS);
-    let in_turn = graph.input("in_turn", SCPU_BITS);
-    let pairs = graph.input("pairs", lanes * layout.pair_bits());
-    let out_group = graph.input("out_group", group_bits);
-    let out_turn = graph.input("out_turn", SCPU_BITS);
+    // Which lanes carry a pair, and for which SCPU, arrives one cycle before the pairs.
+    let carries = graph.input("carries_in", lanes);
+    let targets = graph.input("targets_in", lanes * SCPU_BITS);
+    let pairs = graph.input("pairs_in", lanes * pair_bits);
 
-    // Lane j of a group that begins with SCPU `turn` belongs to SCPU (turn + j) mod N. What an SCPU takes outside its
-    // turn is not used. Size and turn arrive one cycle before the pairs, so that the selection among these is
-    // registered. No lane is N or above, and the parameter says so, so that synthesis leaves out the lanes that few
-    // SCPUs never use.
-    let in_lane = lane(index, in_turn, scpus).named("in_lane");
-    let mut chosen = pairs.low(layout.pair_bits());
-    for number in 1..lanes {
-        let is_used = scpus.greater_than(scpus.same(u128::from(number)));
-        let here = (in_lane.is(u128::from(number)) & is_used).delay(1).named(&format!("takes_lane_{number}"));
-        chosen = here.select(pairs.slice(number * layout.pair_bits(), layout.pair_bits()), chosen);
-    }
+    // No lane is as many as there are SCPUs or above, and the parameter says so, so that synthesis leaves out the lanes
+    // that few SCPUs never use.
+    let is_used = |lane: u32| match lane {
+        0 => graph.constant(1, 1),
+        _ => scpus.greater_than(scpus.same(lane.into())),
+    };
+    let named = |lane: u32| targets.slice(lane * SCPU_BITS, SCPU_BITS).equals(index);
+    let mine: Vec<_> = (0..lanes)
+        .map(|lane| (carries.bit(lane) & named(lane) & is_used(lane)).named(&format!("names_this_in_{lane}")))
+        .collect();
+    let taken: Vec<_> =
+        mine.iter().zip(0..).map(|(mine, lane)| mine.registered(&format!("takes_lane_{lane}"))).collect();
+    let chosen = (1..lanes).fold(pairs.low(pair_bits), |chosen, lane| {
+        taken[lane as usize].select(pairs.slice(lane * pair_bits, pair_bits), chosen)
+    });
     let unit = if spec.config.interval > 1 {
         // The pair stays until the next one. The SCPU gets its valid bit one cycle ahead.
-        let in_group = graph.input("in_group", group_bits);
-        let width = SCPU_BITS.max(group_bits);
-        let takes = in_lane.extend(width).less_than(in_group.extend(width)).registered("takes");
-        let pair = graph.data_register("pair", layout.pair_bits());
+        let takes = mine.iter().fold(graph.constant(1, 0), |any, mine| any | *mine).registered("takes");
+        let pair = graph.data_register("pair", pair_bits);
         pair.next_if(takes, chosen);
         graph.instance("unit", scpu, &[("take", takes), ("pair", pair.value())])
     } else {
         graph.instance("unit", scpu, &[("pair", chosen.delay(RANKS_BEFORE).named("pair"))])
     };
+    graph.output("carries_out", carries.registered("carries"));
+    graph.output("targets_out", targets.delay(1).named("targets"));
+    graph.output("pairs_out", pairs.delay(1).named("pairs"));
 
-    // The lane of the result is known a cycle ahead, so that its gates follow a register.
-    let out_lane = lane(index, out_turn, scpus).named("out_lane");
-    for number in 0..lanes {
-        let mine = out_lane.is(u128::from(number)) & out_group.greater_than(out_group.same(u128::from(number)));
-        let mine = mine.delay(1).named(&format!("answers_lane_{number}"));
+    // The lanes that this SCPU answers are delayed beside it. Which lanes carry a result is known one cycle ahead of the
+    // results.
+    let taken = taken.into_iter().rev().reduce(Signal::concat).unwrap_or_else(|| graph.constant(1, 0));
+    let answers_next = taken.delay(latency(scpu.latency) - 1).named("answers_soon");
+    let leaves = graph.input("leaves_in", lanes);
+    graph.output("leaves_out", (leaves | answers_next).registered("leaves"));
+    let answers = answers_next.delay(1).named("answers");
+    for lane in 0..lanes {
+        let answers = answers.bit(lane) & is_used(lane);
+        let pass = |what: &str, own: Signal<'_>| {
+            let name = format!("{what}_{lane}");
+            let passing = graph.input(&format!("{name}_in"), own.width());
+            graph.output(&format!("{name}_out"), answers.select(own, passing).delay(1).named(&name));
+        };
         if layout.result_bits() > 0 {
-            graph.output(&format!("record_{number}"), unit.output("record").gate(mine));
+            pass("record", unit.output("record"));
         }
-        graph.output(&format!("contact_{number}"), unit.output("contact") & mine);
-        graph.output(&format!("invalid_{number}"), unit.output("invalid_pair") & mine);
+        pass("contact", unit.output("contact"));
+        pass("invalid", unit.output("invalid_pair"));
     }
     graph.finish()
-}
-
-/// (index − turn) mod N.
-fn lane<'g>(index: Signal<'g>, turn: Signal<'g>, scpus: Signal<'g>) -> Signal<'g> {
-    index.less_than(turn).select(index + scpus - turn, index - turn)
 }

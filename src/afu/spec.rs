@@ -22,6 +22,8 @@ pub struct Spec {
     pub word_bits: u32,
     /// The most outstanding reads, and also writes: as in the configuration, or fewer for proofs.
     pub max_outstanding: u32,
+    /// The most slots that pairs and results pass: as many as there can be SCPUs, or fewer for proofs.
+    pub max_hops: u32,
     /// Cycles that results may wait for their write requests before pairs wait for room: 16, or fewer for proofs.
     pub dispatch_cycles: u32,
     /// The delay of each operation on the target.
@@ -61,6 +63,7 @@ impl From<Config> for Spec {
             line_bits: LINE_BITS,
             word_bits,
             max_outstanding,
+            max_hops: super::MAX_SCPUS,
             dispatch_cycles: 16,
             delays: DelayModel::default(),
             target: None,

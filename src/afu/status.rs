@@ -4,6 +4,40 @@ use crate::hdl::{Graph, Signal};
 
 use super::COUNT_BITS;
 
+/// The results that leave the chain of slots.
+pub(super) struct Leaving<'g> {
+    /// The lanes on which a result leaves in the next cycle.
+    pub(super) leaves: Signal<'g>,
+    /// Their number.
+    pub(super) group: Signal<'g>,
+    /// The lanes on which a result leaves.
+    here: Signal<'g>,
+    graph: &'g Graph,
+}
+
+impl<'g> Leaving<'g> {
+    /// The input of this kind and lane, if a result leaves on the lane.
+    pub(super) fn of(&self, lane: u32, kind: &str) -> Signal<'g> {
+        (self.graph.input(&format!("{kind}_{lane}"), 1) & self.here.bit(lane)).named(&format!("{kind}_here_{lane}"))
+    }
+}
+
+/// The inputs `leaves` and `filled`: what leaves counts only once the delay lines have been filled since reset.
+pub(super) fn results(graph: &Graph, lanes: u32) -> Leaving<'_> {
+    let filled = graph.input("filled", 1).registered("filled_here");
+    let leaves = graph.input("leaves", lanes).gate(filled).named("leaves_now");
+    Leaving { leaves, group: number(graph, leaves), here: leaves.registered("leaves_here"), graph }
+}
+
+/// The number of lanes in use, which are the lowest.
+pub(super) fn number<'g>(graph: &'g Graph, lanes: Signal<'g>) -> Signal<'g> {
+    let bits = lanes.width().ilog2() + 1;
+    let count = (0..lanes.width()).fold(graph.constant(bits, 0), |fewer, lane| {
+        lanes.bit(lane).select(graph.constant(bits, u128::from(lane + 1)), fewer)
+    });
+    count.named("group")
+}
+
 /// The number of pairs that left before this cycle's `group` since `start`, and a bit that is set if all `count` had
 /// left one cycle ago.
 pub(super) fn emerged<'g>(
@@ -12,6 +46,8 @@ pub(super) fn emerged<'g>(
     group: Signal<'g>,
     count: Signal<'g>,
 ) -> (Signal<'g>, Signal<'g>) {
+    // A job's count stays, so a copy of it may be a cycle late.
+    let count = count.delay(1).named("count_here");
     let emerged = graph.register("emerged", COUNT_BITS, 0);
     emerged.next(start.select(emerged.same(0), emerged.value() + group.extend(COUNT_BITS)));
     (emerged.value(), (!start & emerged.equals(count)).registered("all_seen"))

@@ -2,11 +2,13 @@
 
 use crate::record::Capability;
 
-use super::{Afu, collector, control, dispatcher, feeder, packer, slot, top};
+use super::{Afu, collector, control, credits, dispatcher, feeder, packer, slot};
 
 /// The cycles that a line takes in each part without waiting. The link's cycles are not included.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Timing {
+    /// Cycles after a reset before which no job begins, because the delay lines beside the SCPUs are being filled.
+    pub fill: u32,
     /// Control: from `start` to the parts running.
     pub start: u32,
     /// Collector: to the first read request.
@@ -17,8 +19,8 @@ pub struct Timing {
     pub feed: u32,
     /// Slot: the SCPU, and the register before it.
     pub scpu: u32,
-    /// Results of all slots or-ed together and registered.
-    pub gather: u32,
+    /// The chain of slots: a register each, before the SCPU or behind it.
+    pub chain: u32,
     /// Packer: to a full line.
     pub pack: u32,
     /// Packer: additional cycles for a last line that is not full.
@@ -41,14 +43,16 @@ impl Afu {
 
     /// The cycles of each part.
     pub fn timing(&self) -> Timing {
+        let chain = self.spec().scpus_in_turn(self.spec().config.interval);
         Timing {
+            fill: credits::cycles_to_fill(slot::latency(self.kernel().latency), chain) + control::CYCLES_TO_HEAR,
             start: control::CYCLES_TO_RUN,
             request: collector::CYCLES_TO_REQUEST,
             collect: collector::CYCLES_TO_LINE,
             feed: feeder::CYCLES_TO_ISSUE,
             scpu: slot::latency(self.kernel().latency),
-            gather: top::RANKS_AFTER,
-            pack: packer::CYCLES_TO_LINE,
+            chain,
+            pack: packer::cycles_to_line(self.spec()),
             flush: packer::CYCLES_TO_FLUSH,
             nothing: packer::CYCLES_TO_NOTHING,
             dispatch: dispatcher::CYCLES_TO_REQUEST,
@@ -74,7 +78,7 @@ mod tests {
             let said = Capability::from_bits(afu.capability());
             assert_eq!((said.scpus, said.scpu_cycles), (7, afu.kernel().latency));
             let t = afu.timing();
-            let around = t.start + t.request + t.collect + t.feed + t.gather + t.pack + t.flush + t.dispatch + t.done;
+            let around = t.start + t.request + t.collect + t.feed + t.chain + t.pack + t.flush + t.dispatch + t.done;
             let around = around + t.acknowledge + t.scpu - said.scpu_cycles;
             assert!(2 * u64::from(around) < AROUND_CYCLES, "{around}: hits pass a sieve and a backlog besides");
         }

@@ -7,13 +7,11 @@ use crate::hdl::{BuildErrors, Graph, Module, Signal};
 use crate::record::Capability;
 
 use super::control::control;
+use super::credits::credits;
 use super::port::{JobInputs, JobOutputs, ReadInputs, ReadOutputs, WriteInputs, WriteOutputs, outputs};
 use super::results::{Parts, Room};
 use super::{MAX_SCPUS, SCPU_BITS, Spec};
-use super::{collector, dispatcher, feeder, slot};
-
-/// Register ranks around the slots: results are registered after they were or-ed together.
-pub(super) const RANKS_AFTER: u32 = 1;
+use super::{collector, dispatcher, feeder, slot, status};
 
 /// The top over the plain line port, around an SCPU.
 pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, BuildErrors> {
@@ -23,7 +21,8 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, B
     let only_hits = spec.config.results == Results::Hits;
     let places = Room::of(spec, slot_latency);
 
-    let control = control(spec, places.results)?;
+    let control = control(spec)?;
+    let credits = credits(spec, places.results, slot_latency)?;
     let collector = collector::collector(spec)?;
     let feeder = feeder::feeder(spec)?;
     let slot = slot::slot(spec, unit)?;
@@ -32,7 +31,7 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, B
 
     let graph = Graph::new("contact_afu");
     graph.about("collision-detection accelerator: a controller and SCPUS sphere collision processing units");
-    graph.about(format!("an SCPU's latency is {} cycles", unit.latency));
+    graph.about(format!("an SCPU's latency is {} cycles, and one more for each SCPU in the chain", unit.latency));
     let scpus = graph.parameter("SCPUS", spec.config.scpus, 1..=MAX_SCPUS, SCPU_BITS);
     // SCPUs that never have a turn are not built.
     let in_turn = match spec.full_rate() {
@@ -43,41 +42,31 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, B
     let reads = ReadInputs::of(spec).map(|port| port.input(&graph));
     let writes = WriteInputs::of(spec).map(|port| port.input(&graph));
 
-    // Signals that flow back. Control receives signals from all other parts.
-    let wire = |name: &str, width: u32| graph.wire(name, width);
-    let (read_failed, write_failed) = (wire("read_failed", 1), wire("write_failed", 1));
-    let (response, unexpected, link_idle) = (wire("response", 1), wire("unexpected", 1), wire("link_idle", 1));
-    let (packed, dispatched) = (wire("packer_done", 1), wire("dispatched", 1));
-    let (entered, emerged) = (wire("entered", group_bits), wire("emerged", group_bits));
-    let (line_left, take) = if only_hits {
-        (wire("places_free_again", group_bits + 1), wire("take_line", 1))
-    } else {
-        (wire("line_left", 1), wire("take_line", 1))
-    };
-    let accepts = only_hits.then(|| wire("dispatcher_accepts", 1));
-    let overflowed = only_hits.then(|| wire("overflowed", 1));
-    let (waits_for_input, waits_for_output) = (wire("waits_for_input", 1), wire("waits_for_output", 1));
-    let mut control_inputs = job.named();
-    control_inputs.extend([
-        ("read_failed", read_failed),
-        ("write_failed", write_failed),
-        ("unexpected", unexpected),
-        ("response", response),
-        ("link_idle", link_idle),
-        ("packer_done", packed),
-        ("dispatched", dispatched),
-        ("entered", entered),
-        ("emerged", emerged),
-        (if only_hits { "places_freed" } else { "line_left" }, line_left),
-        ("waits_for_input", waits_for_input),
-        ("waits_for_output", waits_for_output),
-    ]);
-    control_inputs.extend(overflowed.map(|overflowed| ("overflowed", overflowed)));
+    // Signals that flow back. Control and credits hear from all other parts.
+    let wire = |name: &'static str, width: u32| (name, graph.wire(name, width));
+    let told_to_control = ["read_failed", "write_failed", "read_unexpected", "write_unexpected", "read_answered"]
+        .into_iter()
+        .chain(["write_answered", "read_idle", "write_idle", "packer_done", "dispatched", "none_inside", "filled"])
+        .chain(["waits_for_input", "waits_for_output"])
+        .chain(only_hits.then_some("overflowed"));
+    let told_to_control: Vec<_> = told_to_control.map(|name| wire(name, 1)).collect();
+    let freed = if only_hits { wire("places_freed", group_bits + 1) } else { wire("line_left", 1) };
+    let told_to_credits = vec![wire("entered", group_bits), wire("emerged", group_bits), freed];
+    let (_, may_enter) = wire("may_enter", 1);
+    let (_, taken) = wire("line_taken", 1);
+    let (_, head) = wire("line_place", spec.max_outstanding.ilog2());
+    let accepts = only_hits.then(|| wire("dispatcher_accepts", 1).1);
+
+    let control_inputs = [job.named(), told_to_control.clone()].concat();
     let control = graph.instance("control", &control, &control_inputs);
     let begin = control.output("begin_job");
     let run = control.output("run");
     let job_epoch = control.output("job_epoch");
-    let job_count = control.output("job_count");
+
+    let mut credits_inputs = told_to_credits.clone();
+    credits_inputs.extend([("start", begin), ("run", run), ("scpus", in_turn)]);
+    let credits = graph.instance("credits", &credits, &credits_inputs);
+    may_enter.drive(credits.output("may_enter"));
 
     let mut collector_inputs = reads.named();
     collector_inputs.extend([
@@ -86,7 +75,8 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, B
         ("source", control.output("job_source")),
         ("lines", control.output("lines")),
         ("epoch", job_epoch),
-        ("take", take),
+        ("taken", taken),
+        ("place", head),
     ]);
     let collector = graph.instance("collector", &collector, &collector_inputs);
     let feeder = graph.instance(
@@ -98,41 +88,36 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, B
             ("scpus", in_turn),
             ("lines", control.output("lines")),
             ("last_place", control.output("last_place")),
-            ("line_valid", collector.output("line_valid")),
+            ("line_comes", collector.output("line_comes")),
             ("line", collector.output("line")),
-            ("may_enter", control.output("may_enter")),
+            ("may_enter", may_enter),
         ],
     );
-    take.drive(feeder.output("take"));
-    entered.drive(feeder.output("entered"));
-    waits_for_input.drive(feeder.output("waits_for_input"));
-    waits_for_output.drive(feeder.output("waits_for_output"));
+    taken.drive(feeder.output("taken"));
+    head.drive(feeder.output("head"));
 
-    // A group's size and first SCPU are delayed beside the SCPUs, so that the results are identified when they leave.
-    // They arrive one cycle before the pairs, and leave one cycle before the results.
-    let group = feeder.output("issue_group");
-    let turn = feeder.output("issue_turn");
-    let (group_out, turn_out) = alongside(&graph, group, turn, slot_latency);
+    // Pairs and results pass from slot to slot; the first one gets pairs from the feeder, and no results.
+    let kinds = ["record", "contact", "invalid"].into_iter().filter(|kind| has_records || *kind != "record");
+    let passing: Vec<String> =
+        (0..lanes).flat_map(|lane| kinds.clone().map(move |kind| format!("{kind}_{lane}"))).collect();
+    let arriving: Vec<String> = passing.iter().map(|name| format!("{name}_in")).collect();
     let mut slot_inputs = vec![
         ("scpus", in_turn),
-        ("in_turn", turn),
-        ("pairs", feeder.output("issue_pairs")),
-        ("out_group", group_out),
-        ("out_turn", turn_out),
+        ("carries_in", feeder.output("carries")),
+        ("targets_in", feeder.output("targets")),
+        ("pairs_in", feeder.output("pairs")),
+        ("leaves_in", graph.constant(lanes, 0)),
     ];
-    if spec.config.interval > 1 {
-        slot_inputs.push(("in_group", group));
+    for name in &arriving {
+        let width = slot.port(name).map_or(1, |(_, port)| port.width);
+        slot_inputs.push((name, graph.constant(width, 0)));
     }
-    let slots = graph.array("slots", &slot, in_turn, &slot_inputs);
-    // The slots' results arrive one cycle after `group_out`, and are registered once more after the or. So their number
-    // is known one cycle ahead.
-    let group_done = group_out.registered("group_done");
-    let kinds = ["record", "contact", "invalid"].into_iter().filter(|kind| has_records || *kind != "record");
-    let lane_outputs: Vec<(String, Signal<'_>)> = (0..lanes)
-        .flat_map(|lane| kinds.clone().map(move |what| format!("{what}_{lane}")))
-        .map(|name| (name.clone(), slots.output(&name).delay(RANKS_AFTER)))
-        .collect();
-    let packed_results = results.instances(&graph, [begin, job_count, group_done], &lane_outputs, accepts);
+    let slots = graph.chain("slots", &slot, in_turn, &slot_inputs);
+    let leaves = slots.output("leaves_out");
+    let lane_outputs: Vec<(String, Signal<'_>)> =
+        passing.iter().map(|name| (name.clone(), slots.output(&format!("{name}_out")))).collect();
+    let status = [begin, control.output("job_count"), credits.output("filled"), leaves];
+    let packed_results = results.instances(&graph, status, &lane_outputs, accepts);
     let packer = packed_results.packer;
     let mut dispatcher_inputs = writes.named();
     dispatcher_inputs.extend([
@@ -148,16 +133,21 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, B
     }
     let dispatcher = graph.instance("dispatcher", &dispatcher, &dispatcher_inputs);
     accepts.into_iter().for_each(|wire| wire.drive(dispatcher.output("accepts")));
-    overflowed.into_iter().for_each(|wire| wire.drive(dispatcher.output("overflowed")));
-    read_failed.drive(collector.output("failed"));
-    write_failed.drive(dispatcher.output("failed"));
-    response.drive(collector.output("answered") | dispatcher.output("answered"));
-    unexpected.drive(collector.output("unexpected") | dispatcher.output("unexpected"));
-    link_idle.drive(collector.output("idle") & dispatcher.output("idle"));
-    packed.drive(packer.output("done"));
-    dispatched.drive(dispatcher.output("empty"));
-    emerged.drive(group_done);
-    line_left.drive(packed_results.places_freed.unwrap_or_else(|| dispatcher.output("line_left")));
+    for (name, wire) in told_to_control.into_iter().chain(told_to_credits) {
+        wire.drive(match name {
+            "packer_done" => packer.output("done"),
+            "dispatched" => dispatcher.output("empty"),
+            "none_inside" | "filled" => credits.output(name),
+            "waits_for_input" | "waits_for_output" | "entered" => feeder.output(name),
+            "emerged" => status::number(&graph, leaves),
+            "places_freed" => packed_results.places_freed.unwrap_or(leaves),
+            _ => match name.split_once('_') {
+                Some(("read", told)) => collector.output(told),
+                Some(("write", told)) => dispatcher.output(told),
+                _ => dispatcher.output(name),
+            },
+        });
+    }
 
     let told = JobOutputs {
         busy: control.output("busy"),
@@ -175,18 +165,6 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, B
     outputs(&graph, ReadOutputs::of(spec).map(|port| collector.output(port.name)).named());
     outputs(&graph, WriteOutputs::of(spec).map(|port| dispatcher.output(port.name)).named());
     graph.finish()
-}
-
-/// Group size and turn, `cycles` ago. The content of a delay line is not reset, so group sizes count only once the line
-/// has been filled since reset.
-fn alongside<'g>(graph: &'g Graph, group: Signal<'g>, turn: Signal<'g>, cycles: u32) -> (Signal<'g>, Signal<'g>) {
-    let age_bits = cycles.ilog2() + 1;
-    let age = graph.register("cycles_since_reset", age_bits, 0);
-    let settled = age.is(u128::from(cycles)).named("settled");
-    age.next(settled.select(*age, age.plus(1)));
-    let travelled = group.concat(turn).named("travels").delay(cycles).named("travelled");
-    let group_out = travelled.high(group.width()).gate(settled).named("group_out");
-    (group_out, travelled.low(turn.width()).named("turn_out"))
 }
 
 /// Properties that the host may rely on: see [`Capability`]. The parameter gives the number of SCPUs.

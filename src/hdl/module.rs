@@ -166,12 +166,19 @@ pub struct Memory {
 pub enum InstanceCount {
     /// One.
     One,
-    /// As many as the parameter (or `localparam`) with this index says. Inputs are shared by all copies, but for an
-    /// input named `index`, which is each copy's number; outputs are the bitwise or over all copies.
+    /// A chain of as many as the parameter (or `localparam`) with this index says. Inputs are those of the first copy if
+    /// they are chained (`NAME_in` for an output `NAME_out`), and shared by all otherwise, but for an input named `index`,
+    /// which is each copy's number. Outputs are those of the last copy.
     Parameter(usize),
 }
 
-/// An instance, or an array of instances, of another module.
+/// The input port of the next copy in a chain into which an output goes: `NAME_in` for `NAME_out`.
+pub(super) fn next_in_chain(module: &Module, output: usize) -> Option<usize> {
+    let name = format!("{}_in", module.ports[output].name.strip_suffix("_out")?);
+    module.ports.iter().position(|port| !port.output && port.name == name)
+}
+
+/// An instance, or a chain of instances, of another module.
 #[derive(Clone, Debug)]
 pub struct Instance {
     /// The name.
@@ -180,7 +187,7 @@ pub struct Instance {
     pub module: Arc<Module>,
     /// The number of copies.
     pub count: InstanceCount,
-    /// The value of each input port, by port index; `None` for outputs and for `index` of an array.
+    /// The value of each input port, by port index; `None` for outputs and for `index` of a chain.
     pub inputs: Vec<Option<NodeId>>,
 }
 

@@ -217,10 +217,13 @@ impl Graph {
         }
     }
 
-    /// The number of instances of `module` that the [`Graph::parameter`] `count` gives, with shared inputs and with
-    /// outputs or-ed together bit by bit. An input port of the module named `index` gets each copy's number.
+    /// A chain of instances of `module`, as many as the [`Graph::parameter`] `count` gives. What an instance has at its
+    /// output `NAME_out` goes into the input `NAME_in` of the next. `inputs` are those of the first; the outputs are those
+    /// of the last. All instances share the other inputs, and an input named `index` gets each instance's number.
+    ///
+    /// Every output must have its input, and come from a register.
     #[track_caller]
-    pub fn array<'g>(
+    pub fn chain<'g>(
         &'g self,
         name: &str,
         module: &Arc<Module>,
@@ -229,12 +232,25 @@ impl Graph {
     ) -> Instantiated<'g> {
         let place = Location::caller();
         self.refuse_top(name, module, place);
-        let parameter = self.own("array", &[count], place).map(|ids| self.node(ids[0]).op);
+        for (index, port) in module.ports.iter().enumerate().filter(|(_, port)| port.output) {
+            let next = super::module::next_in_chain(module, index).map(|next| &module.ports[next]);
+            if next.is_none_or(|next| next.width != port.width) {
+                let message =
+                    format!("chain `{name}`: output `{}` of `{}` has no input to go into", port.name, module.name);
+                self.error(message, place);
+            }
+            if !module.paths[index].is_empty() {
+                let message =
+                    format!("chain `{name}`: output `{}` of `{}` is not a register's", port.name, module.name);
+                self.error(message, place);
+            }
+        }
+        let parameter = self.own("chain", &[count], place).map(|ids| self.node(ids[0]).op);
         if let Some(Op::Parameter(index)) = parameter {
             return self.instantiate(name, module, InstanceCount::Parameter(index), inputs, place);
         }
         if parameter.is_some() {
-            self.error(format!("array `{name}`: `{}` is not a parameter", count.describe()), place);
+            self.error(format!("chain `{name}`: `{}` is not a parameter", count.describe()), place);
         }
         let outputs = module.ports.iter().filter(|port| port.output);
         let outputs = outputs.map(|port| (port.name.clone(), Signal::poison(self))).collect();

@@ -95,6 +95,12 @@ impl Capability {
         }
     }
 
+    /// Cycles after a reset after which a job begins when it is started: the delay lines in the AFU are full, and control
+    /// knows it.
+    pub fn cycles_after_reset(&self) -> u64 {
+        u64::from(self.scpu_cycles) + u64::from(self.scpus) + 8
+    }
+
     /// Encodes the capability as a word.
     pub fn bits(&self) -> u64 {
         let asked = GROUPS.iter().fold(0, |mask, group| mask << 1 | u32::from((group.is_asked)(self.fields)));
@@ -173,7 +179,7 @@ impl Capability {
 
     /// A bound on the cycles from a line of pairs in to their contacts out, if the AFU waits for nothing.
     pub fn latency_cycles(&self) -> u64 {
-        AROUND_CYCLES + u64::from(self.scpu_cycles) + u64::from(self.interval)
+        AROUND_CYCLES + u64::from(self.scpu_cycles) + u64::from(self.scpus) + u64::from(self.interval)
     }
 }
 

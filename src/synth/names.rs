@@ -151,13 +151,15 @@ mod tests {
     }
 
     #[test]
-    fn a_signal_in_a_copy_of_an_array_has_its_name_and_stage() {
+    fn a_signal_in_a_chain_has_its_name_and_stage() {
         let slot = Graph::new("slot");
-        slot.output("out", slot.input("index", 1).named("in_turn"));
+        let own = slot.input("index", 1) & slot.input("turn_in", 1);
+        slot.output("turn_out", own.named("in_turn").delay(1));
         let graph = Graph::new("afu");
         let count = graph.parameter("SCPUS", 2, 1..=2, 2);
-        let slots = graph.array("slots", &slot.finish().expect("a module"), count, &[]);
-        graph.output("out", slots.output("out"));
+        let slots =
+            graph.chain("slots", &slot.finish().expect("a module"), count, &[("turn_in", graph.constant(1, 1))]);
+        graph.output("out", slots.output("turn_out"));
         let core = graph.finish().expect("a module");
         let bench = Graph::new("bench");
         bench.output("out", bench.instance(UNIT, &core, &[]).output("out"));

@@ -64,7 +64,7 @@ pub fn account(afu: &Afu, link: &LinkModel, pairs: u32) -> Option<Vec<Part>> {
         of("collector: back in order", timing.collect),
         of("feeder: to the slots", timing.feed),
         of("slot: the SCPU and the register before it", timing.scpu),
-        of("slots: results or-ed and registered", timing.gather),
+        of("chain of slots: a register each", timing.chain),
         of("packer: a line", timing.pack),
         part("packer: a last line that is not full", flush),
         of("dispatcher: its request", timing.dispatch),

@@ -6,7 +6,7 @@
 // The link may send responses that were never requested. An abandoned request may still be on the port when the next
 // job begins.
 //
-// Assumed here and proven elsewhere: a line is taken only when it is available (credits.sv: takes_a_line).
+// Assumed here and proven elsewhere: a line is taken only when it was announced (credits.sv: takes_a_line).
 `default_nettype none
 
 module collector (
@@ -17,7 +17,8 @@ module collector (
   input wire [57:0] source,
   input wire [31:0] lines,
   input wire [3:0]  epoch,
-  input wire        take,
+  input wire        taken,
+  input wire [1:0]  place,
   input wire        rd_req_ready,
   input wire        rd_rsp_valid,
   input wire [5:0]  rd_rsp_tag,
@@ -27,28 +28,36 @@ module collector (
   wire        rd_req_valid;
   wire [57:0] rd_req_address;
   wire [5:0]  rd_req_tag;
-  wire        line_valid;
+  wire        line_comes;
   wire [31:0] line;
   wire        idle;
   wire        unexpected;
   contact_afu_collector dut (
-    .clk(clk), .rst(rst), .start(start), .run(run), .source(source), .lines(lines), .epoch(epoch), .take(take),
-    .rd_req_ready(rd_req_ready), .rd_rsp_valid(rd_rsp_valid), .rd_rsp_tag(rd_rsp_tag), .rd_rsp_data(rd_rsp_data),
-    .rd_rsp_error(rd_rsp_error),
+    .clk(clk), .rst(rst), .start(start), .run(run), .source(source), .lines(lines), .epoch(epoch), .taken(taken),
+    .place(place), .rd_req_ready(rd_req_ready), .rd_rsp_valid(rd_rsp_valid), .rd_rsp_tag(rd_rsp_tag),
+    .rd_rsp_data(rd_rsp_data), .rd_rsp_error(rd_rsp_error),
     .rd_req_valid(rd_req_valid), .rd_req_address(rd_req_address), .rd_req_tag(rd_req_tag),
-    .line_valid(line_valid), .line(line), .answered(), .failed(), .unexpected(unexpected), .idle(idle)
+    .line_comes(line_comes), .line(line), .answered(), .failed(), .unexpected(unexpected), .idle(idle)
   );
+  (* hierconn *) wire        \dut.rd_req_spare_valid ;
+  (* hierconn *) wire [57:0] \dut.rd_req_spare_address ;
+  (* hierconn *) wire [5:0]  \dut.rd_req_spare_tag ;
+  (* hierconn *) wire        \dut.rd_req_of_job ;
   (* hierconn *) wire [2:0]  \dut.reserved ;
   (* hierconn *) wire [2:0]  \dut.outstanding ;
   (* hierconn *) wire [3:0]  \dut.came ;
   (* hierconn *) wire [1:0]  \dut.oldest ;
   (* hierconn *) wire        \dut.answered ;
+  (* hierconn *) wire [3:0]  \dut.answers ;
+  (* hierconn *) wire        \dut.is_current ;
+  (* hierconn *) wire        \dut.is_response ;
+  (* hierconn *) wire [1:0]  \dut.response_slot ;
+  (* hierconn *) wire        \dut.accepted ;
+  (* hierconn *) wire [1:0]  \dut.accepted_slot ;
+  (* hierconn *) wire [3:0]  \dut.asked ;
   (* hierconn *) wire [3:0]  \dut.awaited ;
-  (* hierconn *) wire        \dut.leftover_request ;
   (* hierconn *) wire [1:0]  \dut.arrived_age ;
-  (* hierconn *) wire        \dut.two_valid ;
-  (* hierconn *) wire        \dut.taken ;
-  (* hierconn *) wire [1:0]  \dut.head ;
+  (* hierconn *) wire        \dut.freed ;
   (* hierconn *) wire [1:0]  \dut.next_slot ;
   (* hierconn *) wire        \dut.may_ask ;
   (* hierconn *) wire [31:0] \dut.lines_to_request ;
@@ -57,70 +66,104 @@ module collector (
   reg        begun = 1'b0;
   reg        after_reset = 1'b0;
   reg        ran = 1'b0;
+  reg        started = 1'b0;
   reg [57:0] job_source;
   reg [31:0] job_lines;
   reg [3:0]  job_epoch;
-  reg [31:0] accepted;
+  reg [57:0] accepted;
+  // The slots whose requests the link has accepted and not answered, now and two cycles ago, when the collector's marks are
+  // made.
   reg [3:0]  waiting;
-  wire mine = rd_rsp_valid & begun & ~start & (rd_rsp_tag[5:2] == job_epoch);
+  reg [3:0]  waited;
+  reg [3:0]  marked;
+  reg [3:0]  asks_heard;
+  reg [3:0]  asks_marked;
+  reg [3:0]  answers_heard;
+  reg [3:0]  answers_marked;
+  wire mine = rd_rsp_valid & (begun | start) & (rd_rsp_tag[5:2] == epoch);
   // A request that an earlier job abandoned while it was on the port may still be there.
   reg        left;
   wire       asked = rd_req_valid & ~left;
+  wire       spare = \dut.rd_req_spare_valid ;
   wire [3:0] asks = asked & rd_req_ready ? 4'd1 << rd_req_tag[1:0] : 4'd0;
   wire [3:0] answers = mine ? 4'd1 << rd_rsp_tag[1:0] : 4'd0;
-  wire [3:0] on_port = asked ? 4'd1 << rd_req_tag[1:0] : 4'd0;
+  wire [3:0] on_port = (asked ? 4'd1 << rd_req_tag[1:0] : 4'd0) | (spare ? 4'd1 << \dut.rd_req_spare_tag [1:0] : 4'd0);
+  wire [3:0] arriving = (waited & answers_heard) | (marked & answers_marked);
+  wire [3:0] heard = \dut.is_current ? 4'd1 << \dut.response_slot : 4'd0;
   reg        surprised;
+  // Lines that were announced and not taken, and the slot of the oldest.
+  reg [2:0]  announced;
+  reg [1:0]  head;
+  wire       nothing = (on_port | waiting | arriving) == 4'd0 & ~rd_req_valid & ~\dut.answered & ~\dut.may_ask ;
+  reg        was_nothing;
   always @(posedge clk) begin
     after_reset <= after_reset | rst;
     ran <= run;
+    started <= start;
     begun <= ~rst & (begun | start);
     if (start) begin
       job_source <= source;
       job_lines <= lines;
       job_epoch <= epoch;
     end
-    accepted <= start ? 32'd0 : accepted + {31'd0, |asks};
+    accepted <= start ? 58'd0 : accepted + {57'd0, |asks};
     waiting <= start ? 4'd0 : (waiting & ~answers) | asks;
-    surprised <= mine & run & (waiting & answers) == 4'd0;
+    waited <= start ? 4'd0 : waiting;
+    marked <= start ? 4'd0 : waited;
+    asks_heard <= start ? 4'd0 : asks;
+    asks_marked <= start ? 4'd0 : asks_heard;
+    answers_heard <= rst ? 4'd0 : answers;
+    answers_marked <= rst | start ? 4'd0 : answers_heard;
+    surprised <= ~start & ~rst & run & answers_marked != 4'd0 & (marked & answers_marked) == 4'd0;
     left <= rd_req_valid & ~rd_req_ready & ~rst & (start | left);
+    announced <= start ? 3'd0 : announced + {2'd0, line_comes} - {2'd0, taken};
+    head <= start ? 2'd0 : head + {1'b0, taken};
+    was_nothing <= nothing & ~rst;
   end
 
   always @* begin
     assume (after_reset | rst);
     assume (~run | (begun & ~start));
     assume (~start | ~ran);
-    assume (~take | line_valid);
+    assume (~taken | (announced != 3'd0 & begun));
     if (begun & ~start) assume (epoch == job_epoch);
   end
 
   `include "slots.svh"
 
-  // Filled slots: offered at the output, known to be filled, and about to be known.
-  wire [2:0] offers = {1'b0, \dut.two_valid , line_valid & ~\dut.two_valid };
-  wire [3:0] offered = slots(\dut.head , offers);
+  // Filled slots: announced, known to be filled, about to be known, and heard in this cycle.
+  wire [2:0] offers = announced + {2'd0, line_comes};
+  wire [3:0] offered = slots(head, offers);
   wire [3:0] come = aged(\dut.came , \dut.oldest );
   wire [3:0] coming = aged(\dut.answered ? 4'd1 << \dut.arrived_age : 4'd0, \dut.oldest );
   wire [3:0] filled = offered | come | coming;
+  wire [3:0] last_offered = 4'd1 << (\dut.oldest - 2'd1);
   always @* if (begun & ~start & ~rst & after_reset) begin
     never_more: assert (\dut.reserved <= 3'd4);
-    slots_in_order: assert (\dut.next_slot - \dut.head + {1'b0, \dut.taken } == \dut.reserved [1:0]);
-    offered_in_order: assert (\dut.oldest - \dut.head == offers[1:0] & (line_valid | ~\dut.two_valid ));
-    one_of_three: assert ((on_port & waiting) == 4'd0 & (filled & (on_port | waiting)) == 4'd0);
+    slots_in_order: assert (\dut.next_slot - head + {1'b0, \dut.freed } == \dut.reserved [1:0]);
+    tags_in_order: assert ((~spare | (rd_req_valid & \dut.rd_req_spare_tag == {job_epoch, \dut.next_slot - 2'd1}))
+      & (~asked | rd_req_tag[1:0] == \dut.next_slot - 2'd1 - {1'b0, spare}));
+    offered_in_order: assert (\dut.oldest - head == offers[1:0] & offers <= 3'd4 & announced <= 3'd4);
+    one_of_three: assert ((on_port & (waiting | arriving)) == 4'd0 & (waiting & arriving) == 4'd0
+      & (filled & (on_port | waiting | arriving)) == 4'd0);
     come_once: assert ((offered & come) == 4'd0 & (offered & coming) == 4'd0 & (come & coming) == 4'd0);
-    none_lost: assert ((on_port | waiting | filled) == slots(\dut.head , \dut.reserved - {2'd0, \dut.taken }));
-    taken_is_reserved: assert (~\dut.taken | \dut.reserved != 3'd0);
+    none_lost: assert ((on_port | waiting | arriving | filled) == slots(head, \dut.reserved - {2'd0, \dut.freed }));
+    taken_is_reserved: assert (~\dut.freed | \dut.reserved != 3'd0);
     asks_while_any: assert (~\dut.may_ask | (\dut.lines_to_request != 32'd0 & \dut.reserved != 3'd4));
-    counted: assert (\dut.outstanding == {2'd0, on_port[0] | waiting[0]} + {2'd0, on_port[1] | waiting[1]}
-      + {2'd0, on_port[2] | waiting[2]} + {2'd0, on_port[3] | waiting[3]} + {2'd0, \dut.answered });
-    leftover_is_right: assert (\dut.leftover_request == left);
-    awaited_is_right: assert (\dut.awaited == waiting);
+    counted: assert (\dut.outstanding == ones(on_port | waiting | arriving) + {2'd0, \dut.answered });
+    leftover_is_right: assert (~rd_req_valid | \dut.rd_req_of_job == ~left);
+    awaited_is_right: assert (\dut.awaited == marked & \dut.asked == asks_marked & \dut.answers == answers_marked
+      & heard == answers_heard & \dut.is_response == (answers_marked != 4'd0)
+      & waited == ((marked & ~answers_marked) | asks_marked) & waiting == ((waited & ~answers_heard) | asks_heard)
+      & (\dut.accepted ? 4'd1 << \dut.accepted_slot : 4'd0) == asks_heard);
     surprise_is_told: assert (unexpected == surprised);
-    idle_is_right: assert (idle == ((on_port | waiting) == 4'd0 & ~rd_req_valid & ~\dut.answered & ~\dut.may_ask ));
-    only_filled: assert (~line_valid | ~(on_port[\dut.head ] | waiting[\dut.head ]));
+    idle_is_right: assert (started | idle == was_nothing);
+    only_filled: assert (~line_comes | ((on_port | waiting | arriving) & last_offered) == 4'd0);
     of_this_job: assert (~asked | rd_req_tag[5:2] == job_epoch);
-    in_order: assert (\dut.next_address == job_source + {26'd0, accepted} + {57'd0, asked});
-    address: assert (~asked | rd_req_address == job_source + {26'd0, accepted});
-    each_once: assert ({1'b0, accepted} + {32'd0, asked} + {1'b0, \dut.lines_to_request } == {1'b0, job_lines});
+    in_order: assert (\dut.next_address == job_source + accepted + {57'd0, asked} + {57'd0, spare});
+    address: assert ((~asked | rd_req_address == job_source + accepted)
+      & (~spare | \dut.rd_req_spare_address == \dut.next_address - 58'd1));
+    each_once: assert (accepted + {57'd0, asked} + {57'd0, spare} + {26'd0, \dut.lines_to_request } == {26'd0, job_lines});
   end
 
   reg        held = 1'b0;

@@ -8,6 +8,9 @@
 // If only hits come back, a pair's room is free again when the pair is known to be no hit, or when its hit has left the
 // backlog. So the backlog never overflows, and no hit is lost between the sieve and the packer.
 //
+// Assumed here and proven elsewhere: the collector announces no more lines than it has slots for (collector.sv:
+// offered_in_order).
+//
 // Defines: LATENCY, that of an SCPU; LINES, the lines that the dispatcher can store; SCPUS, their number; EVERY_OTHER,
 // for an interval of 2; THREE, for 3 SCPUs at that interval; PER_LINE, the hits per line if only hits come back;
 // GATHERS, if that is more than one.
@@ -18,29 +21,36 @@ module credits (
   `include "inputs.svh"
 );
 `ifdef PER_LINE
-  localparam CAPACITY = `LATENCY <= 2 ? 16 : 32;
+  localparam CAPACITY = `CAPACITY;
 `else
   localparam CAPACITY = 2 * `LINES;
 `endif
   localparam ROOM_BITS = $clog2(CAPACITY) + 1;
-  localparam RANKS = `LATENCY + 3;
+  // Cycles from the count of pairs that enter to their results behind the last slot.
+  localparam RANKS = `LATENCY + `SCPUS + 2;
 
   `include "dut.svh"
   (* hierconn *) wire                       \dut.control.begin_job ;
+  (* hierconn *) wire                       \dut.control.run ;
   (* hierconn *) wire                       \dut.control.running ;
   (* hierconn *) wire                       \dut.control.draining ;
+  (* hierconn *) wire                       \dut.control.filled_heard ;
+  (* hierconn *) wire                       \dut.control.waits_to_begin ;
   (* hierconn *) wire                       \dut.control.completes ;
   (* hierconn *) wire [31:0]                \dut.control.job_count ;
   (* hierconn *) wire [31:0]                \dut.control.job_lines ;
   (* hierconn *) wire                       \dut.control.last_place ;
-  (* hierconn *) wire                       \dut.control.may_enter ;
-  (* hierconn *) wire [ROOM_BITS-1:0]       \dut.control.room ;
-  (* hierconn *) wire [ROOM_BITS-1:0]       \dut.control.room_change ;
-  (* hierconn *) wire [ROOM_BITS-1:0]       \dut.control.pairs_inside ;
-  (* hierconn *) wire [1:0]                 \dut.control.entered ;
-  (* hierconn *) wire [1:0]                 \dut.group_done ;
+  (* hierconn *) wire                       \dut.credits.may_enter ;
+  (* hierconn *) wire                       \dut.credits.filled ;
+  (* hierconn *) wire [ROOM_BITS-1:0]       \dut.credits.room ;
+  (* hierconn *) wire [ROOM_BITS-1:0]       \dut.credits.room_change ;
+  (* hierconn *) wire [ROOM_BITS-1:0]       \dut.credits.pairs_inside ;
+  (* hierconn *) wire [1:0]                 \dut.feeder.entered ;
+  (* hierconn *) wire [1:0]                 \dut.slots_leaves_out ;
   (* hierconn *) wire                       \dut.feeder.take ;
-  (* hierconn *) wire                       \dut.collector.line_valid ;
+  (* hierconn *) wire                       \dut.collector.line_comes ;
+  (* hierconn *) wire [2:0]                 \dut.feeder.lines_waiting ;
+  (* hierconn *) wire                       \dut.feeder.any_lines_waiting ;
   (* hierconn *) wire [31:0]                \dut.feeder.lines_left ;
   (* hierconn *) wire                       \dut.feeder.any_lines_left ;
   (* hierconn *) wire                       \dut.feeder.one_lines_left ;
@@ -68,9 +78,9 @@ module credits (
   // Lines between the backlog and the dispatcher, including the one being assembled.
   (* hierconn *) wire                       \dut.packer.place ;
   (* hierconn *) wire                       \dut.packer.went ;
-  (* hierconn *) wire                       \dut.packer.goes ;
+  (* hierconn *) wire                       \dut.packer.comes ;
   (* hierconn *) wire                       \dut.packer.line_valid ;
-  wire [2:0]  gathered = {2'd0, \dut.packer.place } + \dut.packer.went + \dut.packer.goes + \dut.packer.line_valid ;
+  wire [2:0]  gathered = {2'd0, \dut.packer.place } + \dut.packer.went + \dut.packer.comes + \dut.packer.line_valid ;
 `else
   wire [2:0]  gathered = 3'd0;
 `endif
@@ -79,7 +89,7 @@ module credits (
   (* hierconn *) wire                       \dut.packer.line_valid ;
   (* hierconn *) wire                       \dut.packer.flushes ;
   (* hierconn *) wire                       \dut.packer.went ;
-  (* hierconn *) wire                       \dut.packer.goes ;
+  (* hierconn *) wire                       \dut.packer.comes ;
   (* hierconn *) wire [31:0]                \dut.packer.emerged ;
   (* hierconn *) wire                       \dut.dispatcher.line_left ;
   wire [2:0]  gathered = 3'd0;
@@ -88,19 +98,18 @@ module credits (
 `endif
 
   // Expected positions of groups of pairs, which advance by one rank per cycle, and the number of pairs in them.
-  reg [2*RANKS-1:0] ranks;
+  reg [2*RANKS+1:0] ranks;
   reg after_reset = 1'b0;
   reg begun = 1'b0;
-  reg ran = 1'b0;
-  reg ran_before = 1'b0;
+  // Whether a job ran one cycle ago, two, three.
+  reg [2:0] ran = 3'd0;
   reg completed = 1'b0;
   always @(posedge clk) begin
     after_reset <= after_reset | rst;
     begun <= ~rst & (begun | \dut.control.begin_job );
-    ran <= \dut.control.running & ~rst;
-    ran_before <= ran & ~rst;
+    ran <= rst ? 3'd0 : {ran[1:0], \dut.control.run };
     completed <= \dut.control.completes & ~rst;
-    ranks <= rst ? {2 * RANKS{1'b0}} : {ranks[2*RANKS-3:0], \dut.control.entered };
+    ranks <= rst ? {2 * RANKS + 2{1'b0}} : {ranks[2*RANKS-1:0], \dut.feeder.entered };
   end
   integer rank;
   reg [7:0] inside;
@@ -108,40 +117,52 @@ module credits (
     inside = 8'd0;
     for (rank = 0; rank < RANKS; rank = rank + 1) inside = inside + {6'd0, ranks[2*rank +: 2]};
   end
+  // Those that came out one cycle ago are still counted as inside.
+  wire [7:0] counted_inside = inside + {6'd0, ranks[2*RANKS +: 2]};
+  wire [1:0] leaves = \dut.slots_leaves_out ;
 
   // Pairs that the feeder has not issued yet.
-  wire [ROOM_BITS-1:0] next_room = \dut.control.room + \dut.control.room_change ;
+  wire [ROOM_BITS-1:0] next_room = \dut.credits.room + \dut.credits.room_change ;
   wire [33:0] in_lines = \dut.feeder.lines_left == 32'd0 ? 34'd0
     : {1'b0, \dut.feeder.lines_left , 1'b0} - {33'd0, ~\dut.control.last_place };
   wire [33:0] to_give = in_lines
     + (\dut.feeder.in_hand ? 34'd1 + {33'd0, \dut.feeder.last } - {33'd0, \dut.feeder.place } : 34'd0);
 
   always @* assume (after_reset | rst);
+  // The collector announces no more lines than it has slots (collector.sv: offered_in_order).
+  always @* assume (~\dut.collector.line_comes | \dut.feeder.lines_waiting < 3'd4);
   always @* if (after_reset & ~rst) begin
-    comes_out: assert (\dut.group_done == ranks[2*RANKS-1 -: 2]);
-    inside_is_right: assert (\dut.control.pairs_inside == inside);
+    comes_out: assert (~\dut.credits.filled | (leaves != 2'b10 & {1'b0, leaves[0]} + {1'b0, leaves[1]} == ranks[2*RANKS-1 -: 2]));
+    inside_is_right: assert (\dut.credits.pairs_inside == counted_inside);
+    nothing_before_it_is_filled: assert ((\dut.credits.filled | counted_inside == 8'd0)
+      & (\dut.credits.filled & \dut.control.filled_heard | ~begun));
+    waits_or_runs: assert (~(\dut.control.run & \dut.control.waits_to_begin )
+      & (\dut.control.running | ~(\dut.control.run | \dut.control.waits_to_begin )));
     one_or_other: assert (~(\dut.control.running & \dut.control.draining ));
-    only_in_a_job: assert (\dut.control.entered == 2'd0 | (ran_before & begun));
+    only_in_a_job: assert (\dut.feeder.entered == 2'd0 | (ran[2] & begun));
     runs_without_error: assert (~\dut.control.running | error == 4'd0);
     complete_is_good: assert (~completed | error == 4'd0 | error == 4'd6);
-    begins_first: assert (~busy | begun | \dut.control.begin_job );
-    begins_rested: assert (~\dut.control.begin_job | ~ran);
-    begins_empty: assert (~\dut.control.begin_job | (busy & inside == 8'd0 & \dut.control.entered == 2'd0));
-    idle_is_empty: assert (busy | (inside == 8'd0 & \dut.control.entered == 2'd0));
-    takes_a_line: assert (~\dut.feeder.take | \dut.collector.line_valid );
+    begins_first: assert (~\dut.control.run | begun);
+    begins_rested: assert (~\dut.control.begin_job | ~ran[0]);
+    begins_empty: assert (~\dut.control.begin_job | (busy & counted_inside == 8'd0 & \dut.feeder.entered == 2'd0));
+    idle_is_empty: assert (busy | (counted_inside == 8'd0 & \dut.feeder.entered == 2'd0));
+    lines_are_right: assert (~(begun | \dut.control.begin_job | \dut.control.waits_to_begin )
+      | (\dut.control.job_lines == {1'b0, \dut.control.job_count [31:1]} + {31'd0, \dut.control.job_count [0]}
+        & \dut.control.last_place == ~\dut.control.job_count [0]));
+    takes_a_line: assert (\dut.feeder.lines_waiting <= 3'd4
+      & \dut.feeder.any_lines_waiting == (\dut.feeder.lines_waiting != 3'd0)
+      & (~\dut.feeder.take | \dut.feeder.any_lines_waiting ));
     sends_a_line: assert (~\dut.dispatcher.take | \dut.dispatcher.stored != 0);
   end
   always @* if (begun & ~\dut.control.begin_job & ~rst) begin
     turn_is_an_scpu: assert (\dut.feeder.turn < `SCPUS);
-    lines_are_right: assert (\dut.control.job_lines == {1'b0, \dut.control.job_count [31:1]} + {31'd0, \dut.control.job_count [0]}
-      & \dut.control.last_place == ~\dut.control.job_count [0]);
     flags_are_right: assert (\dut.feeder.any_lines_left == (\dut.feeder.lines_left != 32'd0)
       & \dut.feeder.one_lines_left == (\dut.feeder.lines_left == 32'd1));
     only_last_is_short: assert (~\dut.feeder.in_hand | \dut.feeder.last | \dut.feeder.lines_left == 32'd0);
-    each_once: assert (to_give + {26'd0, inside} + {32'd0, \dut.control.entered } + {32'd0, uncounted} + {2'd0, emerged}
+    each_once: assert (to_give + {26'd0, inside} + {32'd0, \dut.feeder.entered } + {32'd0, uncounted} + {2'd0, emerged}
       == {2'd0, \dut.control.job_count });
-    room_is_seen: assert (~\dut.control.may_enter | \dut.control.room >= 8);
-    never_negative: assert (\dut.control.entered <= next_room);
+    room_is_seen: assert (~\dut.credits.may_enter | \dut.credits.room >= 8);
+    never_negative: assert (\dut.feeder.entered <= next_room);
     lines_fit: assert (\dut.dispatcher.stored + gathered <= `LINES);
   end
 
@@ -168,7 +189,7 @@ module credits (
   // `flushed`: the packer has flushed its partial last line. `leaving`: lines between the packer and the link.
   reg flushed;
   always @(posedge clk) flushed <= ~\dut.control.begin_job & (flushed | \dut.packer.flushes );
-  wire [ROOM_BITS-1:0] leaving = {1'b0, \dut.dispatcher.stored } + \dut.packer.went + \dut.packer.goes
+  wire [ROOM_BITS-1:0] leaving = {1'b0, \dut.dispatcher.stored } + \dut.packer.went + \dut.packer.comes
     + \dut.packer.line_valid + \dut.dispatcher.line_left ;
   always @* if (begun & ~\dut.control.begin_job & ~rst) begin
     last_line_once: assert (~flushed | (emerged == \dut.control.job_count & ~\dut.packer.place ));
@@ -190,10 +211,18 @@ module credits (
   wire [2:0] takes = {1'b0, \dut.slots[1].unit.takes , \dut.slots[0].unit.takes };
 `endif
   (* hierconn *) wire \dut.feeder.turn_phase ;
+  (* hierconn *) wire [6:0] \dut.feeder.turn_block ;
+  (* hierconn *) wire \dut.feeder.turn_within ;
+  (* hierconn *) wire \dut.feeder.block_is_last ;
+  // The SCPU's number is counted one cycle after the block's.
+  wire [7:0] turn_then = {1'b0, \dut.feeder.turn } + {6'd0, \dut.feeder.entered };
+  wire [7:0] next_turn = turn_then >= `SCPUS ? turn_then - `SCPUS : turn_then;
   reg [2:0] took = 3'd0;
   always @(posedge clk) took <= rst ? 3'd0 : takes;
   always @* if (begun & ~\dut.control.begin_job & ~rst) begin
-    phase_is_the_scpu_s: assert (\dut.feeder.turn_phase == \dut.feeder.turn [1]);
+    phase_is_the_block_s: assert (\dut.feeder.turn_phase == \dut.feeder.turn_block [0]
+      & \dut.feeder.block_is_last == (\dut.feeder.turn_block == (`SCPUS - 32'd1) / 32'd2));
+    turn_is_the_block_s: assert ({\dut.feeder.turn_block , \dut.feeder.turn_within } == next_turn);
     every_other_cycle: assert ((takes & took) == 3'd0);
   end
 `endif

@@ -50,7 +50,20 @@ module dispatcher (
   (* hierconn *) wire [1:0]  \dut.oldest ;
   (* hierconn *) wire        \dut.answered ;
   (* hierconn *) wire [3:0]  \dut.awaited ;
-  (* hierconn *) wire        \dut.leftover_request ;
+  (* hierconn *) wire [3:0]  \dut.answers ;
+  (* hierconn *) wire        \dut.is_current ;
+  (* hierconn *) wire        \dut.is_response ;
+  (* hierconn *) wire [1:0]  \dut.response_slot ;
+  (* hierconn *) wire        \dut.accepted ;
+  (* hierconn *) wire [1:0]  \dut.accepted_slot ;
+  (* hierconn *) wire [3:0]  \dut.asked ;
+  (* hierconn *) wire        \dut.line_in_word ;
+  (* hierconn *) wire [57:0] \dut.word_address ;
+  (* hierconn *) wire [5:0]  \dut.word_tag ;
+  (* hierconn *) wire        \dut.wr_req_spare_valid ;
+  (* hierconn *) wire [57:0] \dut.wr_req_spare_address ;
+  (* hierconn *) wire [5:0]  \dut.wr_req_spare_tag ;
+  (* hierconn *) wire        \dut.wr_req_of_job ;
   (* hierconn *) wire [1:0]  \dut.arrived_age ;
   (* hierconn *) wire [1:0]  \dut.next_slot ;
   (* hierconn *) wire [2:0]  \dut.outstanding ;
@@ -63,18 +76,35 @@ module dispatcher (
   reg [57:0] job_destination;
   reg [3:0]  job_epoch;
   reg [57:0] accepted;
+  // The slots whose requests the link has accepted and not answered, now and two cycles ago, when the dispatcher's marks are
+  // made.
   reg [3:0]  waiting;
-  wire mine = wr_rsp_valid & begun & ~start & (wr_rsp_tag[5:2] == job_epoch);
+  reg [3:0]  waited;
+  reg [3:0]  marked;
+  reg [3:0]  asks_heard;
+  reg [3:0]  asks_marked;
+  reg [3:0]  answers_heard;
+  reg [3:0]  answers_marked;
+  wire mine = wr_rsp_valid & (begun | start) & (wr_rsp_tag[5:2] == epoch);
   // A request that an earlier job abandoned while it was on the port may still be there.
   reg        left;
   wire       asked = wr_req_valid & ~left;
+  wire       spare = \dut.wr_req_spare_valid ;
+  wire       word = \dut.line_in_word ;
   wire [3:0] asks = asked & wr_req_ready ? 4'd1 << wr_req_tag[1:0] : 4'd0;
   wire [3:0] answers = mine ? 4'd1 << wr_rsp_tag[1:0] : 4'd0;
-  wire [3:0] on_port = asked ? 4'd1 << wr_req_tag[1:0] : 4'd0;
+  wire [3:0] on_port = (asked ? 4'd1 << wr_req_tag[1:0] : 4'd0) | (spare ? 4'd1 << \dut.wr_req_spare_tag [1:0] : 4'd0)
+    | (word ? 4'd1 << \dut.word_tag [1:0] : 4'd0);
+  wire [3:0] arriving = (waited & answers_heard) | (marked & answers_marked);
+  wire [3:0] heard = \dut.is_current ? 4'd1 << \dut.response_slot : 4'd0;
   reg        surprised;
+  wire       nothing = (on_port | waiting | arriving) == 4'd0 & ~wr_req_valid & ~\dut.answered ;
+  reg        was_nothing;
+  reg        started = 1'b0;
   always @(posedge clk) begin
     after_reset <= after_reset | rst;
     ran <= run;
+    started <= start;
     begun <= ~rst & (begun | start);
     if (start) begin
       job_destination <= destination;
@@ -82,8 +112,15 @@ module dispatcher (
     end
     accepted <= start ? 58'd0 : accepted + {57'd0, |asks};
     waiting <= start ? 4'd0 : (waiting & ~answers) | asks;
-    surprised <= mine & run & (waiting & answers) == 4'd0;
+    waited <= start ? 4'd0 : waiting;
+    marked <= start ? 4'd0 : waited;
+    asks_heard <= start ? 4'd0 : asks;
+    asks_marked <= start ? 4'd0 : asks_heard;
+    answers_heard <= rst ? 4'd0 : answers;
+    answers_marked <= rst | start ? 4'd0 : answers_heard;
+    surprised <= ~start & ~rst & run & answers_marked != 4'd0 & (marked & answers_marked) == 4'd0;
     left <= wr_req_valid & ~wr_req_ready & ~rst & (start | left);
+    was_nothing <= nothing & ~rst;
   end
 
   always @* begin
@@ -97,25 +134,33 @@ module dispatcher (
   `include "slots.svh"
   wire [3:0] come = aged(\dut.came , \dut.oldest );
   wire [3:0] coming = aged(\dut.answered ? 4'd1 << \dut.arrived_age : 4'd0, \dut.oldest );
-  wire [3:0] busy = on_port | waiting | come | coming;
+  wire [3:0] busy = on_port | waiting | arriving | come | coming;
   always @* if (begun & ~start & ~rst & after_reset) begin
     fifo_fits: assert (\dut.stored <= LINES);
     fifo_counts: assert (\dut.tail - \dut.head == \dut.stored [$clog2(`LINES)-1:0]);
     ready_is_right: assert (\dut.ready == (\dut.stored != 0));
-    tag_free: assert ((on_port & waiting) == 4'd0 & (~asked | wr_req_tag[5:2] == job_epoch));
+    tag_free: assert ((on_port & (waiting | arriving)) == 4'd0 & (waiting & arriving) == 4'd0
+      & (~asked | wr_req_tag[5:2] == job_epoch));
+    tags_in_order: assert ((~word | \dut.word_tag == {job_epoch, \dut.next_slot - 2'd1})
+      & (~spare | (wr_req_valid & \dut.wr_req_spare_tag == {job_epoch, \dut.next_slot - 2'd1 - {1'b0, word}}))
+      & (~asked | wr_req_tag[1:0] == \dut.next_slot - 2'd1 - {1'b0, word} - {1'b0, spare}));
     never_more: assert (\dut.reserved <= 3'd4);
     slots_in_order: assert (\dut.next_slot - \dut.oldest == \dut.reserved [1:0]);
     slots_are_right: assert (busy == slots(\dut.oldest , \dut.reserved ));
-    come_once: assert (((on_port | waiting) & (come | coming)) == 4'd0 & (come & coming) == 4'd0);
-    none_lost: assert (\dut.outstanding == {2'd0, on_port[0] | waiting[0]} + {2'd0, on_port[1] | waiting[1]}
-      + {2'd0, on_port[2] | waiting[2]} + {2'd0, on_port[3] | waiting[3]} + {2'd0, \dut.answered });
-    leftover_is_right: assert (\dut.leftover_request == left);
-    awaited_is_right: assert (\dut.awaited == waiting);
+    come_once: assert (((on_port | waiting | arriving) & (come | coming)) == 4'd0 & (come & coming) == 4'd0);
+    none_lost: assert (\dut.outstanding == ones(on_port | waiting | arriving) + {2'd0, \dut.answered });
+    leftover_is_right: assert (~wr_req_valid | \dut.wr_req_of_job == ~left);
+    awaited_is_right: assert (\dut.awaited == marked & \dut.asked == asks_marked & \dut.answers == answers_marked
+      & heard == answers_heard & \dut.is_response == (answers_marked != 4'd0)
+      & waited == ((marked & ~answers_marked) | asks_marked) & waiting == ((waited & ~answers_heard) | asks_heard)
+      & (\dut.accepted ? 4'd1 << \dut.accepted_slot : 4'd0) == asks_heard);
     surprise_is_told: assert (unexpected == surprised);
-    idle_is_right: assert (idle == ((on_port | waiting) == 4'd0 & ~wr_req_valid & ~\dut.answered & ~(\dut.may_send & \dut.read_valid )));
+    idle_is_right: assert (started | idle == was_nothing);
     sends_a_free_slot: assert (~\dut.may_send | \dut.reserved != 3'd4);
-    in_order: assert (\dut.next_address == job_destination + accepted + {57'd0, asked});
-    address: assert (~asked | wr_req_address == job_destination + accepted);
+    in_order: assert (\dut.next_address == job_destination + accepted + {57'd0, asked} + {57'd0, spare} + {57'd0, word});
+    address: assert ((~asked | wr_req_address == job_destination + accepted)
+      & (~spare | \dut.wr_req_spare_address == job_destination + accepted + {57'd0, asked})
+      & (~word | \dut.word_address == \dut.next_address - 58'd1));
   end
 
   reg        held = 1'b0;

@@ -41,6 +41,7 @@ module line_port (
   wire [3:0]  followed_line = {1'b0, followed[3:1]};
 
   `include "dut.svh"
+  (* hierconn *) wire \dut.control.begin_job ;
   (* hierconn *) wire \dut.control.run ;
 
   // ---- the state of the job ----
@@ -92,9 +93,11 @@ module line_port (
   wire [3:0] wr_answered = wr_mine ? (4'd1 << wr_rsp_tag[1:0]) : 4'd0;
   // A response arrived that was never requested, while the job ran and early enough to be reported.
   wire surprise = (rd_mine & (rd_waiting & rd_answered) == 4'd0) | (wr_mine & (wr_waiting & wr_answered) == 4'd0);
-  reg [3:0] surprised;
+  reg [5:0] surprised;
   always @(posedge clk)
-    surprised <= rst | accept ? 4'd0 : {surprised[3] | (surprised[2] & ~done), surprised[1:0], surprise & \dut.control.run };
+    surprised <= rst | accept ? 6'd0
+      : {surprised[5] | (surprised[4] & ~done), surprised[3:2], surprised[1] & \dut.control.run ,
+         surprised[0] & ~\dut.control.begin_job , surprise};
   wire follows = rd_accepted & (rd_lines == followed_line);
   always @(posedge clk) begin
     if (rst | accept) begin
@@ -149,7 +152,7 @@ module line_port (
       done_known: assert (known & ~busy);
       done_acknowledged: assert (error == 4'd4 | (rd_waiting == 4'd0 & wr_waiting == 4'd0));
       if (error == 4'd0) begin
-        surprise_is_told: assert (~surprised[3]);
+        surprise_is_told: assert (~surprised[5]);
         done_all: assert (rd_lines == lines & wr_lines == lines);
         if (followed < job_count) begin
           done_counts: assert (~words[0] | contacts != 32'd0);

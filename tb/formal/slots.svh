@@ -20,3 +20,8 @@ function [3:0] aged(input [3:0] ages, input [1:0] first);
     aged = from_first[3:0] | from_first[7:4];
   end
 endfunction
+
+// The number of slots in a set.
+function [2:0] ones(input [3:0] set);
+  ones = {2'd0, set[0]} + {2'd0, set[1]} + {2'd0, set[2]} + {2'd0, set[3]};
+endfunction

@@ -106,19 +106,14 @@ const FAULTS: [Planted; 8] = [
         "contact_afu_packer.v",
         "all_seen <= ~start",
         Controller::LastPairDropped as u32,
-        "~start & (emerged == (count - 32'd2))",
+        "~start & (emerged == (count_here - 32'd2))",
     ),
-    ("contact_afu.v", "slots_record_0_d1 <= ", Controller::LanesSwapped as u32, "slots_record_1"),
-    ("contact_afu.v", "slots_record_1_d1 <= ", Controller::LanesSwapped as u32, "slots_record_0"),
-    ("contact_afu_dispatcher.v", "assign idle = ", Controller::DoneEarly as u32, "~wr_req_valid"),
-    ("contact_afu_collector.v", "wire is_current = ", Controller::EpochIgnored as u32, "rd_rsp_valid"),
-    ("contact_afu_control.v", "may_enter <= run", Controller::CreditsIgnored as u32, "run"),
-    (
-        "contact_afu_packer.v",
-        "invalid_count <= start",
-        Controller::HalfCounted as u32,
-        "start ? 32'd0 : (invalid_count + {31'd0, invalid_0})",
-    ),
+    ("contact_afu_packer.v", "entering_0 <= ", Controller::LanesSwapped as u32, "record_1"),
+    ("contact_afu_packer.v", "entering_1 <= ", Controller::LanesSwapped as u32, "record_0"),
+    ("contact_afu_dispatcher.v", "wire is_idle = ", Controller::DoneEarly as u32, "~wr_req_valid"),
+    ("contact_afu_collector.v", "is_current <= rd_rsp_valid", Controller::EpochIgnored as u32, "rd_rsp_valid"),
+    ("contact_afu_credits.v", "may_enter <= run", Controller::CreditsIgnored as u32, "run"),
+    ("contact_afu_packer.v", "wire invalid_here_1 = ", Controller::HalfCounted as u32, "1'b0"),
 ];
 
 pub const SELECTOR_BIT: u32 = 28;

@@ -71,6 +71,8 @@ impl Bench {
         let afu = Afu::around(spec.clone(), kernel()).unwrap();
         let mut run = Evaluator::new(afu.top(), &[("SCPUS", scpus)]).unwrap();
         run.reset();
+        // No job begins before the delay lines beside the SCPUs are filled.
+        (0..2 * (LATENCY + scpus)).for_each(|_| run.step());
         let pin = |port: &Port| (port.name.clone(), run.pin(&port.name).unwrap());
         let pins = afu.top().ports.iter().map(pin).collect();
         Self {
@@ -182,7 +184,7 @@ impl Bench {
             }
             self.cycle();
         }
-        panic!("the job does not end");
+        panic!("the job does not end: {:?}", self.spec.config);
     }
 
     pub fn check(&mut self, count: u64) {

@@ -60,7 +60,7 @@ fn a_response_that_no_request_waits_for_is_an_error() {
             next_is_right(&mut bench, 2);
         }
         // It can be too late only in the cycles in which a job completes.
-        assert!(found > 50 && late <= 5, "{port}: {found} found, {late} too late");
+        assert!(found > 50 && late <= 7, "{port}: {found} found, {late} too late");
     }
 }
 

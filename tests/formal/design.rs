@@ -44,8 +44,9 @@ impl Design {
 
     /// Macros that describe it to a harness, with SCPUs of this delay.
     pub fn defines(self, latency: u32) -> Vec<String> {
-        // The lines that the dispatcher stores, as computed by `afu::results::Room`.
-        let lines = if latency <= 2 && !self.only_hits() { 8 } else { 16 };
+        // The lines that the dispatcher stores and the results there is room for, as computed by `afu::results::Room`.
+        let lines = 16;
+        let capacity = 32;
         let own: &[&str] = match self {
             EachCycle => &["SCPUS=32'd2"],
             EveryOther => &["SCPUS=32'd2", "EVERY_OTHER"],
@@ -54,7 +55,7 @@ impl Design {
             Records => &["SCPUS=32'd2", "PER_LINE=1"],
         };
         let own = own.iter().map(|define| (*define).to_owned());
-        own.chain([format!("LATENCY={latency}"), format!("LINES={lines}")]).collect()
+        own.chain([format!("LATENCY={latency}"), format!("LINES={lines}"), format!("CAPACITY={capacity}")]).collect()
     }
 
     /// The number of a pair's words that come back.
@@ -82,7 +83,15 @@ impl Design {
         };
         // A pair has eight words. A hit's number has 32 bits.
         let word_bits = if self.only_hits() { 4 } else { 2 };
-        Spec { line_bits: 16 * word_bits, word_bits, max_outstanding: TAGS, dispatch_cycles: 1, ..Spec::from(config) }
+        let scpus = config.scpus;
+        Spec {
+            line_bits: 16 * word_bits,
+            word_bits,
+            max_outstanding: TAGS,
+            max_hops: scpus,
+            dispatch_cycles: 1,
+            ..Spec::from(config)
+        }
     }
 
     /// Verilog files (name and text) of the accelerator with SCPUs of this delay, and of what harnesses include.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // slot
-// adds its own number to the value where it is chosen
+// adds its own number to the value where it is chosen, else passes on
 `default_nettype none
 
 module slot (
@@ -8,7 +8,8 @@ module slot (
   input  wire [6:0] index,
   input  wire [6:0] chosen,
   input  wire [6:0] value,
-  output reg  [6:0] result
+  input  wire [6:0] result_in,
+  output reg  [6:0] result_out
 );
 
   // ---- logic ----
@@ -16,7 +17,7 @@ module slot (
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
-    result <= (index == chosen) ? sum : 7'd0;
+    result_out <= (index == chosen) ? sum : result_in;
   end
 
 endmodule

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // top
-// a counter, a delay line, a memory and an array
+// a counter, a delay line, a memory and a chain
 //
 // contact-afu test
 `default_nettype none
@@ -15,7 +15,7 @@ module top #(
   output reg  [11:0] stored,
   output reg  [11:0] late,
   output reg  [11:0] later,
-  output reg  [6:0]  result,
+  output wire [6:0]  result,
   output wire        last
 );
 
@@ -86,7 +86,7 @@ module top #(
   reg [11:0] data_d25;
 
   // ---- outputs of instances ----
-  wire [SCPUS_IN_FOURS*7-1:0] result_all;
+  wire [(SCPUS_IN_FOURS+1)*7-1:0] slots_result_chain;
 
   // ---- logic ----
   wire wrapped = position == 4'd11;
@@ -117,28 +117,23 @@ module top #(
     end
   end
 
-  // SCPUS_IN_FOURS copies of slot: the same inputs to all, outputs or-ed together.
+  // A chain of SCPUS_IN_FOURS copies of slot: each passes on what it gets, a register a copy.
+  assign slots_result_chain[6:0] = 7'd0;
+  assign result = slots_result_chain[SCPUS_IN_FOURS*7 +: 7];
   genvar slots_number;
   generate
     for (slots_number = 0; slots_number < SCPUS_IN_FOURS; slots_number = slots_number + 1) begin : slots
       localparam [31:0] NUMBER = slots_number;
       slot unit (
-        .clk    (clk),
-        .index  (NUMBER[6:0]),
-        .chosen (data[6:0]),
-        .value  (data[11:5]),
-        .result (result_all[slots_number*7 +: 7])
+        .clk        (clk),
+        .index      (NUMBER[6:0]),
+        .chosen     (data[6:0]),
+        .value      (data[11:5]),
+        .result_in  (slots_result_chain[slots_number*7 +: 7]),
+        .result_out (slots_result_chain[(slots_number+1)*7 +: 7])
       );
     end
   endgenerate
-
-  integer slots_place;
-  always @* begin
-    result = 7'd0;
-    for (slots_place = 0; slots_place < SCPUS_IN_FOURS; slots_place = slots_place + 1) begin
-      result = result | result_all[slots_place*7 +: 7];
-    end
-  end
 
 endmodule
 

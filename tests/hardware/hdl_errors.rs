@@ -12,6 +12,13 @@ fn inner() -> Arc<Module> {
     g.finish().unwrap()
 }
 
+/// A module for a chain, faulty if its input has other than 4 bits, or without the register.
+fn link(bits: u32, registered: bool) -> Arc<Module> {
+    let g = Graph::new("link");
+    g.output("x_out", g.input("x_in", bits).extend(4).delay(registered.into()));
+    g.finish().unwrap()
+}
+
 /// The only error of a graph after `bad` ran with an 8-bit `a`, a 5-bit `b` and a 1-bit `c`.
 fn error_of(bad: impl for<'g> FnOnce(&'g Graph, Signal<'g>, Signal<'g>, Signal<'g>)) -> String {
     let g = Graph::new("broken");
@@ -154,12 +161,15 @@ fn instances_are_checked() {
         &inner,
         &[("x", a.low(4)), ("y", a.low(2))]
     ));
-    bad!("array `i`: `a` is not a parameter", |g, a, b, c| g.array(
-        "i",
-        &inner,
-        a,
-        &[("x", a.low(4)), ("y", a.low(2))]
-    ));
+    bad!("chain `i`: `a` is not a parameter", |g, a, b, c| g.chain("i", &link(4, true), a, &[("x_in", a.low(4))]));
+    bad!("chain `i`: output `x_out` of `link` is not a register's", |g, a, b, c| {
+        let count = g.parameter("LINKS", 2, 1..=8, 4);
+        g.chain("i", &link(4, false), count, &[("x_in", a.low(4))])
+    });
+    bad!("chain `i`: output `x_out` of `link` has no input to go into", |g, a, b, c| {
+        let count = g.parameter("LINKS", 2, 1..=8, 4);
+        g.chain("i", &link(3, true), count, &[("x_in", a.low(3))])
+    });
 }
 
 #[test]
@@ -180,11 +190,11 @@ fn signals_of_another_graph_are_refused_by_everything() {
         &inner(),
         &[("x", s4), ("y", a.low(2))]
     ));
-    bad!("array: `stranger` is a signal of another graph, `other`", |g, a, b, c| g.array(
+    bad!("chain: `stranger` is a signal of another graph, `other`", |g, a, b, c| g.chain(
         "i",
-        &inner(),
+        &link(4, true),
         s,
-        &[("x", a.low(4)), ("y", a.low(2))]
+        &[("x_in", a.low(4))]
     ));
     bad!("drive: `stranger` is a signal of another graph, `other`", |g, a, b, c| {
         let w = g.wire("w", 8);
@@ -301,7 +311,7 @@ fn call<'g>(
             memory.read(b)
         }
         41 => g.instance("i", inner, &[("x", a), ("y", b)]).output(name),
-        42 => g.array("i", inner, a, &[("x", b), (name, c)]).output("sum"),
+        42 => g.chain("i", inner, a, &[("x", b), (name, c)]).output("sum"),
         _ => a.same(u128::from(*n)),
     }
 }

@@ -82,16 +82,17 @@ fn a_memory_read_gives_what_stood_there_before_the_edge() {
 }
 
 #[test]
-fn an_array_is_the_or_of_its_copies_and_each_knows_its_number() {
+fn a_chain_passes_on_and_each_copy_knows_its_number() {
     let g = Graph::new("copy");
     let (x, index) = (g.input("x", 6), g.input("index", 3));
-    g.output("y", x.gate(x.slice(3, 3).equals(index)).named("mine"));
+    let passed = g.input("y_in", 6);
+    g.output("y_out", (passed | x.gate(x.slice(3, 3).equals(index)).named("mine")).delay(1));
     let copy = g.finish().unwrap();
 
     let g = Graph::new("top");
     let count = g.parameter("COPIES", 2, 1..=8, 4);
     let x = g.input("x", 6);
-    g.output("y", g.array("copies", &copy, count, &[("x", x)]).output("y"));
+    g.output("y", g.chain("copies", &copy, count, &[("x", x), ("y_in", g.constant(6, 0))]).output("y_out"));
     g.output("copies_there", count);
     let top = g.finish().unwrap();
 
@@ -100,6 +101,7 @@ fn an_array_is_the_or_of_its_copies_and_each_knows_its_number() {
         assert_eq!(run.get("copies_there"), u128::from(copies));
         for x in 0..64 {
             run.set("x", x);
+            (0..copies).for_each(|_| run.step());
             let expected = if x >> 3 < u128::from(copies) { x } else { 0 };
             assert_eq!(run.get("y"), expected);
         }

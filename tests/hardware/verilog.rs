@@ -1,4 +1,4 @@
-//! The Verilog printer: a pipeline, a module with state, and an array of instances, compared with golden files.
+//! The Verilog printer: a pipeline, a module with state, and a chain of instances, compared with golden files.
 
 use std::sync::Arc;
 
@@ -6,21 +6,22 @@ use contact_afu::hdl::verilog::{Memories, Style, emit};
 use contact_afu::hdl::{Evaluator, Graph, Module, Reset};
 use expect_test::expect_file;
 
-/// One copy of an array: adds its number to a shared value if it is selected.
+/// One copy of a chain: answers with its number added to a shared value if it is selected, else passes on what comes.
 fn slot() -> Arc<Module> {
     let graph = Graph::new("slot");
-    graph.about("adds its own number to the value where it is chosen");
+    graph.about("adds its own number to the value where it is chosen, else passes on");
     let index = graph.input("index", 7);
     let chosen = graph.input("chosen", 7);
     let value = graph.input("value", 7);
     let sum = (index + value).named("sum");
-    graph.output("result", sum.gate(index.equals(chosen)).delay(1));
+    let passed = graph.input("result_in", 7);
+    graph.output("result_out", index.equals(chosen).select(sum, passed).delay(1));
     graph.finish().unwrap()
 }
 
 fn top() -> Arc<Module> {
     let graph = Graph::new("top");
-    graph.about("a counter, a delay line, a memory and an array");
+    graph.about("a counter, a delay line, a memory and a chain");
     let count = graph.parameter("SCPUS", 10, 1..=64, 7);
     let in_fours = graph.rounded_down("SCPUS_IN_FOURS", count, 4);
     let enable = graph.input("enable", 1);
@@ -33,8 +34,8 @@ fn top() -> Arc<Module> {
     graph.output("stored", store.read(position.value()));
     graph.output("late", data.delay(9));
     graph.output("later", data.delay(79));
-    let slots = graph.array("slots", &slot(), in_fours, &[("chosen", data.low(7)), ("value", data.slice(5, 7))]);
-    graph.output("result", slots.output("result"));
+    let inputs = [("chosen", data.low(7)), ("value", data.slice(5, 7)), ("result_in", graph.constant(7, 0))];
+    graph.output("result", graph.chain("slots", &slot(), in_fours, &inputs).output("result_out"));
     graph.output("last", count.equals(data.low(7)));
     graph.finish().unwrap()
 }
@@ -50,18 +51,25 @@ fn golden_top() {
     expect_file!["../golden/top.v"].assert_eq(&emit(&top(), &style));
 }
 
-/// Copies beyond the rounded number do not exist, so they return zero.
+/// Copies beyond the rounded number do not exist, so what comes in comes out.
 #[test]
-fn an_array_has_a_rounded_number_of_copies() {
+fn a_chain_has_a_rounded_number_of_copies_and_a_register_each() {
     for (scpus, copies) in [(3, 3), (4, 4), (7, 4), (8, 8), (10, 8), (64, 64)] {
         let mut run = Evaluator::new(&top(), &[("SCPUS", scpus)]).unwrap();
         run.set("enable", 0);
         for index in 0..64 {
             let data = 0x800 | index;
             run.set("data", data);
-            run.step();
+            // The result of a copy passes the copies behind it, a register each.
+            let behind = if index < copies { copies - index } else { copies };
+            for cycle in 0..behind {
+                assert_eq!(run.get("result"), 0, "{scpus}, {index}, {cycle}");
+                run.step();
+                run.set("data", 0x87F);
+            }
             let sum = (index + (data >> 5)) & 127;
             assert_eq!(run.get("result"), if index < copies { sum } else { 0 }, "{scpus}, {index}");
+            run.step();
         }
     }
     assert!(Evaluator::new(&top(), &[("SCPUS_IN_FOURS", 4)]).is_err(), "computed");

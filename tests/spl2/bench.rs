@@ -27,7 +27,7 @@ pub fn files() -> Vec<File> {
 pub fn cycles_to_the_last_write(scpus: u32, pairs: usize) -> u32 {
     let afu = Afu::generate(Spec::from(config(scpus))).unwrap();
     let timing = afu.timing();
-    let through = [timing.start, timing.request, timing.collect, timing.feed, timing.scpu, timing.gather, timing.pack];
+    let through = [timing.start, timing.request, timing.collect, timing.feed, timing.scpu, timing.chain, timing.pack];
     let lines = pairs.div_ceil(2) as u32;
     through.iter().sum::<u32>() + lines - 1 + timing.dispatch
 }

@@ -40,7 +40,8 @@ pub struct Driver<'a> {
 }
 
 impl<'a> Driver<'a> {
-    /// Takes the ports of `afu`, a module with the `line` shell's ports, and resets it.
+    /// Takes the ports of `afu`, a module with the `line` shell's ports, resets it, and waits until a job that is started
+    /// begins at once.
     ///
     /// # Errors
     /// Returns an error if a port is missing, or if the module stops the simulation.
@@ -49,6 +50,8 @@ impl<'a> Driver<'a> {
         let monitor = Monitor::new(ports.tag_bits);
         let mut driver = Self { clock, ports, link, monitor, cycle: 0, epoch: 0, running: None };
         driver.reset()?;
+        let cycles = driver.capability().cycles_after_reset();
+        driver.idle(cycles)?;
         Ok(driver)
     }
 
@@ -61,14 +64,20 @@ impl<'a> Driver<'a> {
         self.monitor.forget();
         self.ports.quiet();
         self.ports.reset(true);
-        for _ in 0..RESET_CYCLES {
+        self.idle(RESET_CYCLES)?;
+        self.ports.reset(false);
+        Ok(())
+    }
+
+    /// Cycles in which the AFU has no job, and the link answers earlier ones.
+    fn idle(&mut self, cycles: u64) -> Result<(), DriveError> {
+        for _ in 0..cycles {
             let replies = self.link.cycle(&Default::default());
             self.monitor.answered(&replies);
             self.ports.reply(&replies);
             self.clock.tick(1)?;
             self.cycle += 1;
         }
-        self.ports.reset(false);
         Ok(())
     }
 

@@ -1,10 +1,10 @@
-//! A hierarchy of modules as one flat graph. Ports and instance outputs become links between nodes, arrays become
+//! A hierarchy of modules as one flat graph. Ports and instance outputs become links between nodes, chains become
 //! copies, and nodes are ordered so that operands come first.
 
 use std::sync::Arc;
 
 use super::EvaluateError;
-use crate::hdl::module::{InstanceCount, Module, Node, NodeId, Op};
+use crate::hdl::module::{InstanceCount, Module, Node, NodeId, Op, next_in_chain};
 
 /// A node of one instance: its scope's `base` plus its index in the module.
 pub(super) type FlatId = usize;
@@ -29,9 +29,7 @@ pub(super) enum Link {
     Own,
     /// It is the same value as another node.
     Alias(FlatId),
-    /// It is the bitwise or of these: an array's output.
-    Copies(Vec<FlatId>),
-    /// It is an array copy's number.
+    /// It is the number of a copy in a chain.
     Number(u32),
     /// It is this port of the top.
     Pin(usize),
@@ -88,13 +86,13 @@ impl Flat {
         let base = self.scopes[scope].base;
         let mut children = Vec::with_capacity(module.instances.len());
         for instance in &module.instances {
-            let (copies, array) = match instance.count {
+            let (copies, chained) = match instance.count {
                 InstanceCount::One => (1, false),
                 InstanceCount::Parameter(index) => (self.scopes[scope].parameters[index], true),
             };
             let mut opened = Vec::new();
             for copy in 0..copies {
-                let suffix = if array { format!("[{copy}]") } else { String::new() };
+                let suffix = if chained { format!("[{copy}]") } else { String::new() };
                 let path = format!("{}{}{suffix}.", self.scopes[scope].path, instance.name);
                 let parameters = self.inherited(scope, &instance.module);
                 let child = self.open(&instance.module, path, parameters);
@@ -105,6 +103,15 @@ impl Flat {
                         Some(source) => Link::Alias(base + source.index()),
                         None => Link::Number(copy),
                     };
+                }
+                if let Some(before) = opened.last() {
+                    let ports = &instance.module.ports;
+                    for output in (0..ports.len()).filter(|port| ports[*port].output) {
+                        let next = next_in_chain(&instance.module, output).and_then(|next| ports[next].node);
+                        if let (Some(from), Some(into)) = (ports[output].node, next) {
+                            self.links[child_base + into.index()] = Link::Alias(before + from.index());
+                        }
+                    }
                 }
                 self.fill(child);
                 opened.push(child_base);
@@ -117,11 +124,9 @@ impl Flat {
                 Op::Wire => self.links[base + id.index()] = Link::Alias(base + node.operands[0].index()),
                 Op::InstanceOutput { instance, port } => {
                     let Some(source) = module.instances[instance].module.ports[port].node else { continue };
-                    let copies: Vec<_> = children[instance].iter().map(|child| child + source.index()).collect();
-                    self.links[base + id.index()] = match copies[..] {
-                        [only] => Link::Alias(only),
-                        _ => Link::Copies(copies),
-                    };
+                    if let Some(last) = children[instance].last() {
+                        self.links[base + id.index()] = Link::Alias(last + source.index());
+                    }
                 }
                 _ => {}
             }
@@ -158,7 +163,6 @@ impl Flat {
                 Some(self.scope(id).base + operands.get(k)?.index())
             }
             Link::Alias(source) => (k == 0).then_some(*source),
-            Link::Copies(sources) => sources.get(k).copied(),
             Link::Number(_) | Link::Pin(_) => None,
         }
     }

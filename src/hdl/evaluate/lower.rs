@@ -114,15 +114,6 @@ impl Lowered {
                 return;
             }
             Link::Number(number) => self.number(u128::from(*number), count),
-            Link::Copies(sources) => {
-                let mut all = self.number(0, count);
-                for &source in sources {
-                    let one = self.of(flat, source).to_vec();
-                    let pairs = all.iter().zip(&one).map(|(&a, &b)| self.pair(Kind::Or, a, b)).collect();
-                    all = pairs;
-                }
-                all
-            }
             Link::Own if is_state(&node.op) => {
                 self.state.push(id);
                 (0..count).map(|_| self.push(Source::State)).collect()
@@ -144,11 +135,6 @@ impl Lowered {
     fn number(&mut self, value: u128, count: usize) -> Vec<Word> {
         let part = |index: usize| if index < 2 { (value >> (64 * index)) as u64 } else { 0 };
         (0..count).map(|index| self.constant(part(index))).collect()
-    }
-
-    /// An operation word by word; `0 op x = x` for an or.
-    fn pair(&mut self, kind: Kind, a: Word, b: Word) -> Word {
-        if kind == Kind::Or && self.is_zero(a) { b } else { self.step(kind, [a, b, a], 0) }
     }
 
     fn compute(&mut self, node: &Node, operands: &[Vec<Word>], widths: &[u32]) -> Vec<Word> {

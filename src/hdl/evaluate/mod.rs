@@ -129,7 +129,7 @@ impl Evaluator {
         self.module.port(port).map(|(index, _)| self.ports[index])
     }
 
-    /// A named value inside, as `instance.name` or, in an array, `instance[2].name`. It is read like an output. `None`
+    /// A named value inside, as `instance.name` or, in a chain, `instance[2].name`. It is read like an output. `None`
     /// if there is no such name or nothing uses the value.
     pub fn probe(&self, path: &str) -> Option<Pin> {
         let (scope, name) = path.rfind('.').map_or(("", path), |dot| path.split_at(dot + 1));

@@ -1,7 +1,7 @@
-//! Instances in the body of a module: one, or the number that a parameter gives, with outputs or-ed together.
+//! Instances in the body of a module: one, or a chain of as many as a parameter gives.
 
-use super::super::module::{Instance, InstanceCount, NodeId, Op};
-use super::expression::{constant, range};
+use super::super::module::{Instance, InstanceCount, NodeId, Op, next_in_chain};
+use super::expression::range;
 use super::sections::Sections;
 use super::unused::unconnected;
 
@@ -9,30 +9,20 @@ impl Sections<'_> {
     pub(super) fn instance_outputs(&self, index: usize) -> String {
         let instance = &self.module.instances[index];
         let mut out = String::new();
-        for (port, name) in unconnected(self.module, index) {
-            let width = instance.module.ports[port].width;
-            match instance.count {
-                InstanceCount::One => out += &format!("  wire {}{name};\n", range(width)),
-                InstanceCount::Parameter(parameter) => {
-                    let count = &self.module.parameters[parameter].name;
-                    out += &format!("  wire [{count}*{width}-1:0] {name}_all;\n");
-                }
+        if let InstanceCount::Parameter(parameter) = instance.count {
+            let count = &self.module.parameters[parameter].name;
+            for port in instance.module.ports.iter().filter(|port| port.output) {
+                out += &format!("  wire [({count}+1)*{}-1:0] {};\n", port.width, chained(&instance.name, &port.name));
+            }
+        } else {
+            for (port, name) in unconnected(self.module, index) {
+                out += &format!("  wire {}{name};\n", range(instance.module.ports[port].width));
             }
         }
         for (port, id) in self.outputs_of(index) {
             let Some(name) = &self.text.names.declared[id.index()] else { continue };
-            let width = instance.module.ports[port].width;
-            let is_port = self.text.names.is_port[id.index()];
-            match instance.count {
-                InstanceCount::One if !is_port => out += &format!("  wire {}{name};\n", range(width)),
-                InstanceCount::One => {}
-                InstanceCount::Parameter(parameter) => {
-                    let count = &self.module.parameters[parameter].name;
-                    out += &format!("  wire [{count}*{width}-1:0] {name}_all;\n");
-                    if !is_port {
-                        out += &format!("  reg {}{name};\n", range(width));
-                    }
-                }
+            if !self.text.names.is_port[id.index()] {
+                out += &format!("  wire {}{name};\n", range(instance.module.ports[port].width));
             }
         }
         out
@@ -49,7 +39,8 @@ impl Sections<'_> {
         found
     }
 
-    fn connections(&self, instance: &Instance, output: impl Fn(&str, u32) -> String) -> String {
+    /// The connections of an instance. `chain` gives those of chained ports, by port.
+    fn connections(&self, instance: &Instance, chain: impl Fn(usize) -> Option<String>) -> String {
         let position = self.module.instances.iter().position(|i| std::ptr::eq(i, instance)).unwrap_or(0);
         let outputs = self.outputs_of(position);
         let mut list = Vec::new();
@@ -60,11 +51,12 @@ impl Sections<'_> {
             list.push((self.style.reset_port().to_owned(), self.style.reset_port().to_owned()));
         }
         for (index, port) in instance.module.ports.iter().enumerate() {
-            let value = if port.output {
+            let value = if let Some(value) = chain(index) {
+                value
+            } else if port.output {
                 let used = outputs.iter().find(|(number, _)| *number == index);
                 let name = used.and_then(|(_, id)| self.text.names.declared[id.index()].clone());
-                let name = name.unwrap_or_else(|| format!("{}_{}_unused", instance.name, port.name));
-                output(&name, port.width)
+                name.unwrap_or_else(|| format!("{}_{}_unused", instance.name, port.name))
             } else {
                 match instance.inputs[index] {
                     Some(id) => self.text.value(id),
@@ -89,76 +81,68 @@ impl Sections<'_> {
 
     pub(super) fn instance(&self, instance: &Instance) -> String {
         let (name, module) = (&instance.name, format!("{}{}", self.style.prefix, instance.module.name));
-        let indent = |text: &str, spaces: usize| text.replace('\n', &format!("\n{}", " ".repeat(spaces)));
         match instance.count {
             InstanceCount::One => {
-                let list = self.connections(instance, |name, _| name.to_owned());
-                let parameters = self.inherited(instance);
-                format!("\n  {module} {parameters}{name} (\n    {}\n  );\n", indent(&list, 4))
+                let list = indent(&self.connections(instance, |_| None), 4);
+                format!("\n  {module} {}{name} (\n    {list}\n  );\n", self.inherited(instance))
             }
-            InstanceCount::Parameter(parameter) => {
-                let count = &self.module.parameters[parameter].name;
-                let list =
-                    self.connections(instance, |name, width| format!("{name}_all[{name}_copy*{width} +: {width}]"));
-                let copy = format!("{name}_number");
-                let list = replace_copies(&list, &copy);
-                let mut out =
-                    format!("\n  // {count} copies of {module}: the same inputs to all, outputs or-ed together.\n");
-                out += &format!(
-                    "  genvar {copy};\n  generate\n    for ({copy} = 0; {copy} < {count}; {copy} = {copy} + 1) begin : {name}\n"
-                );
-                if instance
-                    .inputs
-                    .iter()
-                    .zip(&instance.module.ports)
-                    .any(|(input, port)| input.is_none() && !port.output)
-                {
-                    out += &format!("      localparam [31:0] NUMBER = {copy};\n");
-                }
-                out += &format!(
-                    "      {module} {}unit (\n        {}\n      );\n    end\n  endgenerate\n",
-                    self.inherited(instance),
-                    indent(&list, 8)
-                );
-                out + &self.array_or(instance, count)
-            }
+            InstanceCount::Parameter(parameter) => self.chain(instance, &self.module.parameters[parameter].name),
         }
     }
 
-    fn array_or(&self, instance: &Instance, count: &str) -> String {
-        let position = self.module.instances.iter().position(|i| std::ptr::eq(i, instance)).unwrap_or(0);
-        let outputs: Vec<_> = self
-            .outputs_of(position)
-            .into_iter()
-            .filter_map(|(port, id)| {
-                Some((self.text.names.declared[id.index()].clone()?, instance.module.ports[port].width))
-            })
+    /// A chain of instances. Each chained port has a vector with a part before each copy and one behind the last.
+    fn chain(&self, instance: &Instance, count: &str) -> String {
+        let (name, module) = (&instance.name, format!("{}{}", self.style.prefix, instance.module.name));
+        let ports = &instance.module.ports;
+        let links: Vec<(usize, usize)> = (0..ports.len())
+            .filter(|port| ports[*port].output)
+            .filter_map(|output| Some((next_in_chain(&instance.module, output)?, output)))
             .collect();
-        let place = format!("{}_place", instance.name);
-        let mut out = format!("\n  integer {place};\n  always @* begin\n");
-        for (name, width) in &outputs {
-            out += &format!("    {name} = {};\n", constant(*width, 0));
+        let mut out =
+            format!("\n  // A chain of {count} copies of {module}: each passes on what it gets, a register a copy.\n");
+        for (input, output) in &links {
+            let (vector, width) = (chained(name, &ports[*output].name), ports[*output].width);
+            if let Some(first) = instance.inputs[*input] {
+                out += &format!("  assign {vector}[{}:0] = {};\n", width - 1, self.text.value(first));
+            }
         }
-        out += &format!("    for ({place} = 0; {place} < {count}; {place} = {place} + 1) begin\n");
-        for (name, width) in &outputs {
-            out += &format!("      {name} = {name} | {name}_all[{place}*{width} +: {width}];\n");
+        for (port, id) in
+            self.outputs_of(self.module.instances.iter().position(|i| std::ptr::eq(i, instance)).unwrap_or(0))
+        {
+            if let Some(last) = &self.text.names.declared[id.index()] {
+                let (vector, width) = (chained(name, &ports[port].name), ports[port].width);
+                out += &format!("  assign {last} = {vector}[{count}*{width} +: {width}];\n");
+            }
         }
-        out + "    end\n  end\n"
+        let copy = format!("{name}_number");
+        out += &format!(
+            "  genvar {copy};\n  generate\n    for ({copy} = 0; {copy} < {count}; {copy} = {copy} + 1) begin : {name}\n"
+        );
+        if instance.inputs.iter().zip(ports).any(|(input, port)| input.is_none() && !port.output) {
+            out += &format!("      localparam [31:0] NUMBER = {copy};\n");
+        }
+        let part = |port: usize, output: usize| {
+            let (vector, width) = (chained(name, &ports[output].name), ports[output].width);
+            let place = if port == output { format!("({copy}+1)") } else { copy.clone() };
+            format!("{vector}[{place}*{width} +: {width}]")
+        };
+        let list = self.connections(instance, |port| {
+            let link = links.iter().find(|(input, output)| *input == port || *output == port);
+            link.map(|(_, output)| part(port, *output))
+        });
+        out + &format!(
+            "      {module} {}unit (\n        {}\n      );\n    end\n  endgenerate\n",
+            self.inherited(instance),
+            indent(&list, 8)
+        )
     }
 }
 
-/// Output connections of an array are written with a placeholder for the copy's number.
-fn replace_copies(list: &str, copy: &str) -> String {
-    let mut out = String::new();
-    for line in list.split_inclusive('\n') {
-        match (line.find("_all["), line.find("_copy*")) {
-            (Some(start), Some(end)) => {
-                out += &line[..start + "_all[".len()];
-                out += copy;
-                out += &line[end + "_copy".len()..];
-            }
-            _ => out += line,
-        }
-    }
-    out
+/// The vector of a chained port, by the name of the output.
+pub(super) fn chained(instance: &str, output: &str) -> String {
+    format!("{instance}_{}_chain", output.strip_suffix("_out").unwrap_or(output))
+}
+
+fn indent(text: &str, spaces: usize) -> String {
+    text.replace('\n', &format!("\n{}", " ".repeat(spaces)))
 }

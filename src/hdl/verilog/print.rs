@@ -90,8 +90,6 @@ fn is_own(names: &Names, id: NodeId, port: &str) -> bool {
 /// True if a node is a Verilog `reg`.
 pub(super) fn is_register(module: &Module, id: NodeId) -> bool {
     matches!(module.node(id).op, Op::Delay { .. } | Op::Register { .. } | Op::MemoryRead { .. })
-        || matches!(module.node(id).op, Op::InstanceOutput { instance, .. }
-            if module.instances[instance].count != super::super::module::InstanceCount::One)
 }
 
 /// An instance of a module that does not exist fails elaboration in every tool, if the parameter is out of range.

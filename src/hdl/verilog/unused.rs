@@ -1,11 +1,12 @@
 //! Gathers unused bits in one wire whose name says so, so that linters accept them.
 
 use super::super::module::{InstanceCount, Module, NodeId, Op};
+use super::instances::chained;
 use super::names::Names;
 
 /// The text that names every declared bit without a reader; empty if every bit has one.
 pub(super) fn unused(module: &Module, names: &Names) -> String {
-    let used = used_bits(module, names);
+    let used = used_bits(module);
     let mut parts = Vec::new();
     for port in module.ports.iter().filter(|port| !port.output && port.node.is_none()) {
         parts.push(port.name.clone());
@@ -33,8 +34,14 @@ pub(super) fn unused(module: &Module, names: &Names) -> String {
         }
     }
     for instance in 0..module.instances.len() {
-        let all = if module.instances[instance].count == InstanceCount::One { "" } else { "_all" };
-        parts.extend(unconnected(module, instance).into_iter().map(|(_, name)| format!("{name}{all}")));
+        let of = &module.instances[instance];
+        parts.extend(unconnected(module, instance).into_iter().map(|(port, name)| match of.count {
+            InstanceCount::One => name,
+            InstanceCount::Parameter(count) => {
+                let (count, width) = (&module.parameters[count].name, of.module.ports[port].width);
+                format!("{}[{count}*{width} +: {width}]", chained(&of.name, &of.module.ports[port].name))
+            }
+        }));
     }
     if parts.is_empty() {
         return String::new();
@@ -57,7 +64,7 @@ pub(super) fn unconnected(module: &Module, instance: usize) -> Vec<(usize, Strin
 }
 
 /// The bits of each declared node that are read. A node that is written in place passes its reads on to its operands.
-fn used_bits(module: &Module, names: &Names) -> Vec<Vec<bool>> {
+fn used_bits(module: &Module) -> Vec<Vec<bool>> {
     let mut used: Vec<Vec<bool>> = module.nodes.iter().map(|node| vec![false; node.width as usize]).collect();
     let outputs = module.ports.iter().filter(|port| port.output).filter_map(|port| port.node);
     let memories = module.memories.iter().filter_map(|memory| memory.write).flatten();
@@ -73,15 +80,6 @@ fn used_bits(module: &Module, names: &Names) -> Vec<Vec<bool>> {
                 Op::Slice { low } => used[operand.index()][low as usize..(low + node.width) as usize].fill(true),
                 _ => used[operand.index()].fill(true),
             }
-        }
-    }
-    // An array's outputs are read through the or over all copies.
-    for id in module.ids() {
-        if let Op::InstanceOutput { instance, .. } = module.node(id).op
-            && module.instances[instance].count != InstanceCount::One
-            && names.is_port[id.index()]
-        {
-            used[id.index()].fill(true);
         }
     }
     used

@@ -48,7 +48,7 @@ const SHORT: [&str; 6] = [
     "lines go out before they came",
     "responses to earlier jobs count",
     "slots are freed by earlier jobs",
-    "a pair enters without room",
+    "a pair takes eight places",
     "the first line is asked for again",
     "done at once",
 ];

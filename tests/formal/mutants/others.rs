@@ -7,71 +7,78 @@ const CONTROL: Rows = &[(
     "a job begins with the last one's error",
     "error <= accept ? (mode_any ? 4'd5 : 4'd0) : ended;",
     "error <= ended;",
-    9,
+    12,
     "runs_without_error",
 )];
 
 const ROUNDS: Rows = &[
-    ("every SCPU has phase 0", "1'b0 : ends_block ? ", "1'b0 : 1'b0 ? ", 12, "phase_is_the_scpu_s"),
+    ("every SCPU has phase 0", "1'b0 : ends_block ? ", "1'b0 : 1'b0 ? ", 22, "phase_is_the_block_s"),
+    (
+        "a single pair does not count",
+        "(entered == 2'd1) ? turn_after_1[6:0]",
+        "(entered == 2'd1) ? turn",
+        23,
+        "turn_is_the_block_s",
+    ),
     (
         "a group crosses its block",
-        "wire unit_1 = turn_after_1_below_scpus_wide & ~turn[0];",
+        "wire unit_1 = turn_within_wide_plus_1 < block_size;",
         "wire unit_1 = 1'b1;",
-        15,
+        25,
         "every_other_cycle",
     ),
 ];
 
 const PHASE: Rows =
-    &[("any phase will do", "wire may_go = phase == turn_phase;", "wire may_go = 1'b1;", 14, "every_other_cycle")];
+    &[("any phase will do", "wire may_go = phase == turn_phase;", "wire may_go = 1'b1;", 23, "every_other_cycle")];
 
 const SIEVE: Rows = &[
     (
         "hits are dropped too",
         "dropped_pairs <= (group_here - hits_to_1) & not_start_wide;",
         "dropped_pairs <= group_here & not_start_wide;",
-        17,
+        27,
         "each_is_sifted",
     ),
     (
         "a hit is counted and lost",
         "hits_rank_0 <= hits_to_1 & not_start_wide;",
         "hits_rank_0 <= hits_to_0 & not_start_wide;",
-        17,
+        27,
         "no_hit_is_lost",
     ),
 ];
 
-const HITS_CONTROL: Rows =
-    &[("room is never used up", "({2'd0, places_freed} - entered_wide)", "{2'd0, places_freed}", 12, "hits_add_up")];
+const HITS_CREDITS: Rows =
+    &[("room is never used up", "({3'd0, places_freed} - entered_wide)", "{3'd0, places_freed}", 21, "hits_add_up")];
 
 const BACKLOG: Rows = &[
-    ("a hit counts as nine", "(left + {3'd0, put})", "(left + (|put ? 5'd9 : 5'd0))", 19, "backlog_fits"),
-    ("two hits take one place", "(tail + {2'd0, put})", "(tail + {3'd0, |put})", 18, "backlog_counts"),
+    ("a hit counts as nine", "(left + {4'd0, put})", "(left + (|put ? 6'd17 : 6'd0))", 29, "backlog_fits"),
+    ("two hits take one place", "(tail + {3'd0, put})", "(tail + {4'd0, |put})", 28, "backlog_counts"),
     (
         "what has left is read again",
-        "readable <= start ? 5'd0 : left;",
-        "readable <= start ? 5'd0 : stored;",
-        20,
+        "readable <= start ? 6'd0 : left;",
+        "readable <= start ? 6'd0 : stored;",
+        30,
         "reads_what_is_there",
     ),
 ];
 
 const STORE: Rows =
-    &[("a line counts as nine", "line_valid ? (stored + 5'd1)", "line_valid ? (stored + 5'd9)", 26, "lines_fit")];
+    &[("a line counts as nine", "line_valid ? (stored + 5'd1)", "line_valid ? (stored + 5'd9)", 36, "lines_fit")];
 
 const JOB_DISPATCHER: Rows = &[
-    ("every other line is written", "(next_address + 58'd1)", "(next_address + 58'd2)", 28, "in_order"),
-    ("lines without room are written", "wire send = goes & any_lines_of_room;", "wire send = goes;", 26, "has_room"),
+    ("every other line is written", "(next_address + 58'd1)", "(next_address + 58'd2)", 39, "in_order"),
+    ("lines without room are written", "wire send = goes & any_lines_of_room;", "wire send = goes;", 37, "has_room"),
 ];
 
 const JOB_PACKER: Rows = &[
-    ("a last line without hits", "wire flushes = all_out & place & ", "wire flushes = all_out & ", 27, "only_hits"),
+    ("a last line without hits", "wire flushes = all_out & place & ", "wire flushes = all_out & ", 38, "only_hits"),
     (
         "the last line keeps the one before",
-        "filling <= emptied ? 64'd0 : full ? {32'd0, merged[95:64]} : merged[63:0];",
-        "filling <= merged[63:0];",
-        28,
+        "entering_1 : enters_0[1] ? entering_0 : 32'd0,",
+        "entering_1 : enters_0[1] ? entering_0 : filling_0,",
+        38,
         "rest_is_zero",
     ),
 ];
@@ -81,24 +88,24 @@ const JOB_SIEVE: Rows = &[
         "a hit has its neighbour's number",
         "wire [31:0] number_1 = emerged + 32'd1;",
         "wire [31:0] number_1 = emerged;",
-        26,
+        37,
         "is_its_record",
     ),
     (
         "hits in one lane only are counted",
         "(contact_count + {30'd0, hits_to_1})",
         "(contact_count + {30'd0, hits_to_0})",
-        28,
+        39,
         "all_counted",
     ),
     (
         "invalid pairs in one lane only are counted",
-        "{30'd0, {1'b0, invalid_0} + {1'b0, invalid_1}}",
-        "{31'd0, invalid_1}",
-        28,
+        "{30'd0, {1'b0, invalid_here_0} + {1'b0, invalid_here_1}}",
+        "{31'd0, invalid_here_1}",
+        31,
         "invalid_counted",
     ),
-    ("the wrong invalid pair", "(invalid_0 ? emerged : number_1)", "emerged", 28, "first_is_right"),
+    ("the wrong invalid pair", "(invalid_here_0 ? emerged : number_1)", "emerged", 31, "first_is_right"),
 ];
 
 const JOB_CONTROL: Rows = &[
@@ -106,11 +113,11 @@ const JOB_CONTROL: Rows = &[
         "done with a write on its way",
         "complete <= run & packer_done & dispatched & link_idle;",
         "complete <= run & packer_done & dispatched;",
-        28,
+        39,
         "done_acknowledged",
     ),
-    ("done at once", "complete <= run & packer_done & dispatched & link_idle;", "complete <= run;", 8, "all_written"),
-    ("hits beyond the room are no error", "(completes & overflowed) ? 4'd6", "1'b0 ? 4'd6", 28, "overflow_is_told"),
+    ("done at once", "complete <= run & packer_done & dispatched & link_idle;", "complete <= run;", 13, "all_written"),
+    ("hits beyond the room are no error", "(completes & overflowed) ? 4'd6", "1'b0 ? 4'd6", 39, "overflow_is_told"),
 ];
 
 pub const TABLES: &[(&str, &str, Rows)] = &[
@@ -118,7 +125,7 @@ pub const TABLES: &[(&str, &str, Rows)] = &[
     ("credits of three at interval 2", "contact_afu_feeder.v", ROUNDS),
     ("credits at interval 2", "contact_afu_feeder.v", PHASE),
     ("credits of hits", "contact_afu_sieve.v", SIEVE),
-    ("credits of hits", "contact_afu_control.v", HITS_CONTROL),
+    ("credits of hits", "contact_afu_credits.v", HITS_CREDITS),
     ("credits of hits", "contact_afu_backlog.v", BACKLOG),
     ("credits of hits", "contact_afu_dispatcher.v", STORE),
     ("one job of hits", "contact_afu_dispatcher.v", JOB_DISPATCHER),

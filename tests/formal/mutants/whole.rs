@@ -3,137 +3,193 @@
 use super::Rows;
 
 const CONTROL: Rows = &[
-    (
-        "pairs that came out are still inside",
-        "(pairs_inside + entered_wide) - {3'd0, emerged};",
-        "pairs_inside + entered_wide;",
-        16,
-        "inside_is_right",
-    ),
-    ("gives up as it completes", "busy & expired & ~completes;", "busy & expired;", 18, "complete_is_good"),
+    ("gives up as it completes", "busy & expired & ~completes;", "busy & expired;", 24, "complete_is_good"),
     ("goes on while it drains", "(running & ~completes & ~failing)", "(running & ~completes)", 3, "one_or_other"),
-    ("begins while it runs", "wire accept = start & ~busy;", "wire accept = start & ~draining;", 3, "begins_rested"),
-    ("a refused job does not begin", "begin_job <= accept;", "begin_job <= accept & ~refuses;", 2, "begins_first"),
-    ("a job begins again", "begin_job <= accept;", "begin_job <= accept | (start & running);", 6, "begins_empty"),
-    ("ends with pairs inside", "wire none_inside = ~|pairs_inside & ", "wire none_inside = ", 13, "idle_is_empty"),
+    ("begins while it runs", "wire accept = start & ~busy;", "wire accept = start & ~draining;", 10, "begins_rested"),
+    ("runs before it begins", "run <= (run | begin_job)", "run <= (run | accept | waits_to_begin)", 3, "begins_first"),
     (
-        "room is never used up",
-        "(line_left ? 5'd2 : 5'd0) - entered_wide",
-        "line_left ? 5'd2 : 5'd0",
-        12,
-        "places_add_up",
+        "a job begins again",
+        "begin_job <= (accept | ",
+        "begin_job <= ((start & running) | accept | ",
+        13,
+        "begins_empty",
     ),
-    ("enters while any room is left", "run & |next_room[4:3];", "run & |next_room;", 20, "room_is_seen"),
+    (
+        "begins without waiting for the delay lines",
+        "(accept | waits_to_begin_and_not_failing) & filled_heard;",
+        "accept;",
+        3,
+        "nothing_before_it_is_filled",
+    ),
+    (
+        "waits for the delay lines after it began",
+        "(accept_and_not_refuses | waits_to_begin_and_not_failing) & ~filled_heard;",
+        "accept_and_not_refuses | waits_to_begin_and_not_failing;",
+        9,
+        "waits_or_runs",
+    ),
+    ("ends with pairs inside", "draining & stopped & none_inside_heard & ", "draining & ", 20, "idle_is_empty"),
     (
         "half a line is none",
         "rounded_count = {1'b0, count} + 33'd1;",
         "rounded_count = {1'b0, count};",
-        3,
+        2,
         "lines_are_right",
     ),
 ];
 
 const FEEDER: Rows = &[
-    ("pairs enter after an abort", "wire go_0 = may_enter & ", "wire go_0 = ", 11, "only_in_a_job"),
-    ("takes a line that is not there", "wire line_comes = line_valid & ", "wire line_comes = ", 3, "takes_a_line"),
-    ("a turn too many", "turn_after_2 >= scpus_wide;", "turn_after_2 > scpus_wide;", 11, "turn_is_an_scpu"),
-    ("two pairs count as one", "go_1 ? 2'd2 : go_0", "go_1 ? 2'd1 : go_0", 11, "each_once"),
-    ("counts no line that it takes", "if (start | take) lines_left", "if (start) lines_left", 10, "flags_are_right"),
-    ("every line is short", "one_lines_left ? last_place : 1'b1", "last_place", 10, "only_last_is_short"),
+    ("pairs enter after an abort", "wire go_0 = may_go_on & ", "wire go_0 = ", 20, "only_in_a_job"),
+    (
+        "takes a line that is not there",
+        "wire line_waits = any_lines_waiting & ",
+        "wire line_waits = ",
+        9,
+        "takes_a_line",
+    ),
+    ("a turn too many", "(turn_plus_2 >= scpus_wide)", "(turn_plus_2 > scpus_wide)", 21, "turn_is_an_scpu"),
+    ("two pairs count as one", "entered <= go_1 ? 2'd2 : ", "entered <= go_1 ? 2'd1 : ", 20, "each_once"),
+    ("counts no line that it takes", "if (start_or_take) lines_left", "if (start) lines_left", 19, "flags_are_right"),
+    ("every line is short", "one_lines_left ? last_place : 1'b1", "last_place", 19, "only_last_is_short"),
 ];
 
-const FEEDER_IN_CONTROL: Rows =
-    &[("a pair enters without room", "may_enter <= run & |next_room[4:3];", "may_enter <= run;", 28, "never_negative")];
+const CREDITS: Rows = &[
+    (
+        "pairs that came out are still inside",
+        "(pairs_inside + entered_wide) - {4'd0, emerged_now};",
+        "pairs_inside + entered_wide;",
+        27,
+        "inside_is_right",
+    ),
+    (
+        "room is never used up",
+        "(line_left ? 6'd2 : 6'd0) - entered_wide",
+        "line_left ? 6'd2 : 6'd0",
+        21,
+        "places_add_up",
+    ),
+    (
+        "room is forgotten when a pair enters",
+        "room <= start ? 6'd32 : room_now;",
+        "room <= start ? 6'd32 : |entered ? 6'd0 : room_now;",
+        21,
+        "room_is_seen",
+    ),
+    (
+        "a pair takes eight places",
+        "(line_left ? 6'd2 : 6'd0) - entered_wide",
+        "(line_left ? 6'd2 : 6'd0) - {entered_wide[2:0], 3'd0}",
+        22,
+        "never_negative",
+    ),
+];
 
 const PACKER: Rows = &[(
     "the last line goes out twice",
     "wire start_or_flushes = start | flushes;",
     "wire start_or_flushes = start;",
-    18,
+    28,
     "last_line_once",
 )];
 
 const STORE: Rows = &[
     (
         "a line counts as nine",
-        "line_valid ? (stored + 4'd1) : (stored - 4'd1)",
-        "line_valid ? (stored + 4'd9) : (stored - 4'd1)",
-        19,
+        "line_valid ? (stored + 5'd1) : (stored - 5'd1)",
+        "line_valid ? (stored + 5'd17) : (stored - 5'd1)",
+        29,
         "fits",
     ),
-    ("sends a line that has left", "(stored[0] & ~take)", "stored[0]", 20, "sends_a_line"),
+    ("sends a line that has left", "(stored[0] & ~take)", "stored[0]", 30, "sends_a_line"),
 ];
 
-const TOP: Rows =
-    &[("results are early", "group_done <= group_out;", "group_done <= feeder_issue_group;", 13, "comes_out")];
+const SLOT: Rows = &[(
+    "results are early",
+    "leaves <= leaves_in | answers_soon;",
+    "leaves <= leaves_in | {takes_lane_1, takes_lane_0};",
+    24,
+    "comes_out",
+)];
 
 const PORT_CONTROL: Rows = &[
-    ("ends with a request on the port", "none_inside & (link_idle_heard | given_up);", "none_inside;", 6, "rd_in_job"),
+    (
+        "ends with a request on the port",
+        "none_inside_heard & (link_idle_heard | given_up);",
+        "none_inside_heard;",
+        18,
+        "rd_in_job",
+    ),
     (
         "done with a write on the port",
         "packer_done & dispatched & link_idle;",
         "packer_done & dispatched;",
-        23,
+        34,
         "wr_in_job",
     ),
-    ("done and still running", "(running & ~completes & ~failing)", "(running & ~failing)", 6, "done_known"),
+    ("done and still running", "(running & ~completes & ~failing)", "(running & ~failing)", 13, "done_known"),
     (
         "a response that nobody waits for is no error",
-        "(unexpected_heard & ~begin_job) ? 4'd7",
+        "((read_unexpected_heard | write_unexpected_heard) & ~begin_job) ? 4'd7",
         "1'b0 ? 4'd7",
-        26,
+        40,
         "surprise_is_told",
     ),
-    ("done at once", "complete <= run & packer_done & dispatched & link_idle;", "complete <= run;", 5, "done_all"),
+    ("done at once", "complete <= run & packer_done & dispatched & link_idle;", "complete <= run;", 11, "done_all"),
 ];
 
 const PORT_COLLECTOR: Rows = &[
-    ("every other line is read", "(next_address + 58'd1)", "(next_address + 58'd2)", 6, "rd_in_order"),
+    ("every other line is read", "(next_address + 58'd1)", "(next_address + 58'd2)", 12, "rd_in_order"),
+    ("the first line is asked for again", "= {epoch, next_slot};", "= {epoch, 2'd0};", 12, "rd_tag_free"),
+    ("ends while a read is out", "idle <= ~|outstanding & ", "idle <= ", 18, "done_acknowledged"),
     (
-        "the first line is asked for again",
-        "rd_req_tag <= {epoch, next_slot};",
-        "rd_req_tag <= {epoch, 2'd0};",
-        6,
-        "rd_tag_free",
+        "read requests do not wait",
+        "rd_req_valid <= rd_req_next_valid | ~rd_req_moves;",
+        "rd_req_valid <= rd_req_next_valid;",
+        12,
+        "rd_stable",
     ),
-    ("ends while a read is out", "assign idle = ~|outstanding & ", "assign idle = ", 8, "done_acknowledged"),
-    ("read requests do not wait", "rd_req_valid <= issue | request_stays;", "rd_req_valid <= issue;", 6, "rd_stable"),
 ];
 
 const PORT_DISPATCHER: Rows = &[
-    ("every other line is written", "(next_address + 58'd1)", "(next_address + 58'd2)", 24, "wr_in_order"),
-    ("all writes have one tag", "wr_req_tag <= {epoch, next_slot};", "wr_req_tag <= {epoch, 2'd0};", 24, "wr_tag_free"),
-    ("write requests do not wait", "wr_req_valid <= goes | request_stays;", "wr_req_valid <= goes;", 22, "wr_stable"),
+    ("every other line is written", "(next_address + 58'd1)", "(next_address + 58'd2)", 35, "wr_in_order"),
+    ("all writes have one tag", "word_tag <= {epoch, next_slot};", "word_tag <= {epoch, 2'd0};", 35, "wr_tag_free"),
+    (
+        "write requests do not wait",
+        "wr_req_valid <= wr_req_next_valid | ~wr_req_moves;",
+        "wr_req_valid <= wr_req_next_valid;",
+        33,
+        "wr_stable",
+    ),
 ];
 
-const PORT_TOP: Rows = &[(
-    "each pair gets its neighbour's result",
-    "slots_record_0_d1 <= slots_record_0;",
-    "slots_record_0_d1 <= slots_record_1;",
-    21,
+const PORT_SLOT: Rows = &[(
+    "every result is the complement",
+    "record_0 <= answers[0] ? unit_record : record_0_in;",
+    "record_0 <= answers[0] ? ~unit_record : record_0_in;",
+    32,
     "wr_data",
 )];
 
 const PORT_PACKER: Rows = &[
     (
         "contacts in one lane only",
-        "{30'd0, {1'b0, contact_0} + {1'b0, contact_1}}",
-        "{31'd0, contact_1}",
-        26,
+        "{30'd0, {1'b0, contact_here_0} + {1'b0, contact_here_1}}",
+        "{31'd0, contact_here_1}",
+        40,
         "done_counts",
     ),
     (
         "invalid pairs in one lane only",
-        "{30'd0, {1'b0, invalid_0} + {1'b0, invalid_1}}",
-        "{31'd0, invalid_1}",
-        26,
+        "{30'd0, {1'b0, invalid_here_0} + {1'b0, invalid_here_1}}",
+        "{31'd0, invalid_here_1}",
+        40,
         "done_invalid",
     ),
     (
         "the wrong invalid pair",
-        "(invalid_0 ? emerged_before : (emerged_before + 32'd1))",
+        "(invalid_here_0 ? emerged_before : (emerged_before + 32'd1))",
         "emerged_before",
-        26,
+        40,
         "done_first",
     ),
 ];
@@ -143,14 +199,14 @@ const ENDS: Rows = &[("acknowledgements are not counted", "(goes ^ answered)", "
 pub const TABLES: &[(&str, &str, Rows)] = &[
     ("credits", "contact_afu_control.v", CONTROL),
     ("credits", "contact_afu_feeder.v", FEEDER),
-    ("credits", "contact_afu_control.v", FEEDER_IN_CONTROL),
+    ("credits", "contact_afu_credits.v", CREDITS),
     ("credits", "contact_afu_packer.v", PACKER),
     ("credits", "contact_afu_dispatcher.v", STORE),
-    ("credits", "contact_afu.v", TOP),
+    ("credits", "scpu_slot.v", SLOT),
     ("one job", "contact_afu_control.v", PORT_CONTROL),
     ("one job", "contact_afu_collector.v", PORT_COLLECTOR),
     ("one job", "contact_afu_dispatcher.v", PORT_DISPATCHER),
-    ("one job", "contact_afu.v", PORT_TOP),
+    ("one job", "scpu_slot.v", PORT_SLOT),
     ("one job", "contact_afu_packer.v", PORT_PACKER),
     ("a job ends", "contact_afu_dispatcher.v", ENDS),
 ];

@@ -55,7 +55,7 @@ fn waves(afu: &Afu) -> String {
     let (timing, layout, config) = (afu.timing(), afu.layout(), &afu.spec().config);
     let request = timing.start + timing.request;
     let flush = if layout.contacts_per_line() > 1 { timing.flush } else { 0 };
-    let through = [timing.collect, timing.feed, timing.scpu, timing.gather, timing.pack, flush, timing.dispatch];
+    let through = [timing.collect, timing.feed, timing.scpu, timing.chain, timing.pack, flush, timing.dispatch];
     let through: u32 = through.iter().sum();
     let end = timing.acknowledge + timing.done;
     let write = match (config.results, config.interval) {
@@ -104,7 +104,10 @@ A job of one pair in contact: `#` is high, `_` is low, for the whole cycle.
 - W = {write}: the write request.
 - B is the memory's: its acknowledgement, W + 1 at the earliest.
 - D = B + {end}: the job has ended.
-"
+
+A job that is started in the first {} cycles after a reset begins after them: until then, delay lines are being filled.
+",
+        timing.fill
     );
     out
 }
