@@ -141,7 +141,7 @@ fn faults_of_the_controller_are_found() {
     let case = Case::random(&config, 4_003, 3);
     // Writes are so slow that results waiting for them fill all the room there is.
     let (read, name) = (Direction::steady(3, 0), "slow writes".to_owned());
-    let write = Direction { lines_per_cycle: 0.05, ..read };
+    let write = Direction { lines_per_cycle: 0.05, ..Direction::steady(30, 0) };
     let link = LinkModel { name, read, write, order: Order::InOrder, ..LinkModel::ideal() };
     let run = |planted: Controller| {
         let afu = model.instance(1).unwrap();
