@@ -14,8 +14,11 @@ pub(super) fn cycles_to_line(spec: &Spec) -> u32 {
     gather::CYCLES * if per_word(spec).is_some() { 2 } else { 1 }
 }
 
-/// Additional cycles for a last line that is not full.
-pub(super) const CYCLES_TO_FLUSH: u32 = 2;
+/// Additional cycles for a last line that is not full. A last word of its own is known to have left a cycle later.
+pub(super) fn cycles_to_flush(spec: &Spec) -> u32 {
+    if per_word(spec).is_some() { 3 } else { 2 }
+}
+
 /// Cycles until a job without pairs is known to be complete.
 pub(super) const CYCLES_TO_NOTHING: u32 = 2;
 /// Records of fewer bits are gathered in words of this many bits first.

@@ -53,7 +53,7 @@ impl Afu {
             scpu: slot::latency(self.kernel().latency),
             chain,
             pack: packer::cycles_to_line(self.spec()),
-            flush: packer::CYCLES_TO_FLUSH,
+            flush: packer::cycles_to_flush(self.spec()),
             nothing: packer::CYCLES_TO_NOTHING,
             dispatch: dispatcher::CYCLES_TO_REQUEST,
             acknowledge: dispatcher::CYCLES_TO_IDLE,

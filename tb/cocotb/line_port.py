@@ -215,6 +215,9 @@ async def job(dut, pairs, epoch, seed, stalls):
 async def jobs(dut):
     cocotb.start_soon(Clock(dut.clk, 10, "ns").start())
     await reset(dut)
+    # A job right after a reset waits until the delay lines are filled.
+    early = await job(dut, PAIRS[:1], 1, 1, False)
+    assert early["rd_req"] > PORTS.fill, f"begun before the delay lines are filled: {early}"
     # A single pair with a memory that answers at once gives the timing diagram, cycle by cycle.
     cycles = await job(dut, PAIRS[:1], 1, 1, False)
     assert cycles["rd_req"] == PORTS.first_read, f"R is not {PORTS.first_read}: {cycles}"

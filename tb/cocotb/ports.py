@@ -33,6 +33,7 @@ class Ports:
         self.reads, self.writes = self._sizes(text, r"At most (\d+) reads and (\d+) writes are outstanding")
         (self.slot_bits,) = self._sizes(text, r"`epoch` in bits \d+:(\d+)")
         (self.first_read,) = self._sizes(text, r"R = (\d+)")
+        (self.fill,) = self._sizes(text, r"started in the first (\d+) cycles after a reset begins after them")
         (self.end,) = self._sizes(text, r"D = B \+ (\d+)")
         through = re.search(r"W = A \+ (\d+)(?: to A \+ (\d+))?", text)
         self.through = range(int(through[1]), int(through[2] or through[1]) + 1) if through else None

@@ -293,8 +293,8 @@ fn a_spoilt_shell_is_found_out() {
         ),
         (
             "contact_afu_packer.v",
-            "line <= merged[511:0];",
-            "line <= merged[511:0] ^ 512'dx;",
+            " line <= {",
+            " line <= 512'dx ^ {",
             "a write's data is unknown",
         ),
         ("spl2_registers.v", "dsm_line <= {dsm_high,", "dsm_line <= {~dsm_high,", "a write elsewhere"),
