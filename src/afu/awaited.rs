@@ -18,9 +18,9 @@ pub(super) struct Answers<'g> {
     pub(super) failed: Signal<'g>,
 }
 
-/// Marks a slot once its request was `accepted` at the port, and clears the mark when its response arrives. Both are decoded
-/// first and registered, so the mark is there when a response of the cycle after the acceptance is compared with it.
-/// `start` clears all marks.
+/// Marks a slot once its request was `accepted` at the port, and clears the mark when its response arrives. Both are
+/// decoded first and registered, so the mark is there when a response of the cycle after the acceptance is compared
+/// with it. `start` clears all marks.
 pub(super) fn awaited<'g>(
     graph: &'g Graph,
     slots: u32,

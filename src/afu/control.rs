@@ -59,8 +59,8 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let busy = (*running | *draining).named("busy");
     let accept = (start & !busy).named("accept");
 
-    // The job, held from its start; everything downstream begins a cycle later. The addresses, which are wide, are taken in
-    // every cycle without a job, so that they do not depend on `start`.
+    // The job, held from its start; everything downstream begins a cycle later. The addresses, which are wide, are
+    // taken in every cycle without a job, so that they do not depend on `start`.
     let job_source = graph.data_register("job_source", ADDRESS_BITS);
     job_source.next_if(!busy, source);
     let job_destination = graph.data_register("job_destination", ADDRESS_BITS);

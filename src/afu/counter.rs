@@ -48,8 +48,8 @@ pub(super) fn all_used<'g>(reserved: Register<'g>, takes: Signal<'g>, frees: Sig
     !frees & (reserved.msb() | (reserved.low(slots).all() & takes))
 }
 
-/// A counter like that of [`up_down`] for up to `2^(width − 1)` things, with a flag that is set while it is not 0. It goes
-/// down only while the flag is set.
+/// A counter like that of [`up_down`] for up to `2^(width − 1)` things, with a flag that is set while it is not 0. It
+/// goes down only while the flag is set.
 pub(super) fn waiting<'g>(
     graph: &'g Graph,
     name: &str,

@@ -1,6 +1,6 @@
-//! Credits: a pair enters only if its result has a place. A pair takes its place when it enters, and a line frees its places
-//! when it leaves for memory. If only hits are written, a pair without contact frees its place as soon as the decision is
-//! known, and a contact when it leaves the backlog.
+//! Credits: a pair enters only if its result has a place. A pair takes its place when it enters, and a line frees its
+//! places when it leaves for memory. If only hits are written, a pair without contact frees its place as soon as the
+//! decision is known, and a contact when it leaves the backlog.
 //!
 //! It also knows when the delay lines beside the SCPUs are filled, before which no job begins.
 

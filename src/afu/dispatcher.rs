@@ -57,8 +57,8 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
     ready.next(!start & (line_valid | some_left));
     read_valid.next(!start & (take | (*read_valid & !goes)));
 
-    // Write requests. Whether one may be sent is decided one cycle ahead. The line is in the memory's register while its
-    // address and tag are in registers beside it; then it enters the port's slice.
+    // Write requests. Whether one may be sent is decided one cycle ahead. The line is in the memory's register while
+    // its address and tag are in registers beside it; then it enters the port's slice.
     let next_address = graph.data_register("next_address", ADDRESS_BITS);
     let next_slot = graph.register("next_slot", slot_bits, 0);
     let reserved = graph.register("reserved", slot_bits + 1, 0);

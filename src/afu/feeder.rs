@@ -19,8 +19,8 @@ const RANKS: u32 = CYCLES_TO_WORD + 1;
 /// Register ranks from the decision to the lanes that carry pairs and the SCPUs that these are for. The slots get them
 /// one cycle before the pairs, so that each knows which pair it takes.
 const RANKS_TO_GROUP: u32 = RANKS - 1;
-/// Cycles from a line that is announced to a group of its pairs that leaves for the slots: the line is counted, it is in
-/// hand, and the ranks of the decision.
+/// Cycles from a line that is announced to a group of its pairs that leaves for the slots: the line is counted, it is
+/// in hand, and the ranks of the decision.
 pub(super) const CYCLES_TO_ISSUE: u32 = 2 + RANKS;
 /// The number of groups, including the new one, whose results are not counted yet when the room for the new one is
 /// checked.

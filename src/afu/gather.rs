@@ -1,5 +1,5 @@
-//! Gathers records, in order, into lines (or into words, which are gathered into lines in turn). Each place of a line has
-//! an enable, decoded a cycle ahead, so no record is shifted.
+//! Gathers records, in order, into lines (or into words, which are gathered into lines in turn). Each place of a line
+//! has an enable, decoded a cycle ahead, so no record is shifted.
 
 use crate::hdl::{Graph, Signal};
 
@@ -16,9 +16,10 @@ pub(super) struct Gathered<'g> {
     pub(super) all_out: Signal<'g>,
 }
 
-/// Gathers `records` in lines of `per_line` (a power of two) records, at least as many as there are lanes. The lanes below
-/// the first one that `carries` no record have one, one cycle after `carries` says so. After `all_out`, a line that is not
-/// full leaves with zeros in its unused part. `prefix` distinguishes the names of two such parts in one module.
+/// Gathers `records` in lines of `per_line` (a power of two) records, at least as many as there are lanes. The lanes
+/// below the first one that `carries` no record have one, one cycle after `carries` says so. After `all_out`, a line
+/// that is not full leaves with zeros in its unused part. `prefix` distinguishes the names of two such parts in one
+/// module.
 pub(super) fn gather<'g>(
     graph: &'g Graph,
     prefix: &str,

@@ -12,12 +12,12 @@ pub(super) struct Arrival<'g> {
     pub(super) slot: Signal<'g>,
 }
 
-/// True if the oldest of `slots` (a power of two) slots is answered; it leaves in that cycle. Slots are used in turn, from
-/// 0 at `start`, and are reused only after they left.
+/// True if the oldest of `slots` (a power of two) slots is answered; it leaves in that cycle. Slots are used in turn,
+/// from 0 at `start`, and are reused only after they left.
 ///
 /// `answered` is set when the response to an outstanding request has been [recognised](super::awaited). `slot` is the
-/// response's slot in the cycle of its arrival. The marks are ordered by age and move up when the oldest leaves, so no search for the
-/// oldest is needed.
+/// response's slot in the cycle of its arrival. The marks are ordered by age and move up when the oldest leaves, so no
+/// search for the oldest is needed.
 pub(super) fn goes_in_order<'g>(
     graph: &'g Graph,
     slots: u32,

@@ -70,8 +70,8 @@ impl Parts {
         Ok(Self { packer: packer::packer(spec)?, before })
     }
 
-    /// The instances. `lanes` has the slots' outputs by name, which arrive one cycle after `leaves` says on which lanes.
-    /// `accepts` is high while the dispatcher has room.
+    /// The instances. `lanes` has the slots' outputs by name, which arrive one cycle after `leaves` says on which
+    /// lanes. `accepts` is high while the dispatcher has room.
     pub(super) fn instances<'g>(
         &self,
         graph: &'g Graph,

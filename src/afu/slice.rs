@@ -17,9 +17,9 @@ pub(super) struct Slice<'g> {
     pub(super) is_empty: Signal<'g>,
 }
 
-/// A slice in front of the `port` that takes a request when it is `ready`. A request enters when it is `valid` and there is
-/// room. `fields` are the names and values of its parts. A request that is still at the port at `start` belongs to an
-/// earlier job and stays until it is taken; one behind it is dropped.
+/// A slice in front of the `port` that takes a request when it is `ready`. A request enters when it is `valid` and
+/// there is room. `fields` are the names and values of its parts. A request that is still at the port at `start`
+/// belongs to an earlier job and stays until it is taken; one behind it is dropped.
 pub(super) fn slice<'g>(
     graph: &'g Graph,
     port: &str,

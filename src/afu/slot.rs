@@ -1,5 +1,5 @@
-//! One SCPU's place in the chain: it takes the pair that names it from the lanes that pass, and puts the result on the same
-//! lane as it passes behind the SCPUs.
+//! One SCPU's place in the chain: it takes the pair that names it from the lanes that pass, and puts the result on the
+//! same lane as it passes behind the SCPUs.
 //!
 //! Pairs and results go from slot to slot, a register each. A pair that goes further in comes out nearer to the end, so
 //! every pair takes the same number of cycles, and results leave in the order of their pairs.
@@ -13,8 +13,8 @@ use super::{SCPU_BITS, Spec};
 /// Register ranks before the SCPU: the chosen pair is registered.
 const RANKS_BEFORE: u32 = 1;
 
-/// Cycles from a pair before its slot to its result behind the SCPU, for an SCPU of that latency. The chain's registers, as
-/// many as there are slots, come on top.
+/// Cycles from a pair before its slot to its result behind the SCPU, for an SCPU of that latency. The chain's
+/// registers, as many as there are slots, come on top.
 pub(super) fn latency(kernel_latency: u32) -> u32 {
     RANKS_BEFORE + kernel_latency
 }
@@ -61,8 +61,8 @@ pub(super) fn slot(spec: &Spec, scpu: &Arc<Module>) -> Result<Arc<Module>, Build
     graph.output("targets_out", targets.delay(1).named("targets"));
     graph.output("pairs_out", pairs.delay(1).named("pairs"));
 
-    // The lanes that this SCPU answers are delayed beside it. Which lanes carry a result is known one cycle ahead of the
-    // results.
+    // The lanes that this SCPU answers are delayed beside it. Which lanes carry a result is known one cycle ahead of
+    // the results.
     let taken = taken.into_iter().rev().reduce(Signal::concat).unwrap_or_else(|| graph.constant(1, 0));
     let answers_next = taken.delay(latency(scpu.latency) - 1).named("answers_soon");
     let leaves = graph.input("leaves_in", lanes);

@@ -166,9 +166,9 @@ pub struct Memory {
 pub enum InstanceCount {
     /// One.
     One,
-    /// A chain of as many as the parameter (or `localparam`) with this index says. Inputs are those of the first copy if
-    /// they are chained (`NAME_in` for an output `NAME_out`), and shared by all otherwise, but for an input named `index`,
-    /// which is each copy's number. Outputs are those of the last copy.
+    /// A chain of as many as the parameter (or `localparam`) with this index says. Inputs are those of the first copy
+    /// if they are chained (`NAME_in` for an output `NAME_out`), and shared by all otherwise, but for an input named
+    /// `index`, which is each copy's number. Outputs are those of the last copy.
     Parameter(usize),
 }
 

@@ -218,8 +218,8 @@ impl Graph {
     }
 
     /// A chain of instances of `module`, as many as the [`Graph::parameter`] `count` gives. What an instance has at its
-    /// output `NAME_out` goes into the input `NAME_in` of the next. `inputs` are those of the first; the outputs are those
-    /// of the last. All instances share the other inputs, and an input named `index` gets each instance's number.
+    /// output `NAME_out` goes into the input `NAME_in` of the next. `inputs` are those of the first; the outputs are
+    /// those of the last. All instances share the other inputs, and an input named `index` gets each instance's number.
     ///
     /// Every output must have its input, and come from a register.
     #[track_caller]

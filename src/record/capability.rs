@@ -95,8 +95,8 @@ impl Capability {
         }
     }
 
-    /// Cycles after a reset after which a job begins when it is started: the delay lines in the AFU are full, and control
-    /// knows it.
+    /// Cycles after a reset after which a job begins when it is started: the delay lines in the AFU are full, and
+    /// control knows it.
     pub fn cycles_after_reset(&self) -> u64 {
         u64::from(self.scpu_cycles) + u64::from(self.scpus) + 8
     }

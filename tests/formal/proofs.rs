@@ -83,8 +83,8 @@ impl fmt::Display for Proof {
 
 use Method::{Bounded, Inductive, Reached};
 
-/// The proofs that are run for each latency of an SCPU. Their depths grow with the latency. A job begins once the delay lines
-/// are filled, and passes as many slots as there are.
+/// The proofs that are run for each latency of an SCPU. Their depths grow with the latency. A job begins once the delay
+/// lines are filled, and passes as many slots as there are.
 fn around(latency: u32) -> [Proof; 6] {
     let of = |name, harness, method| Proof::new(name, harness, latency, method);
     let one_job = &["PAIRS=3", "ONE_JOB"];

@@ -33,8 +33,8 @@ fn a_sweep_has_a_row_for_each_size_and_is_resumed() {
     let said = String::from_utf8(second.get_output().stderr.clone()).expect("UTF-8");
     assert!(said.contains("1 of 2 rows come from an earlier run"), "{said}");
     let cycles = second_rows[1]["cycles_per_pair"].as_f64().expect("a number");
-    // Half a cycle, and in a job this small as much as two tenths more for its handshake through memory, and because the
-    // delay lines are filled first.
+    // Half a cycle, and in a job this small as much as two tenths more for its handshake through memory, and because
+    // the delay lines are filled first.
     assert!((0.5..0.7).contains(&cycles), "two take two: {cycles}");
 
     let csv = fs::read_to_string(room.path().join("out/sweep.csv")).expect("written");

@@ -291,12 +291,7 @@ fn a_spoilt_shell_is_found_out() {
             "epoch <= next_epoch;",
             "a read's header is unknown",
         ),
-        (
-            "contact_afu_packer.v",
-            " line <= {",
-            " line <= 512'dx ^ {",
-            "a write's data is unknown",
-        ),
+        ("contact_afu_packer.v", " line <= {", " line <= 512'dx ^ {", "a write's data is unknown"),
         ("spl2_registers.v", "dsm_line <= {dsm_high,", "dsm_line <= {~dsm_high,", "a write elsewhere"),
     ] {
         let (folder, _) = write(&generate(Config::default()));

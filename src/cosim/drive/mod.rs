@@ -40,8 +40,8 @@ pub struct Driver<'a> {
 }
 
 impl<'a> Driver<'a> {
-    /// Takes the ports of `afu`, a module with the `line` shell's ports, resets it, and waits until a job that is started
-    /// begins at once.
+    /// Takes the ports of `afu`, a module with the `line` shell's ports, resets it, and waits until a job that is
+    /// started begins at once.
     ///
     /// # Errors
     /// Returns an error if a port is missing, or if the module stops the simulation.

@@ -269,8 +269,8 @@ mod tests {
         panic!("the shell asks for no line");
     }
 
-    /// The answer to a read from before a reset arrives in the cycle in which the next read is granted. It once was taken
-    /// for that read's, so a job read whatever its line held.
+    /// The answer to a read from before a reset arrives in the cycle in which the next read is granted. It once was
+    /// taken for that read's, so a job read whatever its line held.
     #[test]
     fn an_answer_from_before_a_reset_answers_no_new_read() {
         let module = sequence(&Spec::from(Config::default())).expect("a module");
