@@ -61,6 +61,7 @@ module contact_afu #(
   // ---- outputs of instances ----
   wire control_begin_job;
   wire control_run;
+  wire control_given_up;
   wire [57:0] control_job_source;
   wire [57:0] control_job_destination;
   wire [31:0] control_job_count;
@@ -148,6 +149,7 @@ module contact_afu #(
     .error            (error),
     .begin_job        (control_begin_job),
     .run              (control_run),
+    .given_up         (control_given_up),
     .job_source       (control_job_source),
     .job_destination  (control_job_destination),
     .job_count        (control_job_count),
@@ -182,6 +184,7 @@ module contact_afu #(
     .rst            (rst),
     .start          (control_begin_job),
     .run            (control_run),
+    .given_up       (control_given_up),
     .destination    (control_job_destination),
     .epoch          (control_job_epoch),
     .line_valid     (packer_line_valid),
@@ -207,6 +210,7 @@ module contact_afu #(
     .rst            (rst),
     .start          (control_begin_job),
     .run            (control_run),
+    .given_up       (control_given_up),
     .source         (control_job_source),
     .lines          (control_lines),
     .epoch          (control_job_epoch),

@@ -11,6 +11,7 @@ module contact_afu_collector (
   input  wire         rst,
   input  wire         start,
   input  wire         run,
+  input  wire         given_up,
   input  wire [57:0]  source,
   input  wire [31:0]  lines,
   input  wire [3:0]   epoch,
@@ -61,7 +62,8 @@ module contact_afu_collector (
   reg [6:0] outstanding;
 
   // ---- logic ----
-  wire rd_req_next_valid = ~start & (rd_req_spare_valid | may_ask);
+  wire drops_requests = start | given_up;
+  wire rd_req_next_valid = ~drops_requests & (rd_req_spare_valid | may_ask);
   wire rd_req_moves = ~rd_req_valid | rd_req_ready;
   wire issue = may_ask & ~rd_req_spare_valid;
   wire may_ask_next =

@@ -39,6 +39,7 @@ module contact_afu_control (
   output reg  [3:0]  error,
   output reg         begin_job,
   output reg         run,
+  output reg         given_up,
   output reg  [57:0] job_source,
   output reg  [57:0] job_destination,
   output reg  [31:0] job_count,
@@ -60,7 +61,6 @@ module contact_afu_control (
   reg [2:0] cycles_draining;
   reg none_inside_heard;
   reg link_idle_heard;
-  reg given_up;
   reg read_answered_heard;
   reg write_answered_heard;
   reg link_idle_before;

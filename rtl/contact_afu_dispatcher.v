@@ -11,6 +11,7 @@ module contact_afu_dispatcher (
   input  wire         rst,
   input  wire         start,
   input  wire         run,
+  input  wire         given_up,
   input  wire [57:0]  destination,
   input  wire [3:0]   epoch,
   input  wire         line_valid,
@@ -69,7 +70,8 @@ module contact_afu_dispatcher (
   wire [511:0] wr_req_spare_data_next;
 
   // ---- logic ----
-  wire wr_req_next_valid = ~start & (wr_req_spare_valid | line_in_word);
+  wire drops_requests = start | given_up;
+  wire wr_req_next_valid = ~drops_requests & (wr_req_spare_valid | line_in_word);
   wire wr_req_moves = ~wr_req_valid | wr_req_ready;
   wire has_line = may_send & read_valid;
   wire room_at_port = ~wr_req_spare_valid;
@@ -135,7 +137,7 @@ module contact_afu_dispatcher (
     end else begin
       wr_req_valid <= wr_req_next_valid | ~wr_req_moves;
       wr_req_spare_valid <= wr_req_next_valid & ~wr_req_moves;
-      line_in_word <= ~start & (goes | (line_in_word & ~room_at_port));
+      line_in_word <= ~drops_requests & (goes | (line_in_word & ~room_at_port));
       may_send <= run & ~(~oldest_goes & (reserved[6] | (&reserved[5:0] & goes)));
       read_valid <= ~start & (take | (read_valid & ~goes));
       ready <= ~start & (line_valid | (|stored[8:1] | (stored[0] & ~take)));

@@ -32,6 +32,7 @@ pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
 
     let start = graph.input("start", 1);
     let run = graph.input("run", 1);
+    let drops = (start | graph.input("given_up", 1)).named("drops_requests");
     let source = graph.input("source", ADDRESS_BITS);
     let lines = graph.input("lines", COUNT_BITS);
     let epoch = graph.input("epoch", EPOCH_BITS);
@@ -48,7 +49,7 @@ pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let may_ask = graph.register("may_ask", 1, 0);
     let tag = epoch.concat(next_slot.value());
     let fields = [("address", next_address.value()), ("tag", tag)];
-    let port = slice(&graph, "rd_req", start, *may_ask, &fields, link.rd_req_ready);
+    let port = slice(&graph, "rd_req", [start, drops], *may_ask, &fields, link.rd_req_ready);
     let (request_address, request_tag) = (port.fields[0], port.fields[1]);
     let issue = (*may_ask & port.has_room).named("issue");
     let some_left = remaining.connect(start, lines, issue);

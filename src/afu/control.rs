@@ -1,8 +1,8 @@
 //! Control: takes a job, watches it, ends it. A job is done when its last write is acknowledged. On an abort, an error
 //! response or an unexpected response, control stops requests, waits for outstanding responses, and ends the job with
 //! an error. It waits as long as the watchdog allows, or [`DRAIN_CYCLES`] without a watchdog. Then it gives up the
-//! outstanding requests. A request that the link has not accepted by then stays on the port until it is accepted, even
-//! during later jobs.
+//! outstanding requests. A request that is on the port by then stays there until the link accepts it, even during later
+//! jobs; no other request follows it.
 
 use std::sync::Arc;
 
@@ -59,8 +59,8 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let busy = (*running | *draining).named("busy");
     let accept = (start & !busy).named("accept");
 
-    // The job, held from its start; everything downstream begins a cycle later. The addresses, which are wide, are
-    // taken in every cycle without a job, so that they do not depend on `start`.
+    // The job is held from its start; everything downstream begins one cycle later. The addresses are wide, so they are
+    // loaded in every cycle without a job and do not depend on `start`.
     let job_source = graph.data_register("job_source", ADDRESS_BITS);
     job_source.next_if(!busy, source);
     let job_destination = graph.data_register("job_destination", ADDRESS_BITS);
@@ -159,6 +159,7 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     graph.output("error", error.value());
     graph.output("begin_job", begin.value());
     graph.output("run", run.value());
+    graph.output("given_up", given_up.value());
     graph.output("job_source", job_source.value());
     graph.output("job_destination", job_destination.value());
     graph.output("job_count", job_count.value());

@@ -33,6 +33,7 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
 
     let start = graph.input("start", 1);
     let run = graph.input("run", 1);
+    let drops = (start | graph.input("given_up", 1)).named("drops_requests");
     let destination = graph.input("destination", ADDRESS_BITS);
     let epoch = graph.input("epoch", EPOCH_BITS);
     let line_valid = graph.input("line_valid", 1);
@@ -83,7 +84,7 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
     } else {
         goes
     };
-    in_word.next(!start & (send | (*in_word & !room_at_port)));
+    in_word.next(!drops & (send | (*in_word & !room_at_port)));
     let access =
         Access { write: line_valid, write_index: tail.value(), line, read, read_index: head.value(), advance: send };
     let word = line_memory(&graph, spec, "finished", depth, &access)?;
@@ -92,7 +93,7 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
     let word_tag = graph.data_register("word_tag", spec.tag_bits());
     word_tag.next_if(send, epoch.concat(next_slot.value()));
     let fields = [("address", word_address.value()), ("tag", word_tag.value()), ("data", word)];
-    let port = slice(&graph, "wr_req", start, *in_word, &fields, link.wr_req_ready);
+    let port = slice(&graph, "wr_req", [start, drops], *in_word, &fields, link.wr_req_ready);
     let [request_address, request_tag, request_data] = [0, 1, 2].map(|field| port.fields[field]);
     room_at_port.drive(port.has_room);
     next_address.next_if(start | send, start.select(destination, next_address.plus(1)));

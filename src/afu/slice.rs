@@ -18,12 +18,12 @@ pub(super) struct Slice<'g> {
 }
 
 /// A slice in front of the `port` that takes a request when it is `ready`. A request enters when it is `valid` and
-/// there is room. `fields` are the names and values of its parts. A request that is still at the port at `start`
-/// belongs to an earlier job and stays until it is taken; one behind it is dropped.
+/// there is room. `fields` are the names and values of its parts. A request that is at the port when its job is given up
+/// stays until it is taken, even during the next job. One behind it never reaches the port, because the slice `drops` it.
 pub(super) fn slice<'g>(
     graph: &'g Graph,
     port: &str,
-    start: Signal<'g>,
+    [start, drops]: [Signal<'g>; 2],
     valid: Signal<'g>,
     fields: &[(&str, Signal<'g>)],
     ready: Signal<'g>,
@@ -31,7 +31,7 @@ pub(super) fn slice<'g>(
     let at_port = graph.register(&format!("{port}_valid"), 1, 0);
     let spare = graph.register(&format!("{port}_spare_valid"), 1, 0);
     let moves = (!*at_port | ready).named(&format!("{port}_moves"));
-    let behind = (!start & (*spare | valid)).named(&format!("{port}_next_valid"));
+    let behind = (!drops & (*spare | valid)).named(&format!("{port}_next_valid"));
     at_port.next(behind | !moves);
     spare.next(behind & !moves);
     let fields = fields

@@ -61,6 +61,7 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, B
     let control = graph.instance("control", &control, &control_inputs);
     let begin = control.output("begin_job");
     let run = control.output("run");
+    let given_up = control.output("given_up");
     let job_epoch = control.output("job_epoch");
 
     let mut credits_inputs = told_to_credits.clone();
@@ -72,6 +73,7 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, B
     collector_inputs.extend([
         ("start", begin),
         ("run", run),
+        ("given_up", given_up),
         ("source", control.output("job_source")),
         ("lines", control.output("lines")),
         ("epoch", job_epoch),
@@ -123,6 +125,7 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, B
     dispatcher_inputs.extend([
         ("start", begin),
         ("run", run),
+        ("given_up", given_up),
         ("destination", control.output("job_destination")),
         ("epoch", job_epoch),
         ("line_valid", packer.output("line_valid")),

@@ -14,6 +14,7 @@ module collector (
   input wire        rst,
   input wire        start,
   input wire        run,
+  input wire        given_up,
   input wire [57:0] source,
   input wire [31:0] lines,
   input wire [3:0]  epoch,
@@ -33,7 +34,7 @@ module collector (
   wire        idle;
   wire        unexpected;
   contact_afu_collector dut (
-    .clk(clk), .rst(rst), .start(start), .run(run), .source(source), .lines(lines), .epoch(epoch), .taken(taken),
+    .clk(clk), .rst(rst), .start(start), .run(run), .given_up(given_up), .source(source), .lines(lines), .epoch(epoch), .taken(taken),
     .place(place), .rd_req_ready(rd_req_ready), .rd_rsp_valid(rd_rsp_valid), .rd_rsp_tag(rd_rsp_tag),
     .rd_rsp_data(rd_rsp_data), .rd_rsp_error(rd_rsp_error),
     .rd_req_valid(rd_req_valid), .rd_req_address(rd_req_address), .rd_req_tag(rd_req_tag),
@@ -65,6 +66,7 @@ module collector (
 
   reg        begun = 1'b0;
   reg        after_reset = 1'b0;
+  reg        over = 1'b0;   // the job was given up
   reg        ran = 1'b0;
   reg        started = 1'b0;
   reg [57:0] job_source;
@@ -98,6 +100,7 @@ module collector (
   reg        was_nothing;
   always @(posedge clk) begin
     after_reset <= after_reset | rst;
+    over <= ~rst & ~start & (over | given_up);
     ran <= run;
     started <= start;
     begun <= ~rst & (begun | start);
@@ -123,7 +126,8 @@ module collector (
 
   always @* begin
     assume (after_reset | rst);
-    assume (~run | (begun & ~start));
+    assume (~run | (begun & ~start & ~given_up & ~over));
+    assume (~start | ~given_up);
     assume (~start | ~ran);
     assume (~taken | (announced != 3'd0 & begun));
     if (begun & ~start) assume (epoch == job_epoch);
@@ -138,7 +142,7 @@ module collector (
   wire [3:0] coming = aged(\dut.answered ? 4'd1 << \dut.arrived_age : 4'd0, \dut.oldest );
   wire [3:0] filled = offered | come | coming;
   wire [3:0] last_offered = 4'd1 << (\dut.oldest - 2'd1);
-  always @* if (begun & ~start & ~rst & after_reset) begin
+  always @* if (begun & ~start & ~given_up & ~over & ~rst & after_reset) begin
     never_more: assert (\dut.reserved <= 3'd4);
     slots_in_order: assert (\dut.next_slot - head + {1'b0, \dut.freed } == \dut.reserved [1:0]);
     tags_in_order: assert ((~spare | (rd_req_valid & \dut.rd_req_spare_tag == {job_epoch, \dut.next_slot - 2'd1}))
@@ -171,6 +175,10 @@ module collector (
   always @(posedge clk) begin
     held <= rd_req_valid & ~rd_req_ready & ~rst;
     was <= {rd_req_address, rd_req_tag};
+  end
+  // Once the job is given up, only the request that stands on the port is left.
+  always @* if (over & ~start & ~rst) begin
+    nothing_follows: assert (~spare & ~\dut.may_ask & (~rd_req_valid | held));
   end
   always @* if (held & ~rst) begin
     stable: assert (rd_req_valid & {rd_req_address, rd_req_tag} == was);

@@ -13,6 +13,7 @@ module dispatcher (
   input wire        rst,
   input wire        start,
   input wire        run,
+  input wire        given_up,
   input wire [57:0] destination,
   input wire [3:0]  epoch,
   input wire        line_valid,
@@ -32,7 +33,7 @@ module dispatcher (
   wire        unexpected;
   wire        empty;
   contact_afu_dispatcher dut (
-    .clk(clk), .rst(rst), .start(start), .run(run), .destination(destination), .epoch(epoch),
+    .clk(clk), .rst(rst), .start(start), .run(run), .given_up(given_up), .destination(destination), .epoch(epoch),
     .line_valid(line_valid), .line(line),
     .wr_req_ready(wr_req_ready), .wr_rsp_valid(wr_rsp_valid), .wr_rsp_tag(wr_rsp_tag), .wr_rsp_error(wr_rsp_error),
     .wr_req_valid(wr_req_valid), .wr_req_address(wr_req_address), .wr_req_tag(wr_req_tag), .wr_req_data(wr_req_data),
@@ -72,6 +73,7 @@ module dispatcher (
   // A job has begun since the last reset; its destination and epoch.
   reg        begun = 1'b0;
   reg        after_reset = 1'b0;
+  reg        over = 1'b0;   // the job was given up
   reg        ran = 1'b0;
   reg [57:0] job_destination;
   reg [3:0]  job_epoch;
@@ -103,6 +105,7 @@ module dispatcher (
   reg        started = 1'b0;
   always @(posedge clk) begin
     after_reset <= after_reset | rst;
+    over <= ~rst & ~start & (over | given_up);
     ran <= run;
     started <= start;
     begun <= ~rst & (begun | start);
@@ -125,7 +128,8 @@ module dispatcher (
 
   always @* begin
     assume (after_reset | rst);
-    assume (~run | (begun & ~start));
+    assume (~run | (begun & ~start & ~given_up & ~over));
+    assume (~start | ~given_up);
     assume (~start | ~ran);
     if (begun & ~start) assume (epoch == job_epoch);
     assume (~line_valid | (begun & ~start & (\dut.stored != LINES | \dut.take )));
@@ -135,7 +139,7 @@ module dispatcher (
   wire [3:0] come = aged(\dut.came , \dut.oldest );
   wire [3:0] coming = aged(\dut.answered ? 4'd1 << \dut.arrived_age : 4'd0, \dut.oldest );
   wire [3:0] busy = on_port | waiting | arriving | come | coming;
-  always @* if (begun & ~start & ~rst & after_reset) begin
+  always @* if (begun & ~start & ~given_up & ~over & ~rst & after_reset) begin
     fifo_fits: assert (\dut.stored <= LINES);
     fifo_counts: assert (\dut.tail - \dut.head == \dut.stored [$clog2(`LINES)-1:0]);
     ready_is_right: assert (\dut.ready == (\dut.stored != 0));
@@ -168,6 +172,10 @@ module dispatcher (
   always @(posedge clk) begin
     held <= wr_req_valid & ~wr_req_ready & ~rst;
     was <= {wr_req_address, wr_req_tag, wr_req_data};
+  end
+  // Once the job is given up, only the request that stands on the port is left.
+  always @* if (over & ~start & ~rst) begin
+    nothing_follows: assert (~spare & ~word & ~\dut.may_send & (~wr_req_valid | held));
   end
   always @* if (held & ~rst) begin
     stable: assert (wr_req_valid & {wr_req_address, wr_req_tag, wr_req_data} == was);

@@ -160,3 +160,29 @@ fn a_link_that_accepts_nothing_does_not_keep_a_job() {
         }
     }
 }
+
+/// When the link accepts again after a job was given up, it gets the requests that stood on its ports, and no others: the
+/// host may use the job's memory for something else.
+#[test]
+fn nothing_follows_a_request_that_was_given_up() {
+    for at in [2, 5, 11, 40, 60] {
+        let mut bench = Bench::new(3, 8, 1);
+        bench.set("watchdog", WATCHDOG);
+        bench.start(600, 1);
+        for _ in 0..at {
+            bench.cycle();
+        }
+        bench.accepts = false;
+        bench.finish();
+        assert_eq!(bench.get("error"), code(JobError::Watchdog), "cycle {at}");
+        let stood = (bench.get("rd_req_valid") as usize, bench.get("wr_req_valid") as usize);
+        let before = (bench.reads.len(), bench.writes.len());
+        bench.answers = false;
+        bench.accepts = true;
+        for _ in 0..20 {
+            bench.cycle();
+        }
+        let came = (bench.reads.len() - before.0, bench.writes.len() - before.1);
+        assert_eq!(came, stood, "cycle {at}: reads and writes after the end");
+    }
+}

@@ -90,7 +90,7 @@ fn around(latency: u32) -> [Proof; 6] {
     let one_job = &["PAIRS=3", "ONE_JOB"];
     [
         of("credits", "credits", Inductive(8 + latency)),
-        of("any link, any host", "line_port", Bounded(17 + 2 * latency)).with(&["PAIRS=3"]),
+        of("any link, any host", "line_port", Bounded(21 + 2 * latency)).with(&["PAIRS=3"]),
         of("a job of one pair", "line_port", Bounded(42 + 2 * latency)).with(&["PAIRS=1", "ONE_JOB"]),
         of("one job", "line_port", Bounded(43 + 2 * latency)).with(one_job),
         of("a job ends", "line_port", Bounded(55 + 2 * latency))

@@ -46,7 +46,8 @@ fn ports_md_says_all_that_a_stranger_needs() {
 fn the_cocotb_bench_can_fail() {
     for (file, old, new, fault) in [
         ("contact_afu_packer.v", " line <= {", " line <= 512'd4 ^ {", "line 0: "),
-        ("contact_afu_collector.v", "rd_req_address <=", "rd_req_address <= 58'd1 +", "a read of line "),
+        ("contact_afu_collector.v", "rd_req_address <=", "rd_req_address <= 58'd1 +", "a read of line 1, not 2"),
+        ("PORTS.md", "started in the first ", "started in the first 9", "begun before the delay lines are filled"),
         ("PORTS.md", "- D = B + ", "- D = B + 1", "D - B is not 1"),
         ("PORTS.md", "| 31:0 | `pos_x`", "| 63:32 | `pos_x`", "line 0: "),
     ] {

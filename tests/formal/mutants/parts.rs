@@ -95,6 +95,13 @@ const COLLECTOR: Rows = &[
         5,
         "stable",
     ),
+    (
+        "a request follows one that was given up",
+        "wire drops_requests = start | given_up;",
+        "wire drops_requests = start;",
+        6,
+        "nothing_follows",
+    ),
 ];
 
 const DISPATCHER: Rows = &[
@@ -175,6 +182,13 @@ const DISPATCHER: Rows = &[
         "wr_req_valid <= wr_req_next_valid;",
         7,
         "stable",
+    ),
+    (
+        "a request follows one that was given up",
+        "wire drops_requests = start | given_up;",
+        "wire drops_requests = start;",
+        5,
+        "nothing_follows",
     ),
 ];
 

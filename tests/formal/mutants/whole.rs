@@ -194,7 +194,15 @@ const PORT_PACKER: Rows = &[
     ),
 ];
 
-const ENDS: Rows = &[("acknowledgements are not counted", "(goes ^ answered)", "goes", 36, "ends")];
+const ANY_COLLECTOR: Rows = &[(
+    "a request follows one that was given up",
+    "wire drops_requests = start | given_up;",
+    "wire drops_requests = start;",
+    20,
+    "rd_in_order",
+)];
+
+const ENDS: Rows = &[("acknowledgements are not counted", "(goes ^ answered)", "goes", 55, "ends")];
 
 pub const TABLES: &[(&str, &str, Rows)] = &[
     ("credits", "contact_afu_control.v", CONTROL),
@@ -208,5 +216,6 @@ pub const TABLES: &[(&str, &str, Rows)] = &[
     ("one job", "contact_afu_dispatcher.v", PORT_DISPATCHER),
     ("one job", "scpu_slot.v", PORT_SLOT),
     ("one job", "contact_afu_packer.v", PORT_PACKER),
+    ("any link, any host", "contact_afu_collector.v", ANY_COLLECTOR),
     ("a job ends", "contact_afu_dispatcher.v", ENDS),
 ];
