@@ -108,8 +108,8 @@ fn every_other(latency: u32) -> [Proof; 4] {
     [
         of("credits at interval 2", Design::EveryOther, "credits", Inductive(8 + latency)),
         of("credits of three at interval 2", three, "credits", Inductive(8 + latency)),
-        of("one job at interval 2", three, "line_port", Bounded(44 + 2 * latency)).with(one_job),
-        of("jobs at interval 2 are whole", three, "line_port", Reached(44 + 2 * latency)).with(one_job),
+        of("one job at interval 2", three, "line_port", Bounded(46 + 2 * latency)).with(one_job),
+        of("jobs at interval 2 are whole", three, "line_port", Reached(46 + 2 * latency)).with(one_job),
     ]
 }
 
