@@ -18,8 +18,8 @@ pub(super) struct Slice<'g> {
 }
 
 /// A slice in front of the `port` that takes a request when it is `ready`. A request enters when it is `valid` and
-/// there is room. `fields` are the names and values of its parts. A request that is at the port when its job is given up
-/// stays until it is taken, even during the next job. One behind it never reaches the port, because the slice `drops` it.
+/// there is room. `fields` are the names and values of its parts. A request that is at the port when its job is given
+/// up stays until it is taken, even during the next job. The slice `drops` one behind it.
 pub(super) fn slice<'g>(
     graph: &'g Graph,
     port: &str,

@@ -161,8 +161,8 @@ fn a_link_that_accepts_nothing_does_not_keep_a_job() {
     }
 }
 
-/// When the link accepts again after a job was given up, it gets the requests that stood on its ports, and no others: the
-/// host may use the job's memory for something else.
+/// When the link accepts again after a job was given up, it gets the requests that stood on its ports, and no others:
+/// the host may use the job's memory for something else.
 #[test]
 fn nothing_follows_a_request_that_was_given_up() {
     for at in [2, 5, 11, 40, 60] {
