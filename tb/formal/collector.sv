@@ -6,6 +6,7 @@
 // The link may send responses that were never requested. An abandoned request may still be on the port when the next
 // job begins.
 //
+// Assumed of control: nothing runs once the job is given up.
 // Assumed here and proven elsewhere: a line is taken only when it was announced (credits.sv: takes_a_line).
 `default_nettype none
 
@@ -34,7 +35,8 @@ module collector (
   wire        idle;
   wire        unexpected;
   contact_afu_collector dut (
-    .clk(clk), .rst(rst), .start(start), .run(run), .given_up(given_up), .source(source), .lines(lines), .epoch(epoch), .taken(taken),
+    .clk(clk), .rst(rst), .start(start), .run(run), .given_up(given_up), .source(source), .lines(lines),
+    .epoch(epoch), .taken(taken),
     .place(place), .rd_req_ready(rd_req_ready), .rd_rsp_valid(rd_rsp_valid), .rd_rsp_tag(rd_rsp_tag),
     .rd_rsp_data(rd_rsp_data), .rd_rsp_error(rd_rsp_error),
     .rd_req_valid(rd_req_valid), .rd_req_address(rd_req_address), .rd_req_tag(rd_req_tag),

@@ -5,6 +5,7 @@
 // The link may send responses that were never requested. An abandoned request may still be on the port when the next
 // job begins.
 //
+// Assumed of control: nothing runs once the job is given up.
 // Assumed here and proven elsewhere: a line arrives only when there is room for it (credits.sv: fits).
 `default_nettype none
 
