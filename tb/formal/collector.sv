@@ -6,8 +6,8 @@
 // The link may send responses that were never requested. An abandoned request may still be on the port when the next
 // job begins.
 //
-// Assumed of control: nothing runs once the job is given up.
-// Assumed here and proven elsewhere: a line is taken only when it was announced (credits.sv: takes_a_line).
+// Assumed here and proven elsewhere: nothing runs once the job is given up (credits.sv: nothing_runs); a line is taken
+// only when it was announced (credits.sv: takes_a_line).
 `default_nettype none
 
 module collector (

@@ -31,6 +31,7 @@ module credits (
 
   `include "dut.svh"
   (* hierconn *) wire                       \dut.control.begin_job ;
+  (* hierconn *) wire                       \dut.control.given_up ;
   (* hierconn *) wire                       \dut.control.run ;
   (* hierconn *) wire                       \dut.control.running ;
   (* hierconn *) wire                       \dut.control.draining ;
@@ -139,6 +140,8 @@ module credits (
     waits_or_runs: assert (~(\dut.control.run & \dut.control.waits_to_begin )
       & (\dut.control.running | ~(\dut.control.run | \dut.control.waits_to_begin )));
     one_or_other: assert (~(\dut.control.running & \dut.control.draining ));
+    nothing_runs: assert (~\dut.control.given_up
+      | ~(\dut.control.running | \dut.control.run | \dut.control.begin_job ));
     only_in_a_job: assert (\dut.feeder.entered == 2'd0 | (ran[2] & begun));
     runs_without_error: assert (~\dut.control.running | error == 4'd0);
     complete_is_good: assert (~completed | error == 4'd0 | error == 4'd6);

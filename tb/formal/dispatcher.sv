@@ -5,8 +5,8 @@
 // The link may send responses that were never requested. An abandoned request may still be on the port when the next
 // job begins.
 //
-// Assumed of control: nothing runs once the job is given up.
-// Assumed here and proven elsewhere: a line arrives only when there is room for it (credits.sv: fits).
+// Assumed here and proven elsewhere: nothing runs once the job is given up (credits.sv: nothing_runs); a line arrives
+// only when there is room for it (credits.sv: fits).
 `default_nettype none
 
 module dispatcher (

@@ -29,6 +29,7 @@ const CONTROL: Rows = &[
         "waits_or_runs",
     ),
     ("ends with pairs inside", "draining & stopped & none_inside_heard & ", "draining & ", 20, "idle_is_empty"),
+    ("runs on when the watchdog expires", "expired ? 4'd4", "1'b0 ? 4'd4", 17, "nothing_runs"),
     (
         "half a line is none",
         "rounded_count = {1'b0, count} + 33'd1;",
