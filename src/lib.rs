@@ -62,6 +62,7 @@ pub mod query;
 pub mod record;
 pub mod report;
 pub mod scene;
+pub mod spheres;
 pub mod store;
 pub mod study;
 #[cfg(feature = "cosim")]

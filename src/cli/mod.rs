@@ -24,6 +24,7 @@ mod paper;
 mod progress;
 mod rtl;
 mod scene;
+mod spheres;
 mod study;
 #[cfg(feature = "cosim")]
 mod sweep;
@@ -59,6 +60,7 @@ enum Command {
     #[cfg(feature = "cosim")]
     Cosim(cosim::Cosim),
     Pairs(pairs::Pairs),
+    Spheres(spheres::Spheres),
     #[cfg(feature = "cosim")]
     Sweep(sweep::Sweep),
     #[cfg(feature = "cosim")]
@@ -93,6 +95,7 @@ fn run(program: &Program) -> Result<(), Failure> {
         #[cfg(feature = "cosim")]
         Command::Cosim(options) => cosim::run(options),
         Command::Pairs(options) => pairs::run(options),
+        Command::Spheres(options) => spheres::run(options),
         #[cfg(feature = "cosim")]
         Command::Sweep(options) => sweep::run(options),
         #[cfg(feature = "cosim")]

@@ -14,7 +14,7 @@ use super::Program;
 /// The commands as `afu help` groups them. Commands that are not built in are left out there.
 pub const GROUPS: [(&str, &[&str]); 4] = [
     ("Hardware", &["rtl", "synth"]),
-    ("Simulation", &["cosim", "sweep", "pairs"]),
+    ("Simulation", &["cosim", "sweep", "pairs", "spheres"]),
     ("Studies", &["accuracy", "choose", "hard", "paper", "scene", "merge"]),
     ("This program", &["doctor", "completions", "help"]),
 ];

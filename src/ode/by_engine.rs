@@ -7,11 +7,13 @@ use crate::query::{ContactRecord, Flow, PairRecord};
 impl World {
     /// Two spheres as a record: each number rounded to binary32 once.
     pub fn record(&self, [first, second]: [Sphere; 2]) -> PairRecord {
-        let sphere = |sphere| {
-            let [x, y, z] = self.position(sphere);
-            [x, y, z, self.radius(sphere)].map(|v| v as f32)
-        };
-        PairRecord::from_spheres(sphere(first), sphere(second))
+        PairRecord::from_spheres(self.rounded(first), self.rounded(second))
+    }
+
+    /// The centre and the radius of a sphere, each number rounded to binary32 once.
+    pub(super) fn rounded(&self, sphere: Sphere) -> [f32; 4] {
+        let [x, y, z] = self.position(sphere);
+        [x, y, z, self.radius(sphere)].map(|v| v as f32)
     }
 
     /// Every present contact, by an engine that replaces ODE's collider. The candidates go in one batch, rounded to
@@ -42,7 +44,7 @@ impl World {
 }
 
 /// The contact in an engine's answer; `None` if the spheres do not touch.
-fn checked(first: Sphere, second: Sphere, answer: ContactRecord) -> Result<Option<Contact>, Error> {
+pub(super) fn checked(first: Sphere, second: Sphere, answer: ContactRecord) -> Result<Option<Contact>, Error> {
     let (first, second) = (first.0, second.0);
     let flags = answer.flags();
     if !matches!(answer.flow(), Some(flow) if flow != Flow::Invalid) {

@@ -2,7 +2,8 @@
 //! spheres, and an [`Engine`](crate::kernel::Engine) (a kernel in software, an AFU) that replaces this collision.
 //!
 //! An [`Ode`] is the started library, and a [`World`] holds spheres. A step of a simulation is: [`World::add_force`],
-//! then [`World::contacts`] or [`World::contacts_by`] with an engine, [`World::join`] for each contact,
+//! then [`World::contacts`], [`World::contacts_by`] with an engine, or [`World::contacts_in`] with a space of its own,
+//! [`World::join`] for each contact,
 //! [`World::step`]. [`Diamond`] is the paper's simulation, and [`Benchmark`] the paper's measurement in it.
 //!
 //! # Licence
@@ -26,6 +27,7 @@ mod library;
 mod motion;
 mod numbers;
 mod replace;
+mod space;
 mod sphere_pair;
 mod sys;
 mod world;
@@ -37,5 +39,6 @@ pub use effects::{Sleep, WallTouch};
 pub use error::Error;
 pub use library::{Collider, Ode};
 pub use motion::Motion;
+pub use space::SearchSpace;
 pub use sphere_pair::SpherePair;
 pub use world::{Sphere, World};

@@ -283,7 +283,7 @@ impl World {
     }
 
     /// A NaN or a far sphere would end the process in ODE's broad phase.
-    fn all_in_reach(&self) -> Result<(), Error> {
+    pub(super) fn all_in_reach(&self) -> Result<(), Error> {
         let in_reach = |position: &[f64; 3]| position.iter().all(|v| v.abs() <= LARGEST);
         match self.spheres().find(|&sphere| !in_reach(&self.position(sphere))) {
             None => Ok(()),

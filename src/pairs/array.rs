@@ -1,32 +1,30 @@
-//! Arrays of pairs as NumPy's users have them: of binary16, binary32 or binary64, in either byte order and either
-//! order of indices: n × 8, or n × 2 × 4 if both bodies of a pair have the same shape.
+//! Arrays of pairs, or of spheres, as NumPy's users have them: of binary16, binary32 or binary64, in either byte order
+//! and either order of indices: n × 8, or n × 2 × 4 if both bodies of a pair have the same shape; n × 4 for spheres.
 
 use std::path::Path;
 
+use super::columns::{Columns, Words};
 use super::npy_header::{Header, Problem};
 use super::{FileError, Rounded};
 use crate::count::counted;
 use crate::kernel::widen;
 use crate::number::Format;
-use crate::query::{PairRecord, Query};
 
-/// The pairs of an array, and which numbers had to be rounded to binary32.
-pub fn read(query: Query, file: &Path, bytes: &[u8]) -> Result<(Vec<PairRecord>, Option<Rounded>), FileError> {
-    parse(query, bytes).map_err(|Problem(field, problem)| FileError::Npy { file: file.to_owned(), field, problem })
+/// The records of an array, and which numbers had to be rounded to binary32.
+pub fn read(columns: Columns, file: &Path, bytes: &[u8]) -> Result<(Vec<Words>, Option<Rounded>), FileError> {
+    parse(columns, bytes).map_err(|Problem(field, problem)| FileError::Npy { file: file.to_owned(), field, problem })
 }
 
-fn parse(query: Query, bytes: &[u8]) -> Result<(Vec<PairRecord>, Option<Rounded>), Problem> {
+fn parse(columns: Columns, bytes: &[u8]) -> Result<(Vec<Words>, Option<Rounded>), Problem> {
     let (header, data) = Header::split(bytes)?;
     let number = Number::of(&header.descr)?;
-    // In C order the words of a pair stand together either way; in Fortran order each word of all pairs does.
-    let words = query.shape().inputs.len();
-    // A row of its own for each body, where both have as many words.
-    let rows = if query == Query::SphereSphere { 2 } else { 1 };
+    // In C order the words of a record stand together either way; in Fortran order each word of all records does.
+    let words = columns.len();
     let (count, rows) = match *header.shape.as_slice() {
         [count, of] if of == words as u64 => (count, 1),
-        [count, 2, of] if rows == 2 && 2 * of == words as u64 => (count, 2),
+        [count, 2, of] if columns.bodies == 2 && 2 * of == words as u64 => (count, 2),
         _ => {
-            let split = if rows == 2 { format!(" or [n, 2, {}]", words / 2) } else { String::new() };
+            let split = if columns.bodies == 2 { format!(" or [n, 2, {}]", words / 2) } else { String::new() };
             return Err(Problem("shape", format!("expected [n, {words}]{split}, found {:?}", header.shape)));
         }
     };
@@ -39,24 +37,27 @@ fn parse(query: Query, bytes: &[u8]) -> Result<(Vec<PairRecord>, Option<Rounded>
         return Err(Problem("shape", problem));
     }
     let count = there / (words * size);
-    let mut pairs = Vec::with_capacity(count);
+    let mut records = Vec::with_capacity(count);
     let mut rounded: Option<Rounded> = None;
-    for pair in 0..count {
-        let mut record = PairRecord::default();
-        for (word, (field, to)) in query.shape().names().zip(&mut record.0).enumerate() {
-            let place = if header.fortran_order { fortran_place(word) * count + pair } else { words * pair + word };
+    for index in 0..count {
+        let mut record = Words::default();
+        for (word, (field, to)) in columns.names().zip(&mut record).enumerate() {
+            let place = if header.fortran_order { fortran_place(word) * count + index } else { words * index + word };
             let bits = number.bits(&data[place * size..(place + 1) * size]);
             *to = number.to_binary32(bits);
             if let Some(given) = number.rounded(bits, *to) {
                 let is_beyond = given.is_finite() && f32::from_bits(*to).is_infinite();
                 if is_beyond {
-                    let problem = format!("{given:e}, {field} of pair {pair}, is beyond the largest binary32 number");
+                    let name = columns.record;
+                    let problem =
+                        format!("{given:e}, {field} of {name} {index}, is beyond the largest binary32 number");
                     return Err(Problem("data", problem));
                 }
                 let first = Rounded {
                     numbers: 0,
                     of: (words * count) as u64,
-                    pair: pair as u64,
+                    record: columns.record,
+                    index: index as u64,
                     field,
                     given,
                     taken: f32::from_bits(*to),
@@ -64,9 +65,9 @@ fn parse(query: Query, bytes: &[u8]) -> Result<(Vec<PairRecord>, Option<Rounded>
                 rounded.get_or_insert(first).numbers += 1;
             }
         }
-        pairs.push(record);
+        records.push(record);
     }
-    Ok((pairs, rounded))
+    Ok((records, rounded))
 }
 
 /// The numbers of an array.

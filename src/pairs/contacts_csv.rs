@@ -72,12 +72,32 @@ pub fn write(out: impl Write, contacts: impl Iterator<Item = (u32, ContactRecord
     out.write_record(COLUMNS)?;
     for (pair, contact) in contacts {
         out.write_field(pair.to_string())?;
-        out.write_field(Flow::ALL[(contact.flags() >> 1 & 3) as usize].name())?;
-        for number in contact.numbers() {
-            out.write_field(table::decimal(number))?;
-        }
+        write_contact(&mut out, contact)?;
         out.write_field((contact.flags() >> 3 & 1).to_string())?;
         out.write_record(None::<&[u8]>)?;
     }
     out.flush()
+}
+
+/// Writes spheres that touch, by their two numbers, with their contacts.
+pub fn write_touching(out: impl Write, touching: impl Iterator<Item = ([u32; 2], ContactRecord)>) -> io::Result<()> {
+    let mut out = csv::Writer::from_writer(out);
+    out.write_record(["first", "second"].iter().chain(&COLUMNS[FLOW..INVALID]))?;
+    for (numbers, contact) in touching {
+        for number in numbers {
+            out.write_field(number.to_string())?;
+        }
+        write_contact(&mut out, contact)?;
+        out.write_record(None::<&[u8]>)?;
+    }
+    out.flush()
+}
+
+/// The fields from the flow to the depth.
+fn write_contact(out: &mut csv::Writer<impl Write>, contact: ContactRecord) -> io::Result<()> {
+    out.write_field(Flow::ALL[(contact.flags() >> 1 & 3) as usize].name())?;
+    for number in contact.numbers() {
+        out.write_field(table::decimal(number))?;
+    }
+    Ok(())
 }

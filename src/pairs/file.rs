@@ -1,5 +1,6 @@
 //! Reading and writing by file name.
 
+use super::columns::{Columns, Words};
 use super::{FileError, Set, SetError, array, contacts_csv, npy, pairs_csv};
 use crate::files;
 use crate::query::{CONTACT_WORDS, ContactRecord, PairRecord, Query};
@@ -8,9 +9,11 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 
-const PAIR_TYPE: &str = "<f4";
+const NUMBER_TYPE: &str = "<f4";
 /// Words of a contact with its pair's number.
 const HIT_WORDS: usize = CONTACT_WORDS + 1;
+/// Words of a contact with the numbers of its two spheres.
+const TOUCHING_WORDS: usize = CONTACT_WORDS + 2;
 const CONTACT_TYPE: &str = "<u4";
 
 /// The formats a file can have.
@@ -43,9 +46,11 @@ pub struct Rounded {
     pub numbers: u64,
     /// The number of numbers in the file.
     pub of: u64,
-    /// The pair of the first.
-    pub pair: u64,
-    /// The field of the pair.
+    /// `pair` or `sphere`.
+    pub record: &'static str,
+    /// The number of the first such record.
+    pub index: u64,
+    /// The field of the record.
     pub field: &'static str,
     /// Its value in the file.
     pub given: f64,
@@ -55,11 +60,11 @@ pub struct Rounded {
 
 impl fmt::Display for Rounded {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { numbers, of, pair, field, given, taken } = *self;
+        let Self { numbers, of, record, index, field, given, taken } = *self;
         let taken = f64::from(taken);
         let was = if numbers == 1 { "was" } else { "were" };
         write!(f, "{numbers} of {of} numbers {was} rounded to binary32; ")?;
-        write!(f, "the first is {field} of pair {pair}: {given} became {taken}")
+        write!(f, "the first is {field} of {record} {index}: {given} became {taken}")
     }
 }
 
@@ -115,11 +120,16 @@ pub fn read_pairs(query: Query, file: &Path) -> Result<Vec<PairRecord>, FileErro
 /// # Errors
 /// Returns the errors of [`read_pairs`].
 pub fn read_with_notes(query: Query, file: &Path) -> Result<Loaded, FileError> {
-    let (pairs, rounded) = match kind(file)? {
-        Kind::Csv => (pairs_csv::read(query, file, &bytes(file)?)?, None),
-        Kind::Npy => array::read(query, file, &bytes(file)?)?,
-    };
-    Ok(Loaded { pairs, rounded })
+    let (pairs, rounded) = read_records(Columns::of(query), file)?;
+    Ok(Loaded { pairs: pairs.into_iter().map(PairRecord).collect(), rounded })
+}
+
+/// The records of a `.csv` or `.npy` file, and which numbers were rounded.
+pub(crate) fn read_records(columns: Columns, file: &Path) -> Result<(Vec<Words>, Option<Rounded>), FileError> {
+    match kind(file)? {
+        Kind::Csv => Ok((pairs_csv::read(columns, file, &bytes(file)?)?, None)),
+        Kind::Npy => array::read(columns, file, &bytes(file)?),
+    }
 }
 
 /// The contacts of a `.csv` or `.npy` file.
@@ -163,11 +173,18 @@ pub fn read_hits(file: &Path) -> Result<Vec<(u32, ContactRecord)>, FileError> {
 /// # Errors
 /// Returns an error if the name has another ending or the file cannot be written.
 pub fn write_pairs(query: Query, file: &Path, pairs: &[PairRecord]) -> Result<(), FileError> {
+    write_records(Columns::of(query), file, pairs.iter().map(|pair| pair.0))
+}
+
+/// Writes records to a `.csv` or `.npy` file, which is there whole or not at all.
+pub(crate) fn write_records(
+    columns: Columns,
+    file: &Path,
+    records: impl ExactSizeIterator<Item = Words>,
+) -> Result<(), FileError> {
     match kind(file)? {
-        Kind::Csv => write(file, |out| pairs_csv::write(out, query, pairs)),
-        Kind::Npy => write(file, |mut out| {
-            npy::write(&mut out, PAIR_TYPE, query.shape().inputs.len(), pairs.iter().map(|pair| pair.0))
-        }),
+        Kind::Csv => write(file, |out| pairs_csv::write(out, columns, records)),
+        Kind::Npy => write(file, |mut out| npy::write(&mut out, NUMBER_TYPE, columns.len(), records)),
     }
 }
 
@@ -176,7 +193,7 @@ pub fn write_pairs(query: Query, file: &Path, pairs: &[PairRecord]) -> Result<()
 /// # Errors
 /// Returns the errors of `out`.
 pub fn write_pairs_csv(out: impl Write, query: Query, pairs: &[PairRecord]) -> io::Result<()> {
-    pairs_csv::write(out, query, pairs)
+    pairs_csv::write(out, Columns::of(query), pairs.iter().map(|pair| pair.0))
 }
 
 /// Writes contacts to a `.csv` or `.npy` file, which is there whole or not at all.
@@ -206,6 +223,23 @@ pub fn write_hits(file: &Path, hits: &[(u32, ContactRecord)]) -> Result<(), File
     match kind(file)? {
         Kind::Csv => write(file, |out| contacts_csv::write(out, hits.iter().copied())),
         Kind::Npy => write(file, |mut out| npy::write(&mut out, CONTACT_TYPE, HIT_WORDS, hits.iter().map(words))),
+    }
+}
+
+/// Writes spheres that touch to a `.csv` or `.npy` file, which is there whole or not at all. In CSV a row begins with
+/// the numbers of the two spheres; in npy these are the first two of ten words.
+pub(crate) fn write_touching(file: &Path, touching: &[([u32; 2], ContactRecord)]) -> Result<(), FileError> {
+    let words = |([first, second], contact): &([u32; 2], ContactRecord)| {
+        let mut words = [*first; TOUCHING_WORDS];
+        words[1] = *second;
+        words[2..].copy_from_slice(&contact.0);
+        words
+    };
+    match kind(file)? {
+        Kind::Csv => write(file, |out| contacts_csv::write_touching(out, touching.iter().copied())),
+        Kind::Npy => {
+            write(file, |mut out| npy::write(&mut out, CONTACT_TYPE, TOUCHING_WORDS, touching.iter().map(words)))
+        }
     }
 }
 

@@ -17,6 +17,7 @@ mod cli_merge;
 mod cli_paper;
 mod cli_rtl;
 #[cfg(feature = "cosim")]
+mod cli_spheres;
 mod cli_sweep;
 #[cfg(feature = "cosim")]
 mod documented;

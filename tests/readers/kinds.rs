@@ -10,6 +10,7 @@ use contact_afu::config::{self, Config, Profile, Results, Shell};
 use contact_afu::link::{Description, Link, LinkModel};
 use contact_afu::query::ContactRecord;
 use contact_afu::scene::{Plan, Scene, Still};
+use contact_afu::spheres::{self, Search, SphereSet};
 use contact_afu::store::{Key, Store};
 use contact_afu::sweep::{self, SweepResults};
 use contact_afu::synth::{self, Area, Figures};
@@ -71,6 +72,12 @@ fn of_pairs(room: &Path) -> Vec<Kind> {
     let lines: Vec<&[u8]> = corpus.split_inclusive(|&byte| byte == b'\n').take(12).collect();
     let pairs = |path: &Path| pairs::read_pairs(Query::SphereSphere, path).is_ok();
     let records = |path: &Path| pairs::read_contacts(path).is_ok();
+    let first = SphereSet::Gas(5, 300).spheres(3).first;
+    let spheres = |path: &Path| {
+        let search = Search::new(Profile::WIDE.arithmetic(), 24).unwrap();
+        spheres::read_spheres(path)
+            .is_ok_and(|(set, _)| search.candidates(&set, None).counts.invalid <= set.len() as u64)
+    };
     vec![
         Kind {
             name: "pairs.csv",
@@ -91,6 +98,18 @@ fn of_pairs(room: &Path) -> Vec<Kind> {
             ]
             .concat(),
             read: pairs,
+        },
+        Kind {
+            name: "sphere_set.csv",
+            form: Form::Csv,
+            seeds: written("s.csv", &|path| spheres::write_spheres(path, &first).unwrap()),
+            read: spheres,
+        },
+        Kind {
+            name: "sphere_set.npy",
+            form: Form::Bytes,
+            seeds: written("s.npy", &|path| spheres::write_spheres(path, &first).unwrap()),
+            read: spheres,
         },
         Kind {
             name: "contacts.csv",

@@ -1,7 +1,9 @@
 //! Simulations with contacts from different sources, and the deviations between them.
 
-use contact_afu::kernel::Engine;
-use contact_afu::ode::{Collider, Ode, SpherePair, Touch, World};
+use contact_afu::kernel::{Engine, Reference};
+use contact_afu::number::Format;
+use contact_afu::ode::{Collider, Ode, SearchSpace, SpherePair, Touch, World};
+use contact_afu::query::Fields;
 
 use super::scenes::{Build, Point, Scene, dot};
 
@@ -13,6 +15,8 @@ pub enum Contacts<'a> {
     Rounded,
     /// An engine instead of the collider, with the same rounded inputs.
     By(&'a mut dyn Engine),
+    /// A search with an engine instead of ODE's space and collider, with the same rounded inputs.
+    In(&'a mut SearchSpace),
 }
 
 /// A world after a step.
@@ -48,6 +52,21 @@ fn rounded(world: &World, pair: &mut SpherePair) -> Vec<Touch> {
     touches
 }
 
+fn pairs(touches: &[Touch]) -> Vec<[usize; 2]> {
+    touches.iter().map(|touch| [touch.first.index(), touch.second.index()]).collect()
+}
+
+/// The spheres that touch after rounding to binary32, in the profile `wide`, among all pairs.
+fn brute_force(world: &World) -> Vec<[usize; 2]> {
+    let reference = Reference::new(Format::WIDE, Fields::HIT);
+    let touch = &|first, second| reference.run(&world.record([first, second])).is_contact();
+    let touching = world.spheres().flat_map(|first| {
+        let others = world.spheres().skip(first.index() + 1).filter(move |second| touch(first, *second));
+        others.map(move |second| [first.index(), second.index()])
+    });
+    touching.collect()
+}
+
 /// The states after each of `steps` steps.
 pub fn run(build: Build, steps: usize, mut contacts: Contacts<'_>) -> Vec<State> {
     let own = !matches!(contacts, Contacts::By(_));
@@ -58,6 +77,11 @@ pub fn run(build: Build, steps: usize, mut contacts: Contacts<'_>) -> Vec<State>
     while states.len() < steps {
         let touches = match (&mut contacts, &mut pair) {
             (Contacts::By(engine), _) => scene.world.contacts_by(*engine).unwrap(),
+            (Contacts::In(space), _) => {
+                let touches = scene.world.contacts_in(space).unwrap();
+                assert_eq!(pairs(&touches), brute_force(&scene.world), "step {}", states.len());
+                touches
+            }
             (Contacts::Rounded, Some(pair)) => rounded(&scene.world, pair),
             _ => scene.world.contacts().unwrap(),
         };

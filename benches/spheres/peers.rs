@@ -1,0 +1,73 @@
+//! Other libraries that find contacts: ODE's spaces with its collider, parry3d's tree of boxes with its contacts.
+
+use std::error::Error;
+
+use contact_afu::ode::{Collider, Ode, World};
+use contact_afu::spheres::Spheres;
+
+use super::Column;
+
+/// The columns of this build. ODE's spheres cannot be points, so probes have no column of it.
+pub fn columns(spheres: &Spheres) -> Result<Vec<Column<'_>>, Box<dyn Error>> {
+    let ode = ode(spheres)?;
+    Ok(vec![
+        ode,
+        #[cfg(feature = "parry")]
+        parry(spheres),
+    ])
+}
+
+fn ode(spheres: &Spheres) -> Result<Column<'_>, Box<dyn Error>> {
+    const NAME: &str = "ODE's hash space, `dCollide`";
+    if spheres.second.is_some() {
+        return Ok(Column::new(NAME, || 0));
+    }
+    let ode = Ode::start(Collider::Own)?;
+    let mut world = World::new(&ode)?;
+    for sphere in &spheres.first {
+        let [x, y, z, r] = sphere.values().map(f64::from);
+        world.add_sphere([x, y, z], r, 1.0)?;
+    }
+    Ok(Column::new(NAME, move || world.contacts().expect("ODE does not fail").len()))
+}
+
+#[cfg(feature = "parry")]
+fn parry(spheres: &Spheres) -> Column<'_> {
+    use parry3d::bounding_volume::Aabb;
+    use parry3d::math::{Pose, Vector};
+    use parry3d::partitioning::{Bvh, BvhBuildStrategy, BvhNode, BvhWorkspace};
+    use parry3d::query;
+    use parry3d::shape::Ball;
+
+    type Balls = Vec<(Pose, Ball)>;
+    let balls = |spheres: &[contact_afu::spheres::Sphere]| -> Balls {
+        let ball = |[x, y, z, r]: [f32; 4]| (Pose::from_translation(Vector::new(x, y, z)), Ball::new(r));
+        spheres.iter().map(|sphere| ball(sphere.values())).collect()
+    };
+    let tree = |balls: &Balls| {
+        let boxes: Vec<Aabb> = balls.iter().map(|(at, ball)| ball.aabb(at)).collect();
+        Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes)
+    };
+    let (first, second) = (balls(&spheres.first), spheres.second.as_deref().map(balls));
+    Column::new("parry3d, trees and contacts", move || {
+        let of_first = tree(&first);
+        let mut contacts = 0;
+        let mut decide = |[i, j]: [u32; 2], others: &Balls| {
+            let ((at, ball), (other_at, other)) = (&first[i as usize], &others[j as usize]);
+            let contact = query::contact(at, ball, other_at, other, 0.0);
+            contacts += usize::from(contact.is_ok_and(|contact| contact.is_some()));
+        };
+        match &second {
+            None => {
+                let mut workspace = BvhWorkspace::default();
+                of_first.traverse_bvtt_single_tree::<false>(&mut workspace, &mut |i, j| decide([i, j], &first));
+            }
+            Some(others) => {
+                let of_others = tree(others);
+                let meets = |one: &BvhNode, other: &BvhNode| one.intersects(other);
+                of_first.leaf_pairs(&of_others, meets).for_each(|(i, j)| decide([i, j], others));
+            }
+        }
+        contacts
+    })
+}

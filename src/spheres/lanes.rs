@@ -1,0 +1,182 @@
+//! The two comparisons of a sphere with the 16 columns of a row, for the instruction sets of a processor.
+
+use super::rows::{ROW, Row};
+use super::{Bounds, Sphere};
+
+/// Compares a sphere with the columns of a row, and returns one bit for each.
+pub(super) trait Lanes: Copy {
+    /// The columns whose box meets `bounds`.
+    fn meeting(self, row: &Row, bounds: &Bounds) -> u16;
+
+    /// The columns whose sphere may touch `sphere`, in binary32 and with a margin: see [`may_touch`].
+    fn near(self, row: &Row, sphere: &Sphere) -> u16;
+}
+
+/// Rounding errors of a squared distance and of a squared sum of radii, many times over: relative, and absolute for
+/// squares that underflow.
+const MARGIN: f32 = 1.0 + 1.0 / (1 << 18) as f32;
+const LEAST: f32 = f32::MIN_POSITIVE;
+
+/// False only if no arithmetic with binary32's precision or more calls these spheres a contact.
+///
+/// Differences and sums are within 2^-23 of the true ones, rounded toward zero or to nearest, so squares are within
+/// some 2^-20. A squared distance that overflows is above every squared sum that does not. A NaN compares as touching.
+#[inline(always)]
+fn may_touch(first: [f32; 4], second: [f32; 4]) -> bool {
+    let [x, y, z] = [0, 1, 2].map(|axis| first[axis] - second[axis]);
+    let sum = first[3] + second[3];
+    let is_apart = (x * x + y * y) + z * z > sum * sum * MARGIN + LEAST;
+    !is_apart
+}
+
+#[inline(always)]
+fn mask(of: impl Fn(usize) -> bool) -> u16 {
+    (0..ROW).fold(0, |mask, column| mask | u16::from(of(column)) << column)
+}
+
+/// Any processor.
+#[derive(Clone, Copy)]
+pub(super) struct Portable;
+
+impl Lanes for Portable {
+    #[inline(always)]
+    fn meeting(self, row: &Row, bounds: &Bounds) -> u16 {
+        let mut meets = [true; ROW];
+        for axis in 0..3 {
+            for (column, meets) in meets.iter_mut().enumerate() {
+                *meets &= (row.low[axis][column] <= bounds.high[axis]) & (bounds.low[axis] <= row.high[axis][column]);
+            }
+        }
+        mask(|column| meets[column])
+    }
+
+    #[inline(always)]
+    fn near(self, row: &Row, sphere: &Sphere) -> u16 {
+        let sphere = sphere.values();
+        mask(|column| may_touch(row.values.map(|value| value[column]), sphere))
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+pub(super) use x86::Avx512;
+
+#[cfg(target_arch = "x86_64")]
+mod x86 {
+    use std::arch::x86_64::*;
+
+    use super::{LEAST, Lanes, MARGIN};
+    use crate::spheres::rows::Row;
+    use crate::spheres::{Bounds, Sphere};
+
+    /// A processor with AVX-512: a row is one register per axis.
+    #[derive(Clone, Copy)]
+    pub(crate) struct Avx512(());
+
+    impl Avx512 {
+        /// `None` if the processor lacks it.
+        pub(crate) fn new() -> Option<Self> {
+            is_x86_feature_detected!("avx512f").then_some(Self(()))
+        }
+    }
+
+    impl Lanes for Avx512 {
+        #[inline(always)]
+        fn meeting(self, row: &Row, bounds: &Bounds) -> u16 {
+            // SAFETY: `new` found the instruction set.
+            unsafe { meeting(row, bounds) }
+        }
+
+        #[inline(always)]
+        fn near(self, row: &Row, sphere: &Sphere) -> u16 {
+            // SAFETY: `new` found the instruction set.
+            unsafe { near(row, sphere) }
+        }
+    }
+
+    #[inline]
+    #[target_feature(enable = "avx512f")]
+    fn meeting(row: &Row, bounds: &Bounds) -> u16 {
+        let mut meets = u16::MAX;
+        for axis in 0..3 {
+            // SAFETY: each array has 16 numbers.
+            let [low, high] =
+                [&row.low[axis], &row.high[axis]].map(|edges| unsafe { _mm512_loadu_epi32(edges.as_ptr()) });
+            meets &= _mm512_cmple_epi32_mask(low, _mm512_set1_epi32(bounds.high[axis]));
+            meets &= _mm512_cmple_epi32_mask(_mm512_set1_epi32(bounds.low[axis]), high);
+        }
+        meets
+    }
+
+    #[inline]
+    #[target_feature(enable = "avx512f")]
+    fn near(row: &Row, sphere: &Sphere) -> u16 {
+        let values = sphere.values();
+        // SAFETY: each array has 16 numbers.
+        let [x, y, z, r] = row.values.each_ref().map(|column| unsafe { _mm512_loadu_ps(column.as_ptr()) });
+        let apart = |column, value| _mm512_sub_ps(column, _mm512_set1_ps(value));
+        let square = |value| _mm512_mul_ps(value, value);
+        let sum = square(_mm512_add_ps(r, _mm512_set1_ps(values[3])));
+        let [x, y, z] = [(x, values[0]), (y, values[1]), (z, values[2])].map(|(c, v)| square(apart(c, v)));
+        let distance = _mm512_add_ps(_mm512_add_ps(x, y), z);
+        let bound = _mm512_add_ps(_mm512_mul_ps(sum, _mm512_set1_ps(MARGIN)), _mm512_set1_ps(LEAST));
+        !_mm512_cmp_ps_mask::<_CMP_GT_OQ>(distance, bound)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::Reference;
+    use crate::number::Format;
+    use crate::pairs::Set;
+    use crate::query::{Fields, Query};
+
+    /// On random, hard and nearly tangent pairs no contact of any arithmetic is put aside, and many others are.
+    #[test]
+    fn no_contact_is_called_apart() {
+        let pairs = [Set::Random(40_000).pairs(5), Set::Hard(40_000).pairs(5)].concat();
+        let references = ["e10f23z", "e10f23zt", "e11f52"]
+            .map(|format| Reference::new(format.parse().expect("a format"), Fields::HIT))
+            .into_iter()
+            .chain([Reference::exact(Fields::HIT), Reference::new(Format::WIDE, Fields::HIT)]);
+        for reference in references {
+            let (contacts, _) = reference.settled(&pairs);
+            let mut apart = 0;
+            for (pair, contact) in pairs.iter().zip(contacts).filter(|(pair, _)| pair.is_valid(Query::SphereSphere)) {
+                let [x1, y1, z1, r1, x2, y2, z2, r2] = pair.values();
+                let may = may_touch([x1, y1, z1, r1], [x2, y2, z2, r2]);
+                assert!(may || !contact.is_contact(), "{pair:?}");
+                apart += u32::from(!may);
+            }
+            assert!(apart > 8_000, "{apart}");
+        }
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[test]
+    fn every_instruction_set_compares_alike() {
+        use crate::kernel::Arithmetic;
+        use crate::spheres::{BoundsRule, Rows};
+
+        let Some(wide) = Avx512::new() else { return };
+        let rule = BoundsRule::new(Arithmetic::Rounded(Format::WIDE), 20).expect("a rule");
+        let pairs = Set::Random(800).pairs(3);
+        let halves = |pair: &crate::query::PairRecord| {
+            let [a, b, c, d, e, f, g, h] = pair.0;
+            [Sphere([a, b, c, d]), Sphere([e, f, g, h])]
+        };
+        let spheres: Vec<_> = pairs.iter().flat_map(halves).collect();
+        let rows = Rows::new(rule, &spheres);
+        let mut bits = [0; 2];
+        for row in &rows.rows {
+            for sphere in &spheres {
+                let bounds = rule.bounds(*sphere);
+                assert_eq!(wide.meeting(row, &bounds), Portable.meeting(row, &bounds));
+                assert_eq!(wide.near(row, sphere), Portable.near(row, sphere), "{sphere:?}");
+                bits[0] += wide.meeting(row, &bounds).count_ones();
+                bits[1] += wide.near(row, sphere).count_ones();
+            }
+        }
+        assert!(bits[0] > 1000 && bits[1] > 1000, "{bits:?}");
+    }
+}
