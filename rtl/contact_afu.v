@@ -114,7 +114,7 @@ module contact_afu #(
 
   // ---- logic ----
   wire [1:0] group = slots_leaves_out[1] ? 2'd2 : slots_leaves_out[0] ? 2'd1 : 2'd0;
-  assign capability = {32'd113, 16'd15, 8'd5, {1'b0, SCPUS[6:0]}};
+  assign capability = {32'd113, 16'd15, 8'd5, 1'b0, SCPUS[6:0]};
 
   contact_afu_control control (
     .clk              (clk),

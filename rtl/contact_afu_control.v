@@ -73,8 +73,8 @@ module contact_afu_control (
   // ---- logic ----
   assign busy = running | draining;
   wire accept = start & ~busy;
-  wire mode_any = |mode;
-  wire refuses = accept & mode_any;
+  wire has_unknown_mode = |mode;
+  wire refuses = accept & has_unknown_mode;
   wire [3:0] cause =
       abort_job ? 4'd1 :
       read_failed_heard ? 4'd2 :
@@ -88,11 +88,11 @@ module contact_afu_control (
   wire drained = draining & stopped & none_inside_heard & (link_idle_heard | given_up);
   wire gives_up = busy & expired & ~completes;
   wire link_idle = read_idle & write_idle;
-  wire not_waiting = read_answered_heard | write_answered_heard | link_idle_before;
+  wire link_is_alive = read_answered_heard | write_answered_heard | link_idle_before;
   wire has_watchdog = |job_watchdog;
   wire begins_to_drain = draining & ~|cycles_draining;
-  wire waits_to_begin_and_not_failing = waits_to_begin & ~failing;
-  wire accept_and_not_refuses = accept & ~refuses;
+  wire still_waits = waits_to_begin & ~failing;
+  wire takes_job = accept & ~refuses;
   wire [3:0] failed = failing ? cause : error;
   wire [3:0] ended = gives_up ? 4'd4 : failed;
   wire [32:0] rounded_count = {1'b0, count} + 33'd1;
@@ -138,14 +138,14 @@ module contact_afu_control (
     end else begin
       if (first_cycle | busy) cycles_busy <= first_cycle ? 64'd1 : (cycles_busy + 64'd1);
       first_cycle <= accept;
-      running <= accept_and_not_refuses | (running & ~completes & ~failing);
+      running <= takes_job | (running & ~completes & ~failing);
       draining <= refuses | failing | (draining & ~drained);
       read_failed_heard <= read_failed;
       write_failed_heard <= write_failed;
       read_unexpected_heard <= read_unexpected;
       write_unexpected_heard <= write_unexpected;
-      begin_job <= (accept | waits_to_begin_and_not_failing) & filled_heard;
-      expired <= busy & ~not_waiting & has_watchdog & (job_watchdog < silence);
+      begin_job <= (accept | still_waits) & filled_heard;
+      expired <= busy & ~link_is_alive & has_watchdog & (job_watchdog < silence);
       run <= (run | begin_job) & running & ~completes & ~failing;
       complete <= run & packer_done & dispatched & link_idle;
       cycles_draining <= draining ? (stopped ? cycles_draining : (cycles_draining + 3'd1)) : 3'd0;
@@ -156,13 +156,13 @@ module contact_afu_control (
       write_answered_heard <= write_answered;
       link_idle_before <= link_idle_heard;
       if (accept | (draining & ~has_watchdog)) job_watchdog <= draining ? 32'h10000 : watchdog;
-      silence <= (not_waiting | ~busy | begins_to_drain) ? 32'd0 : (silence + 32'd1);
-      waits_to_begin <= (accept_and_not_refuses | waits_to_begin_and_not_failing) & ~filled_heard;
+      silence <= (link_is_alive | ~busy | begins_to_drain) ? 32'd0 : (silence + 32'd1);
+      waits_to_begin <= (takes_job | still_waits) & ~filled_heard;
       filled_heard <= filled;
       if (first_cycle | (waits_for_input & run)) cycles_input <= first_cycle ? 64'd0 : (cycles_input + 64'd1);
       if (first_cycle | (waits_for_output & run)) cycles_output <= first_cycle ? 64'd0 : (cycles_output + 64'd1);
       done <= ~accept & (done | completes | drained);
-      error <= accept ? (mode_any ? 4'd5 : 4'd0) : ended;
+      error <= accept ? (has_unknown_mode ? 4'd5 : 4'd0) : ended;
       if (accept) job_count <= count;
       if (accept) job_epoch <= epoch;
       if (accept) job_lines <= rounded_count[32:1];

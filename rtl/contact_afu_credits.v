@@ -30,7 +30,6 @@ module contact_afu_credits (
   // ---- logic ----
   wire [9:0] room_now = room + room_change;
   wire room_for_more = |room_now[9:3];
-  wire [9:0] entered_wide = {8'd0, entered};
   wire [7:0] cycles_to_fill = {1'b0, scpus} + 8'd114;
 
   // ---- at the clock edge ----
@@ -47,9 +46,9 @@ module contact_afu_credits (
     end else begin
       may_enter <= run & room_for_more;
       room <= start ? 10'd512 : room_now;
-      room_change <= ~start ? ((line_left ? 10'd2 : 10'd0) - entered_wide) : 10'd0;
+      room_change <= start ? 10'd0 : ((line_left ? 10'd2 : 10'd0) - {8'd0, entered});
       none_inside <= ~|pairs_inside & ~|entered;
-      pairs_inside <= (pairs_inside + entered_wide) - {8'd0, emerged_now};
+      pairs_inside <= (pairs_inside + {8'd0, entered}) - {8'd0, emerged_now};
       emerged_now <= filled ? emerged : 2'd0;
       filled <= filled | (cycles_since_reset == cycles_to_fill);
       if (~filled) cycles_since_reset <= cycles_since_reset + 8'd1;

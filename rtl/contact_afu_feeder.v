@@ -52,37 +52,33 @@ module contact_afu_feeder (
 
   // ---- logic ----
   wire may_go = phase == turn_phase;
-  wire [2:0] last_wide = {2'd0, last};
   wire [2:0] place_after_0 = {2'd0, place};
-  wire line_done_after_0 = last_wide < place_after_0;
+  wire line_done_after_0 = {2'd0, last} < place_after_0;
   wire present_0 = ~line_done_after_0;
   wire go_0 = may_go_on & may_go & in_hand & present_0;
   wire [2:0] place_after_1 = place_after_0 + 3'd1;
-  wire line_done_after_1 = last_wide < place_after_1;
+  wire line_done_after_1 = {2'd0, last} < place_after_1;
   wire line_waits = any_lines_waiting & any_lines_left;
   wire next_last = one_lines_left ? last_place : 1'b1;
   wire present_1 = ~line_done_after_1 | (|place_after_1[2:1] & line_waits & (next_last >= place_after_1[0]));
-  wire [1:0] turn_within_wide = {1'b0, turn_within};
-  wire [1:0] turn_within_wide_plus_1 = turn_within_wide + 2'd1;
-  wire [1:0] scpus_0_0_wide = {1'b0, scpus[0]};
-  wire [1:0] block_size = (block_is_last & |scpus_0_0_wide) ? scpus_0_0_wide : 2'd2;
-  wire unit_1 = turn_within_wide_plus_1 < block_size;
+  wire [1:0] turn_within_plus_1 = {1'b0, turn_within} + 2'd1;
+  wire [1:0] block_size = (block_is_last & scpus[0]) ? {1'b0, scpus[0]} : 2'd2;
+  wire unit_1 = turn_within_plus_1 < block_size;
   wire go_1 = go_0 & present_1 & unit_1;
-  wire [1:0] turn_within_wide_plus_2 = turn_within_wide + 2'd2;
+  wire [1:0] turn_within_plus_2 = {1'b0, turn_within} + 2'd2;
   wire ends_block =
-      go_1 ? (turn_within_wide_plus_2 == block_size) :
-      go_0 ? (turn_within_wide_plus_1 == block_size) :
-      (turn_within_wide == block_size);
+      go_1 ? (turn_within_plus_2 == block_size) :
+      go_0 ? (turn_within_plus_1 == block_size) :
+      ({1'b0, turn_within} == block_size);
   wire round_ends = ends_block & block_is_last;
   wire round_begins = start | round_ends;
-  wire [7:0] scpus_wide = {1'b0, scpus};
-  wire [7:0] scpus_wide_plus_1 = scpus_wide + 8'd1;
-  wire [7:0] blocks = {1'b0, scpus_wide_plus_1[7:1]};
+  wire [7:0] scpus_plus_1 = {1'b0, scpus} + 8'd1;
+  wire [7:0] blocks = {1'b0, scpus_plus_1[7:1]};
   wire one_block = blocks == 8'd1;
   wire before_last_block = ({1'b0, turn_block} + 8'd2) == blocks;
-  wire next_within = go_1 ? turn_within_wide_plus_2[0] : go_0 ? turn_within_wide_plus_1[0] : turn_within;
+  wire next_within = go_1 ? turn_within_plus_2[0] : go_0 ? turn_within_plus_1[0] : turn_within;
   wire [2:0] place_after_2 = place_after_0 + 3'd2;
-  wire line_done_after_2 = last_wide < place_after_2;
+  wire line_done_after_2 = {2'd0, last} < place_after_2;
   wire line_done = go_1 ? line_done_after_2 : go_0 ? line_done_after_1 : line_done_after_0;
   wire take = line_waits & (line_done | ~in_hand);
   wire lines_left_31_1_any = |lines_left[31:1];
@@ -92,11 +88,10 @@ module contact_afu_feeder (
       (lines_left[0] & ~lines_left_31_1_any);
   wire start_or_take = start | take;
   wire next_place = go_1 ? place_after_2[0] : go_0 ? place_after_1[0] : place;
-  wire [7:0] turn_wide = {1'b0, turn};
-  wire [7:0] turn_plus_1 = turn_wide + 8'd1;
-  wire [7:0] turn_after_1 = (turn_plus_1 >= scpus_wide) ? (turn_plus_1 - scpus_wide) : turn_plus_1;
-  wire [7:0] turn_plus_2 = turn_wide + 8'd2;
-  wire [7:0] turn_after_2 = (turn_plus_2 >= scpus_wide) ? (turn_plus_2 - scpus_wide) : turn_plus_2;
+  wire [7:0] turn_plus_1 = {1'b0, turn} + 8'd1;
+  wire [7:0] turn_after_1 = (turn_plus_1 >= {1'b0, scpus}) ? (turn_plus_1 - {1'b0, scpus}) : turn_plus_1;
+  wire [7:0] turn_plus_2 = {1'b0, turn} + 8'd2;
+  wire [7:0] turn_after_2 = (turn_plus_2 >= {1'b0, scpus}) ? (turn_plus_2 - {1'b0, scpus}) : turn_plus_2;
   wire [6:0] next_turn = (entered == 2'd2) ? turn_after_2[6:0] : (entered == 2'd1) ? turn_after_1[6:0] : turn;
   wire [1023:0] window = {line, held};
   wire [1023:0] aligned_by_1 = first_place ? {256'd0, window[1023:256]} : window;
@@ -164,8 +159,7 @@ module contact_afu_feeder (
   end
 
   // Bits that nothing needs.
-  wire unused = &{1'b0, scpus_wide_plus_1[0], turn_after_1[7], turn_after_2[7],
-    aligned_by_1[1023:512]};
+  wire unused = &{1'b0, scpus_plus_1[0], turn_after_1[7], turn_after_2[7], aligned_by_1[1023:512]};
 
 endmodule
 

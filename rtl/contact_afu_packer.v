@@ -41,7 +41,7 @@ module contact_afu_packer (
   reg [255:0] entering_0;
   reg [255:0] filling_0;
   reg emptied;
-  reg start_or_flushes_or_fills_d1;
+  reg empties_d1;
   reg first_place;
   reg [1:0] carried;
   reg [31:0] contact_count;
@@ -53,15 +53,18 @@ module contact_afu_packer (
 
   // ---- logic ----
   wire [1:0] leaves_now = filled_here ? leaves : 2'd0;
-  wire [1:0] place_wide = {1'b0, place};
-  wire [1:0] place_behind = leaves_now[1] ? (place_wide + 2'd2) : leaves_now[0] ? (place_wide + 2'd1) : place_wide;
+  wire [1:0] place_behind =
+      leaves_now[1] ? ({1'b0, place} + 2'd2) :
+      leaves_now[0] ? ({1'b0, place} + 2'd1) :
+      {1'b0, place};
   wire fills = place_behind >= 2'd2;
   wire flushes = all_seen & place & ~|leaves_now;
   wire [1:0] group = leaves_now[1] ? 2'd2 : leaves_now[0] ? 2'd1 : 2'd0;
   wire start_or_flushes = start | flushes;
-  wire [1:0] place_behind_minus_2_if_fills = fills ? (place_behind - 2'd2) : place_behind;
-  wire next_place = place_behind_minus_2_if_fills[0];
-  wire [3:0] first_place_one_hot_wide = {2'd0, 2'd1 << first_place};
+  wire [1:0] place_in_line = fills ? (place_behind - 2'd2) : place_behind;
+  wire next_place = place_in_line[0];
+  wire empties = start_or_flushes | fills;
+  wire [1:0] first_place_one_hot = 2'd1 << first_place;
   wire done_next = ~start & (all_seen & ~place & ~went & ~comes) & ~line_valid;
   wire contact_here_0 = contact_0 & leaves_here[0];
   wire contact_here_1 = contact_1 & leaves_here[1];
@@ -73,12 +76,12 @@ module contact_afu_packer (
   always @(posedge clk) begin
     count_here <= count;
     line <= {enters_1[1] ? entering_1 : enters_0[1] ? entering_0 : 256'd0, enters_0[0] ? entering_0 : filling_0};
-    enters_1 <= carried[1] ? {first_place_one_hot_wide[2:0], 1'b0} : 4'd0;
+    enters_1 <= carried[1] ? {1'b0, first_place_one_hot, 1'b0} : 4'd0;
     entering_1 <= record_1;
-    enters_0 <= carried[0] ? first_place_one_hot_wide : 4'd0;
+    enters_0 <= carried[0] ? {2'd0, first_place_one_hot} : 4'd0;
     entering_0 <= record_0;
-    emptied <= start_or_flushes_or_fills_d1;
-    start_or_flushes_or_fills_d1 <= start_or_flushes | fills;
+    emptied <= empties_d1;
+    empties_d1 <= empties;
     first_place <= place;
     carried <= leaves_now;
     emerged_before <= emerged;
@@ -125,7 +128,7 @@ module contact_afu_packer (
   assign first_invalid = first_invalid_pair;
 
   // Bits that nothing needs.
-  wire unused = &{1'b0, place_behind_minus_2_if_fills[1], enters_1[0], enters_1[3], enters_0[3:2]};
+  wire unused = &{1'b0, place_in_line[1], enters_1[0], enters_1[3], enters_0[3:2]};
 
 endmodule
 

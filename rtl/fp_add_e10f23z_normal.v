@@ -55,9 +55,9 @@ module fp_add_e10f23z_normal (
     large_significand_s1 <= large_significand;
   end
   wire [4:0] align_distance = align_near_s1 | {5{align_far_s1}};
-  wire [25:0] small_significand_s1_wide = {small_significand_s1, 2'd0};
-  wire align_by_16_loses = align_distance[4] & |small_significand_s1_wide[15:0];
-  wire [25:0] align_by_16 = align_distance[4] ? {16'd0, small_significand_s1[23:14]} : small_significand_s1_wide;
+  wire [25:0] small_significand_s1_shifted = {small_significand_s1, 2'd0};
+  wire align_by_16_loses = align_distance[4] & |small_significand_s1_shifted[15:0];
+  wire [25:0] align_by_16 = align_distance[4] ? {16'd0, small_significand_s1[23:14]} : small_significand_s1_shifted;
   wire align_by_8_loses = align_distance[3] & |align_by_16[7:0];
   wire [25:0] align_by_8 = align_distance[3] ? {8'd0, align_by_16[25:8]} : align_by_16;
   wire align_by_4_loses = align_distance[2] & |align_by_8[3:0];
@@ -67,22 +67,22 @@ module fp_add_e10f23z_normal (
 
   // ---- stage 2 ----
   reg [23:0] large_significand_s2;
-  reg align_distance_0_0_s2;
+  reg align_distance_0_s2;
   reg [25:0] align_by_2_s2;
-  reg align_by_16_loses_or_or_or_s2;
+  reg align_by_16_loses_or_3_others_s2;
   reg effective_subtraction_s2;
   always @(posedge clk) begin
     large_significand_s2 <= large_significand_s1;
-    align_distance_0_0_s2 <= align_distance[0];
+    align_distance_0_s2 <= align_distance[0];
     align_by_2_s2 <= align_by_2;
-    align_by_16_loses_or_or_or_s2 <= align_by_16_loses | align_by_8_loses | align_by_4_loses | align_by_2_loses;
+    align_by_16_loses_or_3_others_s2 <= align_by_16_loses | align_by_8_loses | align_by_4_loses | align_by_2_loses;
     effective_subtraction_s2 <= effective_subtraction_s1;
   end
-  wire [27:0] augend = {1'b0, {large_significand_s2, 3'd0}};
-  wire [25:0] align_by_1 = align_distance_0_0_s2 ? {1'b0, align_by_2_s2[25:1]} : align_by_2_s2;
-  wire align_by_1_loses = align_distance_0_0_s2 & align_by_2_s2[0];
-  wire aligned_sticky = align_by_16_loses_or_or_or_s2 | align_by_1_loses;
-  wire [27:0] addend = {1'b0, {align_by_1, aligned_sticky}};
+  wire [27:0] augend = {1'b0, large_significand_s2, 3'd0};
+  wire [25:0] align_by_1 = align_distance_0_s2 ? {1'b0, align_by_2_s2[25:1]} : align_by_2_s2;
+  wire align_by_1_loses = align_distance_0_s2 & align_by_2_s2[0];
+  wire aligned_sticky = align_by_16_loses_or_3_others_s2 | align_by_1_loses;
+  wire [27:0] addend = {1'b0, align_by_1, aligned_sticky};
   wire [27:0] sum = augend + (addend ^ {28{effective_subtraction_s2}}) + {27'd0, effective_subtraction_s2};
 
   // ---- stage 3 ----
@@ -137,28 +137,30 @@ module fp_add_e10f23z_normal (
   wire guard = normalise_by_1[3];
   wire sticky = |normalise_by_1[2:0];
   wire [23:0] significand = normalise_by_1[27:4];
-  wire round_up = guard & (sticky | significand[0]);
+  wire [22:0] fraction_field = significand[22:0];
+  wire round_up = guard & (sticky | fraction_field[0]);
   wire [4:0] leading_zeros = {
     normalise_top_16_clear_s5, normalise_top_8_clear_s5, normalise_top_4_clear_s5, normalise_top_2_clear,
     normalise_top_1_clear
   };
-  wire [10:0] normalised_exponent = ({1'b0, large_exponent_s5} + 11'd1) - {5'd0, {1'b0, leading_zeros}};
+  wire [10:0] normalised_exponent = ({1'b0, large_exponent_s5} + 11'd1) - {6'd0, leading_zeros};
   wire [10:0] result_exponent = normalise_by_1[27] ? normalised_exponent : 11'd0;
+  wire [9:0] exponent_field = result_exponent[9:0];
   wire is_exact_zero = ~normalise_by_1[27];
   wire sign = large_sign_s5 & ~(is_exact_zero & effective_subtraction_s5);
 
   // ---- stage 6 ----
   reg sign_s6;
-  reg [9:0] result_exponent_9_0_s6;
-  reg [22:0] significand_22_0_s6;
+  reg [9:0] exponent_field_s6;
+  reg [22:0] fraction_field_s6;
   reg round_up_s6;
   always @(posedge clk) begin
     sign_s6 <= sign;
-    result_exponent_9_0_s6 <= result_exponent[9:0];
-    significand_22_0_s6 <= significand[22:0];
+    exponent_field_s6 <= exponent_field;
+    fraction_field_s6 <= fraction_field;
     round_up_s6 <= round_up;
   end
-  wire [32:0] truncated = {result_exponent_9_0_s6, significand_22_0_s6};
+  wire [32:0] truncated = {exponent_field_s6, fraction_field_s6};
   wire [32:0] rounded = truncated + {32'd0, round_up_s6};
 
   // ---- registered outputs ----

@@ -17,72 +17,71 @@ module fp_convert_e10f23z_normal_to_e8f23 (
   // ---- stage 0 ----
   wire [22:0] a_fraction = a[22:0];
   wire [23:0] a_significand = {1'b1, a_fraction};
-  wire [24:0] a_significand_wide = {a_significand, 1'b0};
+  wire [24:0] a_significand_shifted = {a_significand, 1'b0};
   wire [9:0] a_exponent = a[32:23];
-  wire [10:0] a_exponent_wide = {1'b0, a_exponent};
-  wire [10:0] a_rebiased_exponent = a_exponent_wide - 11'd384;
+  wire [10:0] a_rebiased_exponent = {1'b0, a_exponent} - 11'd384;
   wire overflow = ~a_rebiased_exponent[10] & (|a_rebiased_exponent[10:8] | &a_rebiased_exponent[7:0]);
   wire a_hidden = |a_exponent;
   wire is_infinity = overflow & a_hidden;
   wire a_is_zero = ~a_hidden;
   wire is_special = is_infinity | a_is_zero;
-  wire [10:0] missing_exponent = 11'd385 - a_exponent_wide;
+  wire [10:0] missing_exponent = 11'd385 - {1'b0, a_exponent};
   wire [8:0] missing_places = missing_exponent[8:0];
   wire missing_places_capped_is_far = |missing_places[8:5];
   wire [4:0] missing_places_capped = missing_places[4:0] | {5{missing_places_capped_is_far}};
   wire a_sign = a[33];
 
   // ---- stage 1 ----
-  reg [4:0] missing_places_capped_and_s1;
+  reg [4:0] missing_places_capped_unless_exponent_10_s1;
   reg is_special_s1;
   reg [8:0] a_significand_23_15_s1;
-  reg [24:0] a_significand_wide_s1;
-  reg a_significand_wide_15_0_any_s1;
+  reg [24:0] a_significand_shifted_s1;
+  reg a_significand_shifted_15_0_any_s1;
   reg is_infinity_s1;
-  reg [7:0] a_rebiased_exponent_7_0_and_s1;
+  reg [7:0] a_rebiased_exponent_7_0_if_any_unless_10_s1;
   reg a_sign_s1;
   always @(posedge clk) begin
-    missing_places_capped_and_s1 <= ~missing_exponent[10] ? missing_places_capped : 5'd0;
+    missing_places_capped_unless_exponent_10_s1 <= missing_exponent[10] ? 5'd0 : missing_places_capped;
     is_special_s1 <= is_special;
     a_significand_23_15_s1 <= a_significand[23:15];
-    a_significand_wide_s1 <= a_significand_wide;
-    a_significand_wide_15_0_any_s1 <= |a_significand_wide[15:0];
+    a_significand_shifted_s1 <= a_significand_shifted;
+    a_significand_shifted_15_0_any_s1 <= |a_significand_shifted[15:0];
     is_infinity_s1 <= is_infinity;
-    a_rebiased_exponent_7_0_and_s1 <=
+    a_rebiased_exponent_7_0_if_any_unless_10_s1 <=
         (~a_rebiased_exponent[10] & |a_rebiased_exponent) ? a_rebiased_exponent[7:0] : 8'd0;
     a_sign_s1 <= a_sign;
   end
-  wire [4:0] denormalise_distance = missing_places_capped_and_s1 | {5{is_special_s1}};
-  wire [24:0] denormalise_by_16 = denormalise_distance[4] ? {16'd0, a_significand_23_15_s1} : a_significand_wide_s1;
+  wire [4:0] denormalise_distance = missing_places_capped_unless_exponent_10_s1 | {5{is_special_s1}};
+  wire [24:0] denormalise_by_16 = denormalise_distance[4] ? {16'd0, a_significand_23_15_s1} : a_significand_shifted_s1;
   wire [24:0] denormalise_by_8 = denormalise_distance[3] ? {8'd0, denormalise_by_16[24:8]} : denormalise_by_16;
   wire [24:0] denormalise_by_4 = denormalise_distance[2] ? {4'd0, denormalise_by_8[24:4]} : denormalise_by_8;
   wire denormalise_by_2_loses = denormalise_distance[1] & |denormalise_by_4[1:0];
-  wire denormalise_by_16_loses = denormalise_distance[4] & a_significand_wide_15_0_any_s1;
+  wire denormalise_by_16_loses = denormalise_distance[4] & a_significand_shifted_15_0_any_s1;
   wire denormalise_by_8_loses = denormalise_distance[3] & |denormalise_by_16[7:0];
   wire denormalise_by_4_loses = denormalise_distance[2] & |denormalise_by_8[3:0];
   wire [24:0] denormalise_by_2 = denormalise_distance[1] ? {2'd0, denormalise_by_4[24:2]} : denormalise_by_4;
-  wire [7:0] exponent_field = is_special_s1 ? {8{is_infinity_s1}} : a_rebiased_exponent_7_0_and_s1;
+  wire [7:0] exponent_field = is_special_s1 ? {8{is_infinity_s1}} : a_rebiased_exponent_7_0_if_any_unless_10_s1;
 
   // ---- stage 2 ----
   reg a_sign_s2;
   reg [7:0] exponent_field_s2;
-  reg denormalise_distance_0_0_s2;
+  reg denormalise_distance_0_s2;
   reg [24:0] denormalise_by_2_s2;
-  reg denormalise_by_16_loses_or_or_s2;
+  reg denormalise_by_16_loses_or_2_others_s2;
   reg denormalise_by_2_loses_s2;
   always @(posedge clk) begin
     a_sign_s2 <= a_sign_s1;
     exponent_field_s2 <= exponent_field;
-    denormalise_distance_0_0_s2 <= denormalise_distance[0];
+    denormalise_distance_0_s2 <= denormalise_distance[0];
     denormalise_by_2_s2 <= denormalise_by_2;
-    denormalise_by_16_loses_or_or_s2 <= denormalise_by_16_loses | denormalise_by_8_loses | denormalise_by_4_loses;
+    denormalise_by_16_loses_or_2_others_s2 <= denormalise_by_16_loses | denormalise_by_8_loses | denormalise_by_4_loses;
     denormalise_by_2_loses_s2 <= denormalise_by_2_loses;
   end
-  wire [24:0] denormalise_by_1 = denormalise_distance_0_0_s2 ? {1'b0, denormalise_by_2_s2[24:1]} : denormalise_by_2_s2;
-  wire [30:0] truncated = {exponent_field_s2, {denormalise_by_1[23], denormalise_by_1[22:1]}};
+  wire [24:0] denormalise_by_1 = denormalise_distance_0_s2 ? {1'b0, denormalise_by_2_s2[24:1]} : denormalise_by_2_s2;
+  wire [30:0] truncated = {exponent_field_s2, denormalise_by_1[23], denormalise_by_1[22:1]};
   wire guard = denormalise_by_1[0];
-  wire denormalise_by_1_loses = denormalise_distance_0_0_s2 & denormalise_by_2_s2[0];
-  wire sticky = denormalise_by_16_loses_or_or_s2 | denormalise_by_2_loses_s2 | denormalise_by_1_loses;
+  wire denormalise_by_1_loses = denormalise_distance_0_s2 & denormalise_by_2_s2[0];
+  wire sticky = denormalise_by_16_loses_or_2_others_s2 | denormalise_by_2_loses_s2 | denormalise_by_1_loses;
   wire round_up = guard & (sticky | denormalise_by_1[1]);
   wire [30:0] rounded = truncated + {30'd0, round_up};
 

@@ -18,6 +18,7 @@ module fp_greater_e10f23z_normal (
   // ---- stage 0 ----
   wire a_sign = a[33];
   wire b_sign = b[33];
+  wire is_across_zero = ~a_sign & b_sign;
   wire [9:0] b_exponent = b[32:23];
   wire [22:0] b_fraction = b[22:0];
   wire [32:0] b_magnitude = {b_exponent, b_fraction};
@@ -25,17 +26,15 @@ module fp_greater_e10f23z_normal (
   wire [22:0] a_fraction = a[22:0];
   wire [32:0] a_magnitude = {a_exponent, a_fraction};
   wire b_magnitude_is_smaller = b_magnitude < a_magnitude;
+  wire is_greater_positive = ~a_sign & ~b_sign & b_magnitude_is_smaller;
   wire same_magnitude = a_magnitude == b_magnitude;
-  wire not_a_sign_and_b_sign_or_or =
-      (~a_sign & b_sign)
-      | (~a_sign & ~b_sign & b_magnitude_is_smaller)
-      | (a_sign & b_sign & ~b_magnitude_is_smaller & ~same_magnitude);
+  wire is_greater_negative = a_sign & b_sign & ~b_magnitude_is_smaller & ~same_magnitude;
   wire a_hidden = |a_exponent;
   wire a_is_zero = ~a_hidden;
   wire b_hidden = |b_exponent;
   wire b_is_zero = ~b_hidden;
   wire both_zero = a_is_zero & b_is_zero;
-  wire is_greater = not_a_sign_and_b_sign_or_or & ~both_zero;
+  wire is_greater = (is_across_zero | is_greater_positive | is_greater_negative) & ~both_zero;
 
   // ---- registered outputs ----
   always @(posedge clk) begin

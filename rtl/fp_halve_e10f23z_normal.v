@@ -19,8 +19,10 @@ module fp_halve_e10f23z_normal (
   wire [9:0] a_exponent = a[32:23];
   wire [9:0] exponent_less_one = a_exponent - 10'd1;
   wire a_hidden = |a_exponent;
+  wire [9:0] exponent_field = a_hidden ? exponent_less_one : 10'd0;
   wire [22:0] a_fraction = a[22:0];
-  wire [32:0] truncated = {a_hidden ? exponent_less_one : 10'd0, a_hidden ? a_fraction : 23'd0};
+  wire [22:0] fraction_field = a_hidden ? a_fraction : 23'd0;
+  wire [32:0] truncated = {exponent_field, fraction_field};
 
   // ---- registered outputs ----
   always @(posedge clk) begin

@@ -23,13 +23,15 @@ module fp_mul_e10f23z_normal (
   wire b_hidden = |b_exponent;
   wire b_is_zero = ~b_hidden;
   wire is_zero = a_is_zero | b_is_zero;
+  wire is_nonzero = ~is_zero;
   wire [22:0] a_fraction = a[22:0];
   wire [22:0] b_fraction = b[22:0];
   wire [23:0] b_significand = {1'b1, b_fraction};
   wire [23:0] a_significand = {1'b1, a_fraction};
-  wire [12:0] a_exponent_wide_wide_wide_plus = {{1'b0, {1'b0, a_exponent}}, 1'b1} + {{1'b0, {1'b0, b_exponent}}, 1'b1};
-  wire [11:0] exponent_sum = a_exponent_wide_wide_wide_plus[12:1];
+  wire [12:0] sum_and_carry = {2'd0, a_exponent, 1'b1} + {2'd0, b_exponent, 1'b1};
+  wire [11:0] exponent_sum = sum_and_carry[12:1];
   wire [11:0] product_exponent = {exponent_sum[11:9] - 3'd1, exponent_sum[8:0]};
+  wire [9:0] exponent_field = is_nonzero ? product_exponent[9:0] : 10'd0;
   wire a_sign = a[33];
   wire b_sign = b[33];
   wire product_sign = a_sign ^ b_sign;
@@ -63,15 +65,15 @@ module fp_mul_e10f23z_normal (
   );
 
   // ---- stage 1 ----
-  reg not_is_zero_s1;
+  reg is_nonzero_s1;
   always @(posedge clk) begin
-    not_is_zero_s1 <= ~is_zero;
+    is_nonzero_s1 <= is_nonzero;
   end
 
   // ---- stage 2 ----
-  reg not_is_zero_s2;
+  reg is_nonzero_s2;
   always @(posedge clk) begin
-    not_is_zero_s2 <= not_is_zero_s1;
+    is_nonzero_s2 <= is_nonzero_s1;
   end
   wire [24:0] tiles_sum_2 = {1'b0, tile_1_0} + {1'b0, tile_0_1};
   wire [47:0] tiles_0_0 = {tile_1_1, tile_0_0};
@@ -79,52 +81,50 @@ module fp_mul_e10f23z_normal (
   // ---- stage 3 ----
   reg [35:0] tiles_0_0_47_12_s3;
   reg [24:0] tiles_sum_s3;
-  reg not_is_zero_s3;
+  reg is_nonzero_s3;
   reg tile_0_0_11_0_any_s3;
   always @(posedge clk) begin
     tiles_0_0_47_12_s3 <= tiles_0_0[47:12];
     tiles_sum_s3 <= tiles_sum_2;
-    not_is_zero_s3 <= not_is_zero_s2;
+    is_nonzero_s3 <= is_nonzero_s2;
     tile_0_0_11_0_any_s3 <= |tile_0_0[11:0];
   end
   wire [35:0] tiles_sum = tiles_0_0_47_12_s3 + {11'd0, tiles_sum_s3};
   wire product_at_least_two = tiles_sum[35];
   wire [24:0] normalised = product_at_least_two ? tiles_sum[35:11] : tiles_sum[34:10];
   wire [23:0] significand = normalised[24:1];
-  wire [22:0] significand_22_0_and = not_is_zero_s3 ? significand[22:0] : 23'd0;
+  wire [22:0] fraction_field = is_nonzero_s3 ? significand[22:0] : 23'd0;
   wire guard = normalised[0];
 
   // ---- stage 4 ----
   reg [2:0] product_sign_s4_line;
   reg product_sign_s4;
-  reg [29:0] product_exponent_9_0_and_s4_line;
-  reg [9:0] product_exponent_9_0_and_s4;
-  reg [22:0] significand_22_0_and_s4;
-  reg product_at_least_two_and_s4;
-  reg guard_and_not_is_zero_s3_s4;
+  reg [29:0] exponent_field_s4_line;
+  reg [9:0] exponent_field_s4;
+  reg [22:0] fraction_field_s4;
+  reg product_at_least_two_and_is_nonzero_s3_s4;
+  reg guard_and_is_nonzero_s3_s4;
   reg tile_0_0_11_0_any_s4;
   reg tiles_sum_9_0_any_s4;
-  reg product_at_least_two_and_s4_2;
-  reg significand_22_0_and_0_0_s4;
+  reg product_at_least_two_and_tiles_sum_10_s4;
+  reg fraction_field_0_s4;
   always @(posedge clk) begin
     product_sign_s4_line <= {product_sign_s4_line[1:0], product_sign};
     product_sign_s4 <= product_sign_s4_line[2];
-    product_exponent_9_0_and_s4_line <= {
-      product_exponent_9_0_and_s4_line[19:0], ~is_zero ? product_exponent[9:0] : 10'd0
-    };
-    product_exponent_9_0_and_s4 <= product_exponent_9_0_and_s4_line[29:20];
-    significand_22_0_and_s4 <= significand_22_0_and;
-    product_at_least_two_and_s4 <= product_at_least_two & not_is_zero_s3;
-    guard_and_not_is_zero_s3_s4 <= guard & not_is_zero_s3;
+    exponent_field_s4_line <= {exponent_field_s4_line[19:0], exponent_field};
+    exponent_field_s4 <= exponent_field_s4_line[29:20];
+    fraction_field_s4 <= fraction_field;
+    product_at_least_two_and_is_nonzero_s3_s4 <= product_at_least_two & is_nonzero_s3;
+    guard_and_is_nonzero_s3_s4 <= guard & is_nonzero_s3;
     tile_0_0_11_0_any_s4 <= tile_0_0_11_0_any_s3;
     tiles_sum_9_0_any_s4 <= |tiles_sum[9:0];
-    product_at_least_two_and_s4_2 <= product_at_least_two & tiles_sum[10];
-    significand_22_0_and_0_0_s4 <= significand_22_0_and[0];
+    product_at_least_two_and_tiles_sum_10_s4 <= product_at_least_two & tiles_sum[10];
+    fraction_field_0_s4 <= fraction_field[0];
   end
-  wire [32:0] truncated = {product_exponent_9_0_and_s4, significand_22_0_and_s4};
-  wire sticky = tile_0_0_11_0_any_s4 | tiles_sum_9_0_any_s4 | product_at_least_two_and_s4_2;
-  wire round_up = guard_and_not_is_zero_s3_s4 & (sticky | significand_22_0_and_0_0_s4);
-  wire [32:0] increments = {{9'd0, product_at_least_two_and_s4}, {22'd0, round_up}};
+  wire [32:0] truncated = {exponent_field_s4, fraction_field_s4};
+  wire sticky = tile_0_0_11_0_any_s4 | tiles_sum_9_0_any_s4 | product_at_least_two_and_tiles_sum_10_s4;
+  wire round_up = guard_and_is_nonzero_s3_s4 & (sticky | fraction_field_0_s4);
+  wire [32:0] increments = {9'd0, product_at_least_two_and_is_nonzero_s3_s4, 22'd0, round_up};
   wire [32:0] rounded = truncated + increments;
 
   // ---- registered outputs ----
@@ -134,7 +134,7 @@ module fp_mul_e10f23z_normal (
 
   // Bits that nothing needs.
   wire unused = &{1'b0, significand[23], b_significand[11:0], a_significand[11:0], tiles_0_0[11:0],
-    a_exponent_wide_wide_wide_plus[0], product_exponent[11:10]};
+    sum_and_carry[0], product_exponent[11:10]};
 
 endmodule
 

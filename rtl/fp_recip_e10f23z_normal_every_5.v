@@ -22,8 +22,8 @@ module fp_recip_e10f23z_normal_every_5 (
   reg [33:0] word_2;
   reg [33:0] word_1;
   reg [33:0] word_0;
-  reg [33:0] word_0_next;
-  reg [23:0] not_state_4_1_22_0_wide_d1;
+  reg [33:0] a_d1;
+  reg [23:0] digits_d1;
   reg [23:0] state_4_1;
   reg [24:0] state_4_0;
   reg [23:0] kept_4_0;
@@ -47,15 +47,16 @@ module fp_recip_e10f23z_normal_every_5 (
   // ---- logic ----
   wire load_0 = phase[1];
   wire [24:0] partial_5 = {state_4_0[23:0], 1'b0} + ({1'b0, kept_4_0} ^ {25{~state_4_0[24]}}) + {24'd0, ~state_4_0[24]};
-  wire [23:0] state_4_1_22_0_wide = {state_4_1[22:0], partial_5[24]};
+  wire [23:0] zeros_5 = {state_4_1[22:0], partial_5[24]};
+  wire [23:0] digits = ~zeros_5;
   wire [24:0] partial_4 = {state_3_0[23:0], 1'b0} + ({1'b0, kept_3_0} ^ {25{~state_3_0[24]}}) + {24'd0, ~state_3_0[24]};
   wire [24:0] partial_3 = {state_2_0[23:0], 1'b0} + ({1'b0, kept_2_0} ^ {25{~state_2_0[24]}}) + {24'd0, ~state_2_0[24]};
   wire [24:0] partial_2 = {state_1_0[23:0], 1'b0} + ({1'b0, kept_1_0} ^ {25{~state_1_0[24]}}) + {24'd0, ~state_1_0[24]};
   wire [24:0] partial_1 = {state_0_0[23:0], 1'b0} + ({1'b0, kept_0_0} ^ {25{~state_0_0[24]}}) + {24'd0, ~state_0_0[24]};
-  wire [19:0] state_3_1_18_0_wide = {state_3_1[18:0], partial_4[24]};
-  wire [14:0] state_2_1_13_0_wide = {state_2_1[13:0], partial_3[24]};
-  wire [9:0] state_1_1_8_0_wide = {state_1_1[8:0], partial_2[24]};
-  wire [4:0] state_0_1_3_0_wide = {state_0_1[3:0], partial_1[24]};
+  wire [19:0] zeros_4 = {state_3_1[18:0], partial_4[24]};
+  wire [14:0] zeros_3 = {state_2_1[13:0], partial_3[24]};
+  wire [9:0] zeros_2 = {state_1_1[8:0], partial_2[24]};
+  wire [4:0] zeros_1 = {state_0_1[3:0], partial_1[24]};
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
@@ -64,10 +65,10 @@ module fp_recip_e10f23z_normal_every_5 (
     if (load_0) word_3 <= word_2;
     if (load_0) word_2 <= word_1;
     if (load_0) word_1 <= word_0;
-    if (load_0) word_0 <= word_0_next;
-    word_0_next <= a;
-    not_state_4_1_22_0_wide_d1 <= ~state_4_1_22_0_wide;
-    state_4_1 <= load_0 ? {4'd0, state_3_1_18_0_wide} : state_4_1_22_0_wide;
+    if (load_0) word_0 <= a_d1;
+    a_d1 <= a;
+    digits_d1 <= digits;
+    state_4_1 <= load_0 ? {4'd0, zeros_4} : zeros_5;
     state_4_0 <= load_0 ? partial_4 : partial_5;
     if (load_0) kept_4_0 <= kept_3_0;
     if (load_0) kept_3_0 <= kept_2_0;
@@ -78,16 +79,16 @@ module fp_recip_e10f23z_normal_every_5 (
     state_2_0 <= load_0 ? partial_2 : partial_3;
     state_1_0 <= load_0 ? partial_1 : partial_2;
     state_0_0 <= load_0 ? first_state_0 : partial_1;
-    state_3_1 <= load_0 ? {5'd0, state_2_1_13_0_wide} : state_3_1_18_0_wide;
-    state_2_1 <= load_0 ? {5'd0, state_1_1_8_0_wide} : state_2_1_13_0_wide;
-    state_1_1 <= load_0 ? {5'd0, state_0_1_3_0_wide} : state_1_1_8_0_wide;
-    state_0_1 <= load_0 ? 5'd0 : state_0_1_3_0_wide;
+    state_3_1 <= load_0 ? {5'd0, zeros_3} : zeros_4;
+    state_2_1 <= load_0 ? {5'd0, zeros_2} : zeros_3;
+    state_1_1 <= load_0 ? {5'd0, zeros_1} : zeros_2;
+    state_0_1 <= load_0 ? 5'd0 : zeros_1;
   end
 
   fp_recip_e10f23z_normal_every_5_last last (
     .clk       (clk),
     .a         (word_4_d1),
-    .outcome_0 (not_state_4_1_22_0_wide_d1),
+    .outcome_0 (digits_d1),
     .result    (result)
   );
 

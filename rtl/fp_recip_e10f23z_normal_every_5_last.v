@@ -17,7 +17,9 @@ module fp_recip_e10f23z_normal_every_5_last (
   wire a_sign = a[33];
   wire [9:0] a_exponent = a[32:23];
   wire [10:0] quotient_exponent = 11'd1021 - {1'b0, a_exponent};
-  wire [32:0] truncated = {quotient_exponent[9:0], outcome_0[23:1]};
+  wire [9:0] exponent_field = quotient_exponent[9:0];
+  wire [22:0] fraction_field = outcome_0[23:1];
+  wire [32:0] truncated = {exponent_field, fraction_field};
   wire guard = outcome_0[0];
   wire [32:0] rounded = truncated + {32'd0, guard};
 

@@ -22,8 +22,8 @@ module fp_sqrt_e10f23z_normal_every_5 (
   reg [33:0] word_2;
   reg [33:0] word_1;
   reg [33:0] word_0;
-  reg [33:0] word_0_next;
-  reg [24:0] state_4_1_23_0_wide_d1;
+  reg [33:0] a_d1;
+  reg [24:0] root_5_d1;
   reg [24:0] state_4_1;
   reg [25:0] state_4_0;
   reg [21:0] state_3_0;
@@ -45,31 +45,31 @@ module fp_sqrt_e10f23z_normal_every_5 (
 
   // ---- logic ----
   wire load_0 = phase[1];
-  wire [27:0] state_4_0_wide = {state_4_0, 2'd0};
-  wire [27:0] difference_5 = state_4_0_wide - {1'b0, {state_4_1, 2'd1}};
+  wire [27:0] shifted_5 = {state_4_0, 2'd0};
+  wire [27:0] difference_5 = shifted_5 - {1'b0, state_4_1, 2'd1};
   wire borrow_5 = difference_5[27];
-  wire [24:0] state_4_1_23_0_wide = {state_4_1[23:0], ~borrow_5};
-  wire [23:0] state_3_0_wide = {state_3_0, 2'd0};
-  wire [23:0] difference_4 = state_3_0_wide - {1'b0, {state_3_1, 2'd1}};
+  wire [24:0] root_5 = {state_4_1[23:0], ~borrow_5};
+  wire [23:0] shifted_4 = {state_3_0, 2'd0};
+  wire [23:0] difference_4 = shifted_4 - {1'b0, state_3_1, 2'd1};
   wire borrow_4 = difference_4[23];
-  wire [21:0] remainder_4 = borrow_4 ? state_3_0_wide[21:0] : difference_4[21:0];
-  wire [25:0] remainder_5 = borrow_5 ? state_4_0_wide[25:0] : difference_5[25:0];
-  wire [18:0] state_2_0_wide = {state_2_0, state_2_2[3:2]};
-  wire [18:0] difference_3 = state_2_0_wide - {1'b0, {state_2_1, 2'd1}};
+  wire [21:0] remainder_4 = borrow_4 ? shifted_4[21:0] : difference_4[21:0];
+  wire [25:0] remainder_5 = borrow_5 ? shifted_5[25:0] : difference_5[25:0];
+  wire [18:0] shifted_3 = {state_2_0, state_2_2[3:2]};
+  wire [18:0] difference_3 = shifted_3 - {1'b0, state_2_1, 2'd1};
   wire borrow_3 = difference_3[18];
-  wire [15:0] state_2_1_14_0_wide = {state_2_1[14:0], ~borrow_3};
-  wire [20:0] state_3_1_19_0_wide = {state_3_1[19:0], ~borrow_4};
-  wire [13:0] state_1_0_wide = {state_1_0, state_1_2[13:12]};
-  wire [13:0] difference_2 = state_1_0_wide - {1'b0, {state_1_1, 2'd1}};
+  wire [15:0] root_3 = {state_2_1[14:0], ~borrow_3};
+  wire [20:0] root_4 = {state_3_1[19:0], ~borrow_4};
+  wire [13:0] shifted_2 = {state_1_0, state_1_2[13:12]};
+  wire [13:0] difference_2 = shifted_2 - {1'b0, state_1_1, 2'd1};
   wire borrow_2 = difference_2[13];
-  wire [11:0] remainder_2 = borrow_2 ? state_1_0_wide[11:0] : difference_2[11:0];
-  wire [16:0] remainder_3 = borrow_3 ? state_2_0_wide[16:0] : difference_3[16:0];
-  wire [8:0] state_0_0_wide = {state_0_0, state_0_2[23:22]};
-  wire [8:0] difference_1 = state_0_0_wide - {1'b0, {state_0_1, 2'd1}};
+  wire [11:0] remainder_2 = borrow_2 ? shifted_2[11:0] : difference_2[11:0];
+  wire [16:0] remainder_3 = borrow_3 ? shifted_3[16:0] : difference_3[16:0];
+  wire [8:0] shifted_1 = {state_0_0, state_0_2[23:22]};
+  wire [8:0] difference_1 = shifted_1 - {1'b0, state_0_1, 2'd1};
   wire borrow_1 = difference_1[8];
-  wire [5:0] state_0_1_4_0_wide = {state_0_1[4:0], ~borrow_1};
-  wire [10:0] state_1_1_9_0_wide = {state_1_1[9:0], ~borrow_2};
-  wire [6:0] remainder_1 = borrow_1 ? state_0_0_wide[6:0] : difference_1[6:0];
+  wire [5:0] root_1 = {state_0_1[4:0], ~borrow_1};
+  wire [10:0] root_2 = {state_1_1[9:0], ~borrow_2};
+  wire [6:0] remainder_1 = borrow_1 ? shifted_1[6:0] : difference_1[6:0];
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
@@ -78,21 +78,21 @@ module fp_sqrt_e10f23z_normal_every_5 (
     if (load_0) word_3 <= word_2;
     if (load_0) word_2 <= word_1;
     if (load_0) word_1 <= word_0;
-    if (load_0) word_0 <= word_0_next;
-    word_0_next <= a;
-    state_4_1_23_0_wide_d1 <= state_4_1_23_0_wide;
-    state_4_1 <= load_0 ? {4'd0, state_3_1_19_0_wide} : state_4_1_23_0_wide;
+    if (load_0) word_0 <= a_d1;
+    a_d1 <= a;
+    root_5_d1 <= root_5;
+    state_4_1 <= load_0 ? {4'd0, root_4} : root_5;
     state_4_0 <= load_0 ? {4'd0, remainder_4} : remainder_5;
     state_3_0 <= load_0 ? {5'd0, remainder_3} : remainder_4;
-    state_3_1 <= load_0 ? {5'd0, state_2_1_14_0_wide} : state_3_1_19_0_wide;
-    state_2_1 <= load_0 ? {5'd0, state_1_1_9_0_wide} : state_2_1_14_0_wide;
+    state_3_1 <= load_0 ? {5'd0, root_3} : root_4;
+    state_2_1 <= load_0 ? {5'd0, root_2} : root_3;
     state_2_0 <= load_0 ? {5'd0, remainder_2} : remainder_3;
     state_2_2 <= load_0 ? state_1_2[11:8] : {state_2_2[1:0], 2'd0};
     state_1_2 <= load_0 ? state_0_2[21:8] : {state_1_2[11:0], 2'd0};
     state_0_2 <= load_0 ? first_state_1 : {state_0_2[21:0], 2'd0};
     state_1_0 <= load_0 ? {5'd0, remainder_1} : remainder_2;
-    state_1_1 <= load_0 ? {5'd0, state_0_1_4_0_wide} : state_1_1_9_0_wide;
-    state_0_1 <= load_0 ? 6'd1 : state_0_1_4_0_wide;
+    state_1_1 <= load_0 ? {5'd0, root_1} : root_2;
+    state_0_1 <= load_0 ? 6'd1 : root_1;
     state_0_0 <= load_0 ? {5'd0, first_state_0} : remainder_1;
     remainder_5_d1 <= remainder_5;
   end
@@ -100,7 +100,7 @@ module fp_sqrt_e10f23z_normal_every_5 (
   fp_sqrt_e10f23z_normal_every_5_last last (
     .clk       (clk),
     .a         (word_4_d1),
-    .outcome_0 (state_4_1_23_0_wide_d1),
+    .outcome_0 (root_5_d1),
     .outcome_1 (remainder_5_d1),
     .result    (result)
   );

@@ -20,22 +20,24 @@ module fp_sqrt_e10f23z_normal_every_5_last (
   wire a_hidden = |a_exponent;
   wire round_up = guard & a_hidden;
   wire [23:0] significand = outcome_0[24:1];
-  wire [11:0] a_exponent_wide_wide_plus_511 = {1'b0, {1'b0, a_exponent}} + 12'd511;
-  wire [10:0] root_exponent = a_exponent_wide_wide_plus_511[11:1];
+  wire [22:0] fraction_field = a_hidden ? significand[22:0] : 23'd0;
+  wire [11:0] a_exponent_plus_511 = {2'd0, a_exponent} + 12'd511;
+  wire [10:0] root_exponent = a_exponent_plus_511[11:1];
+  wire [9:0] exponent_field = a_hidden ? root_exponent[9:0] : 10'd0;
   wire a_sign = a[33];
 
   // ---- stage 1 ----
   reg a_sign_s1;
-  reg [9:0] root_exponent_9_0_and_a_hidden_wide_s1;
-  reg [22:0] significand_22_0_and_a_hidden_wide_s1;
+  reg [9:0] exponent_field_s1;
+  reg [22:0] fraction_field_s1;
   reg round_up_s1;
   always @(posedge clk) begin
     a_sign_s1 <= a_sign;
-    root_exponent_9_0_and_a_hidden_wide_s1 <= a_hidden ? root_exponent[9:0] : 10'd0;
-    significand_22_0_and_a_hidden_wide_s1 <= a_hidden ? significand[22:0] : 23'd0;
+    exponent_field_s1 <= exponent_field;
+    fraction_field_s1 <= fraction_field;
     round_up_s1 <= round_up;
   end
-  wire [32:0] truncated = {root_exponent_9_0_and_a_hidden_wide_s1, significand_22_0_and_a_hidden_wide_s1};
+  wire [32:0] truncated = {exponent_field_s1, fraction_field_s1};
   wire [32:0] rounded = truncated + {32'd0, round_up_s1};
 
   // ---- registered outputs ----
@@ -44,7 +46,7 @@ module fp_sqrt_e10f23z_normal_every_5_last (
   end
 
   // Bits that nothing needs.
-  wire unused = &{1'b0, outcome_1, a[22:0], significand[23], a_exponent_wide_wide_plus_511[0],
+  wire unused = &{1'b0, outcome_1, a[22:0], significand[23], a_exponent_plus_511[0],
     root_exponent[10]};
 
 endmodule

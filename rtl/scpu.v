@@ -30,7 +30,7 @@ module scpu (
 
   // ---- logic ----
   wire [1:0] flow = invalid_out ? 2'd0 : hit ? (grazing ? 2'd2 : 2'd3) : 2'd1;
-  wire [31:0] flags = {28'd0, {invalid_out, flow, hit}};
+  wire [31:0] flags = {28'd0, invalid_out, flow, hit};
   assign record = {
     flags, kernel_depth, kernel_normal_z, kernel_normal_y, kernel_normal_x, kernel_pos_z, kernel_pos_y, kernel_pos_x
   };
@@ -42,19 +42,19 @@ module scpu (
   wire [31:0] y2 = pair[191:160];
   wire [31:0] z2 = pair[223:192];
   wire [31:0] r2 = pair[255:224];
-  wire x1_not_finite = &x1[30:23];
-  wire y1_not_finite = &y1[30:23];
-  wire z1_not_finite = &z1[30:23];
-  wire r1_not_finite = &r1[30:23];
+  wire x1_is_special = &x1[30:23];
+  wire y1_is_special = &y1[30:23];
+  wire z1_is_special = &z1[30:23];
+  wire r1_is_special = &r1[30:23];
   wire r1_negative = r1[31] & |r1[30:0];
-  wire x2_not_finite = &x2[30:23];
-  wire y2_not_finite = &y2[30:23];
-  wire z2_not_finite = &z2[30:23];
-  wire r2_not_finite = &r2[30:23];
+  wire x2_is_special = &x2[30:23];
+  wire y2_is_special = &y2[30:23];
+  wire z2_is_special = &z2[30:23];
+  wire r2_is_special = &r2[30:23];
   wire r2_negative = r2[31] & |r2[30:0];
   wire invalid =
-      x1_not_finite | y1_not_finite | z1_not_finite | r1_not_finite | r1_negative | x2_not_finite | y2_not_finite
-      | z2_not_finite | r2_not_finite | r2_negative;
+      x1_is_special | y1_is_special | z1_is_special | r1_is_special | r1_negative | x2_is_special | y2_is_special
+      | z2_is_special | r2_is_special | r2_negative;
 
   sphere_kernel kernel (
     .clk          (clk),

@@ -40,18 +40,18 @@ module scpu_slot (
   reg [1:0] leaves;
   reg [31:0] answers_soon_line;
   reg [1:0] answers_soon;
-  reg [29:0] takes_lane_1_wide_d96_line;
-  reg [1:0] takes_lane_1_wide_d96;
-  reg [29:0] takes_lane_1_wide_d80_line;
-  reg [1:0] takes_lane_1_wide_d80;
-  reg [29:0] takes_lane_1_wide_d64_line;
-  reg [1:0] takes_lane_1_wide_d64;
-  reg [29:0] takes_lane_1_wide_d48_line;
-  reg [1:0] takes_lane_1_wide_d48;
-  reg [29:0] takes_lane_1_wide_d32_line;
-  reg [1:0] takes_lane_1_wide_d32;
-  reg [29:0] takes_lane_1_wide_d16_line;
-  reg [1:0] takes_lane_1_wide_d16;
+  reg [29:0] takes_lanes_d96_line;
+  reg [1:0] takes_lanes_d96;
+  reg [29:0] takes_lanes_d80_line;
+  reg [1:0] takes_lanes_d80;
+  reg [29:0] takes_lanes_d64_line;
+  reg [1:0] takes_lanes_d64;
+  reg [29:0] takes_lanes_d48_line;
+  reg [1:0] takes_lanes_d48;
+  reg [29:0] takes_lanes_d32_line;
+  reg [1:0] takes_lanes_d32;
+  reg [29:0] takes_lanes_d16_line;
+  reg [1:0] takes_lanes_d16;
   reg takes_lane_1;
   reg takes_lane_0;
   reg [255:0] record_0;
@@ -70,37 +70,39 @@ module scpu_slot (
   wire unit_invalid_pair;
 
   // ---- logic ----
+  wire [1:0] takes_lanes = {takes_lane_1, takes_lane_0};
   wire names_this_in_0 = carries_in[0] & (targets_in[6:0] == index);
-  wire n1_below_scpus = 7'd1 < scpus;
-  wire names_this_in_1 = carries_in[1] & (targets_in[13:7] == index) & n1_below_scpus;
-  wire answers_1_1_and_n1_below_scpus = answers[1] & n1_below_scpus;
+  wire uses_lane_1 = 7'd1 < scpus;
+  wire names_this_in_1 = carries_in[1] & (targets_in[13:7] == index) & uses_lane_1;
+  wire answers_lane_0 = answers[0];
+  wire answers_lane_1 = answers[1] & uses_lane_1;
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
     targets <= targets_in;
     pairs <= pairs_in;
-    answers_soon_line <= {answers_soon_line[29:0], takes_lane_1_wide_d96};
+    answers_soon_line <= {answers_soon_line[29:0], takes_lanes_d96};
     answers_soon <= answers_soon_line[31:30];
-    takes_lane_1_wide_d96_line <= {takes_lane_1_wide_d96_line[27:0], takes_lane_1_wide_d80};
-    takes_lane_1_wide_d96 <= takes_lane_1_wide_d96_line[29:28];
-    takes_lane_1_wide_d80_line <= {takes_lane_1_wide_d80_line[27:0], takes_lane_1_wide_d64};
-    takes_lane_1_wide_d80 <= takes_lane_1_wide_d80_line[29:28];
-    takes_lane_1_wide_d64_line <= {takes_lane_1_wide_d64_line[27:0], takes_lane_1_wide_d48};
-    takes_lane_1_wide_d64 <= takes_lane_1_wide_d64_line[29:28];
-    takes_lane_1_wide_d48_line <= {takes_lane_1_wide_d48_line[27:0], takes_lane_1_wide_d32};
-    takes_lane_1_wide_d48 <= takes_lane_1_wide_d48_line[29:28];
-    takes_lane_1_wide_d32_line <= {takes_lane_1_wide_d32_line[27:0], takes_lane_1_wide_d16};
-    takes_lane_1_wide_d32 <= takes_lane_1_wide_d32_line[29:28];
-    takes_lane_1_wide_d16_line <= {takes_lane_1_wide_d16_line[27:0], {takes_lane_1, takes_lane_0}};
-    takes_lane_1_wide_d16 <= takes_lane_1_wide_d16_line[29:28];
-    record_0 <= answers[0] ? unit_record : record_0_in;
+    takes_lanes_d96_line <= {takes_lanes_d96_line[27:0], takes_lanes_d80};
+    takes_lanes_d96 <= takes_lanes_d96_line[29:28];
+    takes_lanes_d80_line <= {takes_lanes_d80_line[27:0], takes_lanes_d64};
+    takes_lanes_d80 <= takes_lanes_d80_line[29:28];
+    takes_lanes_d64_line <= {takes_lanes_d64_line[27:0], takes_lanes_d48};
+    takes_lanes_d64 <= takes_lanes_d64_line[29:28];
+    takes_lanes_d48_line <= {takes_lanes_d48_line[27:0], takes_lanes_d32};
+    takes_lanes_d48 <= takes_lanes_d48_line[29:28];
+    takes_lanes_d32_line <= {takes_lanes_d32_line[27:0], takes_lanes_d16};
+    takes_lanes_d32 <= takes_lanes_d32_line[29:28];
+    takes_lanes_d16_line <= {takes_lanes_d16_line[27:0], takes_lanes};
+    takes_lanes_d16 <= takes_lanes_d16_line[29:28];
+    record_0 <= answers_lane_0 ? unit_record : record_0_in;
     answers <= answers_soon;
     if (takes) pair <= takes_lane_1 ? pairs_in[511:256] : pairs_in[255:0];
-    contact_0 <= answers[0] ? unit_contact : contact_0_in;
-    invalid_0 <= answers[0] ? unit_invalid_pair : invalid_0_in;
-    record_1 <= answers_1_1_and_n1_below_scpus ? unit_record : record_1_in;
-    contact_1 <= answers_1_1_and_n1_below_scpus ? unit_contact : contact_1_in;
-    invalid_1 <= answers_1_1_and_n1_below_scpus ? unit_invalid_pair : invalid_1_in;
+    contact_0 <= answers_lane_0 ? unit_contact : contact_0_in;
+    invalid_0 <= answers_lane_0 ? unit_invalid_pair : invalid_0_in;
+    record_1 <= answers_lane_1 ? unit_record : record_1_in;
+    contact_1 <= answers_lane_1 ? unit_contact : contact_1_in;
+    invalid_1 <= answers_lane_1 ? unit_invalid_pair : invalid_1_in;
   end
   always @(posedge clk) begin
     if (rst) begin

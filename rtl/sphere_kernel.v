@@ -215,36 +215,33 @@ module sphere_kernel (
   wire phase_2_next = phase_1 & ~take;
   wire phase_1_next = phase_0 & ~take;
   wire hit_early = valid_kept_11 & ~distance_above_radius_sum;
-  wire phase_2_next_or_phase_3_next = phase_2_next | phase_3_next;
-  wire phase_1_next_or_phase_3_next = phase_1_next | phase_3_next;
+  wire phase_2_next_or_3_next = phase_2_next | phase_3_next;
+  wire phase_1_next_or_3_next = phase_1_next | phase_3_next;
   wire [3:0] place_of_16_in_phase_3_next = (place_of_16_in_phase_3 == 4'd15) ? 4'd0 : (place_of_16_in_phase_3 + 4'd1);
   wire [3:0] place_of_10_in_phase_2_next = (place_of_10_in_phase_2 == 4'd9) ? 4'd0 : (place_of_10_in_phase_2 + 4'd1);
   wire [4:0] place_of_19_in_phase_4_next = (place_of_19_in_phase_4 == 5'd18) ? 5'd0 : (place_of_19_in_phase_4 + 5'd1);
-  wire phase_3_next_or_phase_4_next = phase_3_next | phase_4_next;
-  wire [1:0] convert_unit_0_a_choice_next = {phase_3_next_or_phase_4_next, phase_2_next | phase_4_next};
-  wire [33:0] not_distance_33_33_wide = {~distance[33], distance[32:0]};
-  wire [33:0] not_convert_unit_2_result_33_33_wide = {~convert_unit_2_result[33], convert_unit_2_result[32:0]};
-  wire [33:0] not_convert_unit_3_result_33_33_wide = {~convert_unit_3_result[33], convert_unit_3_result[32:0]};
+  wire phase_3_next_or_4_next = phase_3_next | phase_4_next;
+  wire [1:0] convert_unit_0_a_choice_next = {phase_3_next_or_4_next, phase_2_next | phase_4_next};
+  wire [33:0] minus_distance = {~distance[33], distance[32:0]};
+  wire [33:0] minus_x2_e10f23z = {~convert_unit_2_result[33], convert_unit_2_result[32:0]};
+  wire [33:0] minus_z2_e10f23z = {~convert_unit_3_result[33], convert_unit_3_result[32:0]};
   wire [3:0] place_of_16_in_phase_4_next = (place_of_16_in_phase_4 == 4'd15) ? 4'd0 : (place_of_16_in_phase_4 + 4'd1);
   wire [3:0] place_of_10_in_phase_0_next = (place_of_10_in_phase_0 == 4'd9) ? 4'd0 : (place_of_10_in_phase_0 + 4'd1);
   wire [4:0] place_of_20_in_phase_1_next = (place_of_20_in_phase_1 == 5'd19) ? 5'd0 : (place_of_20_in_phase_1 + 5'd1);
   wire grazing_early = hit_early & distance_at_most_0;
   wire [33:0] position_x_e10f23z_chosen = grazing_early_kept_10 ? x1_e10f23z_kept_3 : add_unit_0_result;
-  wire [33:0] hit_early_kept_10_wide = {34{hit_early_kept_10}};
-  wire [33:0] position_x_e10f23z = position_x_e10f23z_chosen & hit_early_kept_10_wide;
+  wire [33:0] position_x_e10f23z = hit_early_kept_10 ? position_x_e10f23z_chosen : 34'd0;
   wire [33:0] depth_e10f23z = hit_early_kept_2 ? add_unit_1_result : 34'd0;
-  wire [33:0] not_grazing_early_kept_7_wide = {34{~grazing_early_kept_7}};
-  wire [33:0] normal_y_e10f23z_chosen = mul_unit_0_result & not_grazing_early_kept_7_wide;
-  wire [33:0] hit_early_kept_7_wide = {34{hit_early_kept_7}};
-  wire [33:0] normal_y_e10f23z = normal_y_e10f23z_chosen & hit_early_kept_7_wide;
+  wire [33:0] normal_y_e10f23z_chosen = grazing_early_kept_7 ? 34'd0 : mul_unit_0_result;
+  wire [33:0] normal_y_e10f23z = hit_early_kept_7 ? normal_y_e10f23z_chosen : 34'd0;
   wire [33:0] position_z_e10f23z_chosen = grazing_early_kept_10 ? z1_e10f23z_kept_2 : add_unit_0_result;
-  wire [33:0] position_z_e10f23z = position_z_e10f23z_chosen & hit_early_kept_10_wide;
+  wire [33:0] position_z_e10f23z = hit_early_kept_10 ? position_z_e10f23z_chosen : 34'd0;
   wire [33:0] normal_x_e10f23z_chosen = grazing_early_kept_7 ? 34'hff800000 : mul_unit_1_result;
-  wire [33:0] normal_x_e10f23z = normal_x_e10f23z_chosen & hit_early_kept_7_wide;
-  wire [33:0] normal_z_e10f23z_chosen = mul_unit_1_result & not_grazing_early_kept_7_wide;
-  wire [33:0] normal_z_e10f23z = normal_z_e10f23z_chosen & hit_early_kept_7_wide;
+  wire [33:0] normal_x_e10f23z = hit_early_kept_7 ? normal_x_e10f23z_chosen : 34'd0;
+  wire [33:0] normal_z_e10f23z_chosen = grazing_early_kept_7 ? 34'd0 : mul_unit_1_result;
+  wire [33:0] normal_z_e10f23z = hit_early_kept_7 ? normal_z_e10f23z_chosen : 34'd0;
   wire [33:0] position_y_e10f23z_chosen = grazing_early_kept_10 ? y1_e10f23z_kept_4 : add_unit_1_result;
-  wire [33:0] position_y_e10f23z = position_y_e10f23z_chosen & hit_early_kept_10_wide;
+  wire [33:0] position_y_e10f23z = hit_early_kept_10 ? position_y_e10f23z_chosen : 34'd0;
   wire [3:0] place_of_10_in_phase_1_next = (place_of_10_in_phase_1 == 4'd9) ? 4'd0 : (place_of_10_in_phase_1 + 4'd1);
 
   // ---- at the clock edge ----
@@ -305,9 +302,9 @@ module sphere_kernel (
     if (phase_4) y1_e10f23z_kept_1 <= convert_unit_3_result;
     convert_unit_3_a <= mul_unit_1_a_choice[1] ? (mul_unit_1_a_choice[0] ? r2 : z2) : mul_unit_1_a_choice[0] ? y2 : y1;
     add_unit_1_b <=
-        add_unit_1_a_choice[1] ? (add_unit_1_a_choice[0] ? ny_times_offset_kept_1 : not_distance_33_33_wide) :
-        add_unit_1_a_choice[0] ? not_convert_unit_2_result_33_33_wide :
-        not_convert_unit_3_result_33_33_wide;
+        add_unit_1_a_choice[1] ? (add_unit_1_a_choice[0] ? ny_times_offset_kept_1 : minus_distance) :
+        add_unit_1_a_choice[0] ? minus_x2_e10f23z :
+        minus_z2_e10f23z;
     if (phase_3) ny_times_offset_kept_1 <= mul_unit_1_result;
     mul_unit_1_a <=
         mul_unit_1_a_choice[1] ? (mul_unit_1_a_choice[0] ? add_unit_1_result : ny_kept_1) :
@@ -337,9 +334,9 @@ module sphere_kernel (
     if (phase_4) x1_e10f23z_kept_1 <= convert_unit_2_result;
     add_unit_0_b <=
         add_unit_0_a_choice[2] ? nz_times_offset_kept_1 :
-        add_unit_0_a_choice[1] ? (add_unit_0_a_choice[0] ? not_distance_33_33_wide : mul_unit_0_result) :
-        add_unit_0_a_choice[0] ? not_convert_unit_3_result_33_33_wide :
-        not_convert_unit_2_result_33_33_wide;
+        add_unit_0_a_choice[1] ? (add_unit_0_a_choice[0] ? minus_distance : mul_unit_0_result) :
+        add_unit_0_a_choice[0] ? minus_z2_e10f23z :
+        minus_x2_e10f23z;
     if (phase_3) nz_times_offset_kept_1 <= mul_unit_0_result;
     mul_unit_0_b <=
         mul_unit_0_b_choice[1] ? add_unit_0_result :
@@ -443,8 +440,8 @@ module sphere_kernel (
       phase_2 <= phase_2_next;
       phase_1 <= phase_1_next;
       add_magnitudes_unit_0_a_choice <= {phase_4_next, phase_2_next};
-      mul_unit_1_a_choice <= {phase_2_next_or_phase_3_next, phase_1_next_or_phase_3_next};
-      add_unit_0_a_choice <= {phase_4_next, phase_2_next_or_phase_3_next, phase_1_next_or_phase_3_next};
+      mul_unit_1_a_choice <= {phase_2_next_or_3_next, phase_1_next_or_3_next};
+      add_unit_0_a_choice <= {phase_4_next, phase_2_next_or_3_next, phase_1_next_or_3_next};
       if (phase_3) place_of_16_in_phase_3 <= place_of_16_in_phase_3_next;
       add_unit_1_a_choice <= convert_unit_0_a_choice_next;
       if (phase_2) place_of_10_in_phase_2 <= place_of_10_in_phase_2_next;
@@ -452,7 +449,7 @@ module sphere_kernel (
       if (phase_4) place_of_16_in_phase_4 <= place_of_16_in_phase_4_next;
       if (phase_0) place_of_10_in_phase_0 <= place_of_10_in_phase_0_next;
       if (phase_1) place_of_20_in_phase_1 <= place_of_20_in_phase_1_next;
-      mul_unit_0_b_choice <= {phase_3_next_or_phase_4_next, phase_1_next | phase_2_next | phase_4_next};
+      mul_unit_0_b_choice <= {phase_3_next_or_4_next, phase_1_next | phase_2_next | phase_4_next};
       convert_unit_0_a_choice <= convert_unit_0_a_choice_next;
       convert_unit_1_a_choice <= {phase_4_next, phase_3_next};
       if (phase_1) place_of_10_in_phase_1 <= place_of_10_in_phase_1_next;

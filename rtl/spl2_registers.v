@@ -48,7 +48,7 @@ module spl2_registers (
   wire identity_granted = wr_granted & was_identity;
   assign wr_address = {dsm_line[57:6], identity_due ? 6'd0 : 6'd63};
   wire [511:0] line =
-      identity_due ? {256'd0, {capability, 32'd0, 32'd2, 128'hf885f92148fc4b0b8fd1f127a3a0b8e2}} :
+      identity_due ? {256'd0, capability, 32'd0, 32'd2, 128'hf885f92148fc4b0b8fd1f127a3a0b8e2} :
       {480'd0, scratch_value};
 
   // ---- at the clock edge ----

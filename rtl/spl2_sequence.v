@@ -65,8 +65,8 @@ module spl2_sequence (
   reg at_performance;
   reg refused;
   reg at_start;
-  reg not_buffer_lines_wide_below_source_lines_d1;
-  reg not_buffer_lines_wide_below_d1;
+  reg source_fits;
+  reg destination_fits;
   reg [31:0] buffer_lines;
   reg [32:0] destination_lines;
   reg [31:0] job_count;
@@ -97,8 +97,8 @@ module spl2_sequence (
 
   // ---- logic ----
   wire switches = at_poll & context_due & ~waiting & ~rd_granted & ~asks;
-  wire pause_any = |pause;
-  wire may_ask = ~waiting & ~rd_granted & ~pause_any;
+  wire pauses = |pause;
+  wire may_ask = ~waiting & ~rd_granted & ~pauses;
   wire is_new = ~some_job | is_other;
   wire got_job = at_poll & answered & has_start_word & is_new;
   wire runs = got_job | at_run;
@@ -107,11 +107,9 @@ module spl2_sequence (
   wire ran = ~refused;
   wire fences = at_fence & ~(gave_up & ran);
   wire written = wr_granted | (to_dsm & ~dsm_valid) | (at_fence & ~fences);
-  wire fits = not_buffer_lines_wide_below_source_lines_d1 & not_buffer_lines_wide_below_d1;
-  wire at_start_and_not_fits = at_start & ~fits;
-  wire [32:0] buffer_lines_wide = {1'b0, buffer_lines};
-  wire [32:0] job_count_wide_plus_1 = {1'b0, job_count} + 33'd1;
-  wire [32:0] job_count_wide_plus_1_32_1_wide = {1'b0, job_count_wide_plus_1[32:1]};
+  wire fits = source_fits & destination_fits;
+  wire refuses = at_start & ~fits;
+  wire [32:0] count_to_2 = {1'b0, job_count} + 33'd1;
   wire got_context = at_context & answered;
   assign start = at_start & fits;
   wire overdue = waiting & age[16];
@@ -119,27 +117,23 @@ module spl2_sequence (
   wire [57:0] address = at_context ? job_context_line : source_line;
   wire [57:0] first_pairs = source_line + 58'd1;
   wire aborts = answered & has_abort & runs;
-  wire [511:0] latency_line = {416'd0, {job_sequence, first_write, first_read}};
-  wire [63:0] ran_wide = {64{ran}};
+  wire [511:0] latency_line = {416'd0, job_sequence, first_write, first_read};
   wire [511:0] performance_line = {
-    288'd0, {job_sequence, cycles_output & ran_wide, cycles_input & ran_wide, cycles_busy & ran_wide}
+    288'd0, job_sequence, ran ? cycles_output : 64'd0, ran ? cycles_input : 64'd0, ran ? cycles_busy : 64'd0
   };
-  wire [31:0] ran_wide_2 = {32{ran}};
   wire [511:0] status_line = {
     128'd0,
-    {
-      128'hf885f92148fc4b0b8fd1f127a3a0b8e2,
-      capability,
-      32'd2,
-      first_invalid | {32{refused}},
-      invalid & ran_wide_2,
-      contacts & ran_wide_2,
-      job_sequence,
-      20'd0,
-      ran ? core_error : 4'd8,
-      7'd0,
-      1'b1
-    }
+    128'hf885f92148fc4b0b8fd1f127a3a0b8e2,
+    capability,
+    32'd2,
+    first_invalid | {32{refused}},
+    ran ? invalid : 32'd0,
+    ran ? contacts : 32'd0,
+    job_sequence,
+    20'd0,
+    ran ? core_error : 4'd8,
+    7'd0,
+    1'b1
   };
   wire [511:0] written_line = to_dsm ? (at_latency ? latency_line : performance_line) : status_line;
 
@@ -147,13 +141,13 @@ module spl2_sequence (
   always @(posedge clk) begin
     has_start_word <= rsp_data[31:0] == 32'h406cccff;
     is_other <= rsp_data[127:96] != job_sequence;
-    not_buffer_lines_wide_below_source_lines_d1 <= buffer_lines_wide >= source_lines;
-    not_buffer_lines_wide_below_d1 <= buffer_lines_wide >= destination_lines;
+    source_fits <= {1'b0, buffer_lines} >= source_lines;
+    destination_fits <= {1'b0, buffer_lines} >= destination_lines;
     if (got_context) buffer_lines <= compared[223:192];
-    destination_lines <= job_count_wide_plus_1_32_1_wide;
+    destination_lines <= {1'b0, count_to_2[32:1]};
     if (got_job) job_count <= compared[63:32];
     compared <= rsp_data;
-    source_lines <= job_count_wide_plus_1_32_1_wide + 33'd1;
+    source_lines <= {1'b0, count_to_2[32:1]} + 33'd1;
     if (got_job) job_sequence <= compared[127:96];
     is_own <= rsp_valid & waiting & ((rsp_mdata[13:12] == 2'd1) & (rsp_mdata[11:0] == expected));
     if (rd_granted) expected <= read_number;
@@ -206,15 +200,17 @@ module spl2_sequence (
       waiting <= rd_granted | (waiting & ~answered & ~overdue);
       at_run <= start | (at_run & ~core_done);
       pause <=
-          ~at_status ? ((answered & ~at_context) ? (runs ? 10'd512 : 10'd32) : pause_any ? (pause - 10'd1) : pause) :
-          10'd0;
+          at_status                ? 10'd0 :
+          (answered & ~at_context) ? (runs ? 10'd512 : 10'd32) :
+          pauses                   ? (pause - 10'd1) :
+          pause;
       answered <= is_own & waiting & ~answered;
       some_job <= some_job | got_job;
       at_status <= (at_fence & written) | (at_status & ~written);
       at_fence <= (at_performance & written) | (at_fence & ~written);
-      at_latency <= at_start_and_not_fits | (at_run & core_done) | (at_latency & ~written);
+      at_latency <= refuses | (at_run & core_done) | (at_latency & ~written);
       at_performance <= (at_latency & written) | (at_performance & ~written);
-      refused <= at_start_and_not_fits | (refused & ~at_start);
+      refused <= refuses | (refused & ~at_start);
       at_start <= at_compare;
       at_compare <= at_measure;
       at_measure <= got_job;
@@ -237,8 +233,8 @@ module spl2_sequence (
   assign wr_valid = writes;
 
   // Bits that nothing needs.
-  wire unused = &{1'b0, job_count_wide_plus_1[0], compared[31:0], compared[133:128],
-    compared[511:224], dsm_line[5:0]};
+  wire unused = &{1'b0, count_to_2[0], compared[31:0], compared[133:128], compared[511:224],
+    dsm_line[5:0]};
 
 endmodule
 

@@ -61,23 +61,23 @@ module spl2_transmit (
   // ---- logic ----
   wire [5:0] next_epoch = epoch + {5'd0, start};
   assign core_epoch = next_epoch[3:0];
-  wire [11:0] not_power_on_wide = {12{~power_on}};
-  assign own_rd_granted = own_rd_valid & (own_rd_turn & rd_room);
-  wire own_wr_turn_and_wr_room = own_wr_turn & wr_room;
-  assign register_wr_granted = own_wr_turn_and_wr_room & is_register & register_wr_valid;
+  wire own_rd_goes = own_rd_turn & rd_room;
+  assign own_rd_granted = own_rd_valid & own_rd_goes;
+  wire own_wr_goes = own_wr_turn & wr_room;
+  assign register_wr_granted = own_wr_goes & is_register & register_wr_valid;
   wire own_wr_waits = register_wr_valid | end_wr_valid;
-  assign end_wr_granted = own_wr_turn_and_wr_room & ~is_register & end_wr_valid;
+  assign end_wr_granted = own_wr_goes & ~is_register & end_wr_valid;
   wire reading = own_rd_granted | (core_rd_turn & core_rd_valid & ~discards);
-  wire [57:0] own_rd_address_if_own_rd_granted = own_rd_granted ? own_rd_address : core_rd_address;
+  wire [57:0] own_rd_address_if_granted = own_rd_granted ? own_rd_address : core_rd_address;
   wire own_granted = register_wr_granted | end_wr_granted;
   wire writing = own_granted | (core_wr_turn & core_wr_valid & ~discards);
-  wire [57:0] register_wr_address_if = register_wr_valid ? register_wr_address : end_wr_address;
+  wire [57:0] own_wr_address = register_wr_valid ? register_wr_address : end_wr_address;
   wire is_fence = end_wr_fence & ~register_wr_valid;
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
-    epoch <= ~power_on ? next_epoch : 6'd0;
-    if (own_rd_granted | power_on) read_number <= (read_number + 12'd1) & not_power_on_wide;
+    epoch <= power_on ? 6'd0 : next_epoch;
+    if (own_rd_granted | power_on) read_number <= power_on ? 12'd0 : (read_number + 12'd1);
     own_rd_turn <= own_rd_valid & ~power_on;
     rd_room <= ~rd_almostfull;
     core_rd_turn <= discards | (~own_rd_valid & ~rd_almostfull);
@@ -89,32 +89,30 @@ module spl2_transmit (
     tx_rd_valid <= reading & ~power_on;
     tx_rd_hdr <= {
       6'd1,
-      own_rd_address_if_own_rd_granted[57:32],
+      own_rd_address_if_granted[57:32],
       1'b1,
       10'd0,
       4'd4,
       6'd0,
-      own_rd_address_if_own_rd_granted[31:0],
-      own_rd_granted ? {2'd1, read_number} : {2'd0, {epoch, core_rd_tag[5:0]}}
+      own_rd_address_if_granted[31:0],
+      own_rd_granted ? {2'd1, read_number} : {2'd0, epoch, core_rd_tag[5:0]}
     };
     tx_wr_valid <= writing & ~power_on;
     tx_wr_hdr <=
         own_wr_turn ? own_header :
-        {
-          6'd1, core_wr_address[57:32], 1'b1, 10'd0, 4'd2, 6'd0, core_wr_address[31:0],
-          {2'd0, {epoch, core_wr_tag[5:0]}}
-        };
+        {6'd1, core_wr_address[57:32], 1'b1, 10'd0, 4'd2, 6'd0, core_wr_address[31:0], 2'd0, epoch, core_wr_tag[5:0]};
     own_header <= {
       6'd1,
-      register_wr_address_if[57:32],
+      own_wr_address[57:32],
       register_wr_valid ? 1'b0 : end_wr_virtual,
       10'd0,
       is_fence ? 4'd5 : 4'd2,
       6'd0,
-      register_wr_address_if[31:0],
-      {2'd1, write_number}
+      own_wr_address[31:0],
+      2'd1,
+      write_number
     };
-    if (own_granted | power_on) write_number <= (write_number + 12'd1) & not_power_on_wide;
+    if (own_granted | power_on) write_number <= power_on ? 12'd0 : (write_number + 12'd1);
     tx_data <= own_wr_turn ? own_data : core_wr_data;
     own_data <= register_wr_valid ? register_wr_data : end_wr_data;
   end

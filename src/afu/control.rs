@@ -90,7 +90,7 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     // Watchdog: cycles since the last response while a request is outstanding. The count restarts when the job is to
     // end. The register does not make a timely response late.
     let silence = graph.register("silence", COUNT_BITS, 0);
-    let quiet = (response | link_idle.registered("link_idle_before")).named("not_waiting");
+    let quiet = (response | link_idle.registered("link_idle_before")).named("link_is_alive");
     let failing = graph.wire("failing", 1);
     silence.next((quiet | !busy | stops).select(silence.same(0), silence.plus(1)));
     let expired = graph.register("expired", 1, 0);
@@ -99,7 +99,8 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     // The end.
     let complete = (*run & packed & dispatched & link_idle_now).registered("complete");
     let complete = (*run & complete).named("completes");
-    let refuses = (accept & mode.any()).named("refuses");
+    let has_unknown_mode = mode.any().named("has_unknown_mode");
+    let refuses = (accept & has_unknown_mode).named("refuses");
     let causes = [
         (abort, JobError::Aborted),
         (read_failed, JobError::Read),
@@ -120,10 +121,12 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     given_up.next(!accept & (*given_up | gives_up));
     // The parts are stopped some cycles later.
     let drained = (*draining & stopped & none_inside & (link_idle | *given_up)).named("drained");
-    running.next((accept & !refuses) | (*running & !complete & !failing));
+    let takes_job = (accept & !refuses).named("takes_job");
+    running.next(takes_job | (*running & !complete & !failing));
     // A job begins once the delay lines are filled, and runs a cycle later.
-    begin.next((accept | (*waits & !failing)) & filled);
-    waits.next(((accept & !refuses) | (*waits & !failing)) & !filled);
+    let still_waits = (*waits & !failing).named("still_waits");
+    begin.next((accept | still_waits) & filled);
+    waits.next((takes_job | still_waits) & !filled);
     run.next((*run | *begin) & *running & !complete & !failing);
     draining.next(refuses | failing | (*draining & !drained));
     done.next(!accept & (*done | complete | drained));
@@ -140,7 +143,7 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     }
     let ended = gives_up.select(error.same(JobError::Watchdog.code().into()), ended).named("ended");
     // A job is accepted if no running job could end. This condition is last in the expression because it is known last.
-    let begun = mode.any().select(error.same(JobError::Mode.code().into()), error.same(0));
+    let begun = has_unknown_mode.select(error.same(JobError::Mode.code().into()), error.same(0));
     error.next(accept.select(begun, ended));
 
     // The counts begin one cycle after the start, and include that cycle, in which nothing waits yet.

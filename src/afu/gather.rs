@@ -41,11 +41,13 @@ pub(super) fn gather<'g>(
     let behind = behind.named(&name("place_behind"));
     let fills = behind.at_least(behind.same(per_line.into())).named(&name("fills"));
     let flushes = (all_out & place.any() & !carries.any()).named(&name("flushes"));
-    let wrapped = fills.select(behind.minus(per_line.into()), behind).low(place_bits).named(&name("next_place"));
+    let wrapped = fills.select(behind.minus(per_line.into()), behind).named(&name("place_in_line"));
+    let wrapped = wrapped.low(place_bits).named(&name("next_place"));
     place.next((start | flushes).select(place.same(0), wrapped));
     let went = (!start & (fills | flushes)).registered(&name("went"));
     let comes = (!start & went).registered(&name("comes"));
-    let emptied = (start | flushes | fills).delay(2).named(&name("emptied"));
+    let empties = (start | flushes | fills).named(&name("empties"));
+    let emptied = empties.delay(2).named(&name("emptied"));
 
     // Which lane's record enters which place: of the line in hand, or of the next line if its place is behind this one.
     let first = place.delay(1).named(&name("first_place"));
@@ -53,7 +55,7 @@ pub(super) fn gather<'g>(
     let carried = carries.delay(1).named(&name("carried"));
     let enters: Vec<_> = (0..lanes)
         .map(|lane| {
-            let reached = hot.extend(per_line + lanes).low(per_line + lanes - lane).append_zeros(lane);
+            let reached = hot.extend(per_line + lanes - lane).append_zeros(lane);
             reached.gate(carried.bit(lane)).delay(1).named(&name(&format!("enters_{lane}")))
         })
         .collect();

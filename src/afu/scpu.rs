@@ -34,8 +34,8 @@ pub(super) fn scpu(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>, Bui
     let mut invalid = graph.constant(1, 0);
     for (word, input) in words.iter().zip(inputs()) {
         let name = input.name;
-        let not_finite = word.slice(record.fraction_bits(), record.exponent_bits()).all();
-        let mut seen = vec![not_finite.named(&format!("{name}_not_finite"))];
+        let is_special = word.slice(record.fraction_bits(), record.exponent_bits()).all();
+        let mut seen = vec![is_special.named(&format!("{name}_is_special"))];
         if input.rule == Rule::NotNegative {
             seen.push((word.msb() & word.low(bits - 1).any()).named(&format!("{name}_negative")));
         }

@@ -37,7 +37,7 @@ pub(super) fn slot(spec: &Spec, scpu: &Arc<Module>) -> Result<Arc<Module>, Build
     // that few SCPUs never use.
     let is_used = |lane: u32| match lane {
         0 => graph.constant(1, 1),
-        _ => scpus.greater_than(scpus.same(lane.into())),
+        _ => scpus.greater_than(scpus.same(lane.into())).named(&format!("uses_lane_{lane}")),
     };
     let named = |lane: u32| targets.slice(lane * SCPU_BITS, SCPU_BITS).equals(index);
     let mine: Vec<_> = (0..lanes)
@@ -64,12 +64,13 @@ pub(super) fn slot(spec: &Spec, scpu: &Arc<Module>) -> Result<Arc<Module>, Build
     // The lanes that this SCPU answers are delayed beside it. Which lanes carry a result is known one cycle ahead of
     // the results.
     let taken = taken.into_iter().rev().reduce(Signal::concat).unwrap_or_else(|| graph.constant(1, 0));
+    let taken = if lanes > 1 { taken.named("takes_lanes") } else { taken };
     let answers_next = taken.delay(latency(scpu.latency) - 1).named("answers_soon");
     let leaves = graph.input("leaves_in", lanes);
     graph.output("leaves_out", (leaves | answers_next).registered("leaves"));
     let answers = answers_next.delay(1).named("answers");
     for lane in 0..lanes {
-        let answers = answers.bit(lane) & is_used(lane);
+        let answers = (answers.bit(lane) & is_used(lane)).named(&format!("answers_lane_{lane}"));
         let pass = |what: &str, own: Signal<'_>| {
             let name = format!("{what}_{lane}");
             let passing = graph.input(&format!("{name}_in"), own.width());

@@ -21,6 +21,11 @@ pub(super) fn not(operand: Signal<'_>) -> Option<Signal<'_>> {
 }
 
 pub(super) fn binary<'g>(left: Signal<'g>, right: Signal<'g>, op: &Op) -> Option<Signal<'g>> {
+    if matches!(op, Op::Equal | Op::Less)
+        && let Some(compared) = compare(left, right, op)
+    {
+        return Some(compared);
+    }
     let width = left.width();
     let full = ones(width);
     match (left.as_constant(), right.as_constant()) {
@@ -55,6 +60,58 @@ pub(super) fn binary<'g>(left: Signal<'g>, right: Signal<'g>, op: &Op) -> Option
             Op::And | Op::Or => Some(left),
             _ => None,
         },
+        _ => None,
+    }
+}
+
+/// A comparison that a person would write without the zeros above its operands, or without a sum with a constant.
+fn compare<'g>(left: Signal<'g>, right: Signal<'g>, op: &Op) -> Option<Signal<'g>> {
+    let is_equal = *op == Op::Equal;
+    let known = |condition| Some(left.graph().constant(1, u128::from(condition)));
+    let again = |a: Signal<'g>, b: Signal<'g>| Some(if is_equal { a.equals(b) } else { a.less_than(b) });
+    match (left.as_constant(), right.as_constant()) {
+        (None, Some(b)) => {
+            if is_equal && let Some((value, summand)) = sum_with_constant(left) {
+                return again(value, value.same(b.wrapping_sub(summand) & ones(value.width())?));
+            }
+            let value = below_zeros(left)?;
+            match b > ones(value.width())? {
+                true => known(!is_equal),
+                false => again(value, value.same(b)),
+            }
+        }
+        (Some(_), None) if is_equal => compare(right, left, op),
+        (Some(a), None) => {
+            let value = below_zeros(right)?;
+            if a > ones(value.width())? { known(false) } else { again(value.same(a), value) }
+        }
+        (None, None) => {
+            let (a, b) = (below_zeros(left)?, below_zeros(right)?);
+            let width = a.width().max(b.width());
+            (width < left.width()).then(|| again(a.extend(width), b.extend(width)))?
+        }
+        (Some(_), Some(_)) => None,
+    }
+}
+
+/// The value that an unnamed concatenation has below zeros.
+pub(super) fn below_zeros(signal: Signal<'_>) -> Option<Signal<'_>> {
+    let graph = signal.graph();
+    let node = graph.node(signal.id()?);
+    let [zeros, value] = node.operands[..] else { return None };
+    let is_extension = node.op == Op::Concat && node.name.is_none() && graph.node(zeros).op == Op::Constant(0);
+    is_extension.then(|| Signal::new(graph, value))
+}
+
+/// The other summand and the constant, modulo 2^width, of an unnamed sum or difference with a constant.
+fn sum_with_constant(signal: Signal<'_>) -> Option<(Signal<'_>, u128)> {
+    let graph = signal.graph();
+    let node = graph.node(signal.id()?);
+    let value = || Some(Signal::new(graph, *node.operands.first()?));
+    let summand = Signal::new(graph, *node.operands.get(1)?).as_constant()?;
+    match node.op {
+        Op::Add if node.name.is_none() => Some((value()?, summand)),
+        Op::Sub if node.name.is_none() => Some((value()?, summand.wrapping_neg())),
         _ => None,
     }
 }

@@ -208,6 +208,9 @@ impl<'g> Signal<'g> {
     /// One bit: any bit is set.
     #[track_caller]
     pub fn any(self) -> Self {
+        if let Some(value) = super::fold::below_zeros(self) {
+            return value.any();
+        }
         match (self.width(), self.as_constant()) {
             (1, _) => self,
             (_, Some(value)) => self.graph.constant(1, u128::from(value != 0)),

@@ -104,7 +104,7 @@ fn gradual<'g>(
     let count_bits = u32::BITS - (sum.width() - 1).leading_zeros();
     let long_exponent = large_exponent.extend(large_exponent.width().max(count_bits + 1));
     let is_near = long_exponent.drop_low(count_bits).is_zero().named("end_is_near");
-    let ends = long_exponent.low(count_bits).one_hot().low(sum.width());
+    let ends = long_exponent.low(count_bits).one_hot().named("exponent_one_hot").low(sum.width());
     let ends: Vec<_> = (0..sum.width()).map(|place| ends.bit(place) & is_near).collect();
     let end = Signal::join(&ends).named("exponent_end");
     let (distance, _) = leading_zeros((sum | end).named("sum_or_end"), "sum");

@@ -24,9 +24,9 @@ fn order<'g>(a: Signal<'g>, b: Signal<'g>, domain: Domain) -> (Signal<'g>, Signa
     // Two flushed subnormals are equal. For one subnormal and a normal number, the magnitudes decide correctly.
     let both_zero = (a.is_zero() & b.is_zero()).named("both_zero");
 
-    let across = !a.sign & b.sign;
-    let among_positive = !a.sign & !b.sign & b_is_smaller;
-    let among_negative = a.sign & b.sign & !b_is_smaller & !same;
+    let across = (!a.sign & b.sign).named("is_across_zero");
+    let among_positive = (!a.sign & !b.sign & b_is_smaller).named("is_greater_positive");
+    let among_negative = (a.sign & b.sign & !b_is_smaller & !same).named("is_greater_negative");
     let greater = ((across | among_positive | among_negative) & !both_zero).named("is_greater");
     (greater, (a.is_nan() | b.is_nan()).named("unordered"))
 }

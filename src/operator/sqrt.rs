@@ -87,7 +87,7 @@ fn root(radicand: Signal<'_>, count: u32) -> (Signal<'_>, Signal<'_>) {
     // All digits but the last, and the complement of the last.
     let (mut root, mut negative) = (one, partial.msb());
     for index in 2..count {
-        let shifted = partial.concat(next_two(index)).low(index + PLACES);
+        let shifted = partial.concat(next_two(index)).named(&format!("shifted_{index}")).low(index + PLACES);
         let low = shifted.low(PLACES);
         let carry = (low.bit(2) & (low.bit(1) | low.bit(0))).named(&format!("carry_{index}"));
         let above = shifted.drop_low(PLACES).concat(carry);

@@ -287,7 +287,7 @@ fn a_spoilt_shell_is_found_out() {
         ("afu_top.v", "wire power_on = ~reset_n;", "wire power_on = 1'b0;", "a valid is unknown"),
         (
             "spl2_transmit.v",
-            "epoch <= ~power_on ? next_epoch : 6'd0;",
+            "epoch <= power_on ? 6'd0 : next_epoch;",
             "epoch <= next_epoch;",
             "a read's header is unknown",
         ),

@@ -1,4 +1,7 @@
-//! What a reader of the Verilog meets in every configuration: lines that fit a screen.
+//! What a reader of the Verilog meets in every configuration: lines that fit a screen, and names and expressions that a
+//! person would write.
+
+use std::sync::LazyLock;
 
 use contact_afu::afu::{Afu, Spec};
 use contact_afu::config::{Config, Multipliers, Results, Shell};
@@ -32,6 +35,8 @@ fn configurations() -> Vec<Config> {
     ]
 }
 
+static LINES: LazyLock<Vec<(String, String)>> = LazyLock::new(lines);
+
 /// Each line of each module's file, with what it is a line of. Benches also hold data.
 fn lines() -> Vec<(String, String)> {
     let mut found = Vec::new();
@@ -46,9 +51,97 @@ fn lines() -> Vec<(String, String)> {
     found
 }
 
+/// The name that a line declares, and whether it is that of a register.
+fn declared(line: &str) -> Option<(&str, bool)> {
+    let line = line.trim_start();
+    let line = line.strip_prefix("output ").unwrap_or(line);
+    let (kind, rest) = line.split_once(' ').filter(|(kind, _)| matches!(*kind, "reg" | "wire"))?;
+    let rest = rest.trim_start();
+    let name = if rest.starts_with('[') { rest.split_once("] ")?.1.trim_start() } else { rest };
+    let end = name.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(name.len());
+    Some((&name[..end], kind == "reg"))
+}
+
+/// The fault of a name, if a person would have chosen another one.
+fn fault(name: &str, is_register: bool) -> Option<&'static str> {
+    const BETWEEN: [&str; 12] =
+        ["or", "and", "if", "unless", "plus", "minus", "equals", "below", "times", "xor", "nor", "with"];
+    let is_number = |word: &str| !word.is_empty() && word.bytes().all(|byte| byte.is_ascii_digit());
+    let is_stage = |word: &str| word.strip_prefix(['s', 'd']).is_some_and(is_number);
+    let words: Vec<&str> = name.split('_').filter(|word| !is_stage(word)).collect();
+    let last = words.last().copied().unwrap_or_default();
+    match () {
+        () if words.contains(&"not") => Some("a negation is called not_"),
+        () if words.contains(&"wide") => Some("a widening has a name"),
+        () if is_register && last == "next" => Some("a register has the name of a next value"),
+        () if BETWEEN.contains(&last) => Some("the name is cut off"),
+        () if words.windows(2).any(|pair| pair.iter().all(|word| BETWEEN.contains(word))) => {
+            Some("the name is cut off")
+        }
+        () if words[0].strip_prefix('n').is_some_and(is_number) => Some("the name begins with a constant"),
+        () if name.len() > 72 => Some("the name is too long"),
+        () => None,
+    }
+}
+
+#[test]
+fn names_are_those_that_a_person_would_choose() {
+    let faults: std::collections::BTreeSet<String> = LINES
+        .iter()
+        .filter_map(|(place, line)| {
+            let (name, is_register) = declared(line)?;
+            Some(format!("{name} in {place}: {}", fault(name, is_register)?))
+        })
+        .collect();
+    assert!(faults.is_empty(), "{faults:#?}");
+    // Names that the printer once made.
+    for (name, is_register) in [
+        ("not_buffer_lines_wide_below_d1", true),
+        ("align_by_16_loses_or_or_or_or_s2", true),
+        ("accept_and_not_refuses", false),
+        ("word_0_next", true),
+        ("a_significand_3_0_zeros_if_s1", true),
+        ("scpus_0_0_wide", false),
+        ("n1_below_scpus", false),
+    ] {
+        assert!(fault(name, is_register).is_some(), "{name}");
+    }
+    assert_eq!(declared("  output reg  [511:0] line_next,"), Some(("line_next", true)));
+}
+
+/// True if a sum with a constant is compared with a constant, or if zeros stand above zeros.
+fn is_unfolded(line: &str) -> bool {
+    let is_constant = |text: &str| {
+        let width = text.bytes().take_while(u8::is_ascii_digit).count();
+        width > 0 && text[width..].starts_with("'d")
+    };
+    let compared = line.match_indices(") == ").any(|(at, sign)| {
+        let summand = line[..at].rsplit_once(" + ").map_or("", |(_, last)| last);
+        let is_whole = !summand.contains(['(', ')', ' ']);
+        is_whole && is_constant(summand) && is_constant(&line[at + sign.len()..])
+    });
+    let above = line.match_indices("'d0, {").any(|(at, sign)| {
+        // `{1'b0, {4{x}}}` repeats a bit, and `{1'b0, {1'b0, a} + b}` is a sum.
+        let rest = &line[at + sign.len()..];
+        let close = rest.find('}').map_or("", |close| &rest[close + 1..]);
+        !rest.starts_with(|c: char| c.is_ascii_digit()) && (close.starts_with('}') || close.starts_with(','))
+    });
+    compared || above
+}
+
+#[test]
+fn constants_are_folded() {
+    for (place, line) in &*LINES {
+        assert!(!is_unfolded(line), "{place}: {line}");
+    }
+    assert!(is_unfolded("  wire a = (turn + 2'd2) == 2'd2;"));
+    assert!(is_unfolded("  wire [7:0] flags = {5'd0, {flow, hit}};"));
+    assert!(!is_unfolded("  wire a = (turn + 2'd2) == scpus;"));
+}
+
 #[test]
 fn every_line_fits_120_columns() {
-    for (place, line) in lines() {
+    for (place, line) in &*LINES {
         assert!(line.len() <= 120, "{place}: {} columns: {line}", line.len());
         assert_eq!(line.trim_end(), line, "{place}: space at the end");
     }

@@ -55,7 +55,15 @@ impl Expressions<'_> {
             Op::Mul => self.product(node),
             Op::Equal => infix("=="),
             Op::Less => infix("<"),
-            Op::Mux => format!("{} ? {} : {}", term(0), term(1), self.otherwise(node.operands[2])),
+            Op::Mux => {
+                let [condition, yes, no] = [0, 1, 2].map(|position| node.operands[position]);
+                match self.complemented(condition).filter(|_| !self.is_choice(no)) {
+                    Some(condition) => {
+                        format!("{} ? {} : {}", self.term(condition), self.term(no), self.otherwise(yes))
+                    }
+                    None => format!("{} ? {} : {}", term(0), term(1), self.otherwise(no)),
+                }
+            }
             Op::Concat => self.concatenation(node),
             Op::Slice { low } => self.slice(node, *low),
             Op::OneHot => format!("{} << {}", constant(node.width, 1), term(0)),
@@ -84,8 +92,23 @@ impl Expressions<'_> {
 
     /// The last operand of a choice: another choice needs no parentheses there.
     fn otherwise(&self, id: NodeId) -> String {
-        let is_choice = self.module.node(id).op == Op::Mux && self.names.declared[id.index()].is_none();
-        if is_choice { self.definition(id) } else { self.term(id) }
+        if self.is_choice(id) { self.definition(id) } else { self.term(id) }
+    }
+
+    /// True for a choice that is written in place.
+    fn is_choice(&self, id: NodeId) -> bool {
+        let node = self.module.node(id);
+        let is_open = self.names.declared[id.index()].is_none();
+        is_open && (node.op == Op::Mux || node.op == Op::And && self.gated(node).is_some())
+    }
+
+    /// The operand of a complement that is written in place and has no sign of its own.
+    fn complemented(&self, id: NodeId) -> Option<NodeId> {
+        let node = self.module.node(id);
+        let operand = *node.operands.first().filter(|_| node.op == Op::Not)?;
+        let in_place = |id: NodeId| self.names.declared[id.index()].is_none();
+        let has_sign = in_place(operand) && matches!(self.module.node(operand).op, Op::Less | Op::Equal);
+        (in_place(id) && !has_sign).then_some(operand)
     }
 
     /// Not less is at least; not equal has a sign of its own; otherwise the complement.
@@ -104,7 +127,11 @@ impl Expressions<'_> {
     fn gated(&self, node: &Node) -> Option<String> {
         let [value, mask] = node.operands[..] else { return None };
         let condition = self.module.repeated_bit(mask).filter(|_| self.names.declared[mask.index()].is_none())?;
-        Some(format!("{} ? {} : {}", self.term(condition), self.term(value), constant(node.width, 0)))
+        let zero = constant(node.width, 0);
+        Some(match self.complemented(condition) {
+            Some(condition) => format!("{} ? {zero} : {}", self.term(condition), self.otherwise(value)),
+            None => format!("{} ? {} : {zero}", self.term(condition), self.term(value)),
+        })
     }
 
     /// Adds the complement with a carry in, as carry chains do. So no tool builds two chains and a multiplexer.
@@ -131,19 +158,43 @@ impl Expressions<'_> {
         format!("{left} * {right}")
     }
 
+    /// Concatenations within a concatenation are one with it, and so are zeros that meet.
     fn concatenation(&self, node: &Node) -> String {
+        let mut operands = Vec::new();
+        self.flatten(node, &mut operands);
         let mut parts = Vec::new();
-        let mut rest = &node.operands[..];
+        let mut rest = &operands[..];
         while let [first, ..] = rest {
-            let run = rest.iter().take_while(|id| *id == first).count();
-            let text = self.value(*first);
-            parts.push(if run > 1 { format!("{{{run}{{{text}}}}}") } else { text });
+            let zeros = rest.iter().map_while(|id| self.zeros(*id)).collect::<Vec<_>>();
+            let (run, text) = match zeros.len() {
+                0 => (rest.iter().take_while(|id| *id == first).count(), self.value(*first)),
+                run => (run, constant(zeros.iter().sum(), 0)),
+            };
+            parts.push(if run > 1 && zeros.is_empty() { format!("{{{run}{{{text}}}}}") } else { text });
             rest = &rest[run..];
         }
         match &parts[..] {
             [only] if only.starts_with('{') => only.clone(),
             _ => format!("{{{}}}", parts.join(", ")),
         }
+    }
+
+    fn flatten(&self, node: &Node, operands: &mut Vec<NodeId>) {
+        for &id in &node.operands {
+            let part = self.module.node(id);
+            let is_open = part.op == Op::Concat && self.names.declared[id.index()].is_none();
+            if is_open && self.module.repeated_bit(id).is_none() {
+                self.flatten(part, operands);
+            } else {
+                operands.push(id);
+            }
+        }
+    }
+
+    /// The number of bits of a constant zero that is written in place.
+    fn zeros(&self, id: NodeId) -> Option<u32> {
+        let node = self.module.node(id);
+        (node.op == Op::Constant(0) && self.names.declared[id.index()].is_none()).then_some(node.width)
     }
 
     fn slice(&self, node: &Node, low: u32) -> String {

@@ -2,6 +2,7 @@
 //! operand sized. It is clean under `-Wall` without pragmas, because widths always match.
 
 mod delay;
+mod derive;
 mod expression;
 mod instances;
 mod layout;

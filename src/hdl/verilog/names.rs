@@ -4,9 +4,8 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 
 use super::super::keywords::keywords;
 use super::super::module::{Module, Node, NodeId, Op};
-
-/// A derived name longer than this is cut back to its first part.
-const LONGEST_DERIVED: usize = 36;
+use super::derive::Derivation;
+use super::print::is_register;
 
 /// Properties of each node before text is made.
 pub(super) struct Names {
@@ -34,8 +33,9 @@ impl Names {
             if names.declared[index].is_some() || !uses.needs_name(module, id) {
                 continue;
             }
-            let next = next_of.get(&id).map(|register| format!("{register}_next"));
-            let wanted = node.name.clone().or(next).unwrap_or_else(|| names.derive(module, id));
+            let next = next_of.get(&id).filter(|_| !is_register(module, id)).map(|of| format!("{of}_next"));
+            let derive = || Derivation { module, declared: &names.declared }.name(id);
+            let wanted = node.name.clone().or(next).unwrap_or_else(derive);
             let name = unique(&taken, wanted);
             taken.insert(name.clone());
             names.declared[index] = Some(name);
@@ -60,99 +60,12 @@ impl Names {
             }
         }
     }
-
-    /// A name that says what the value is.
-    fn derive(&self, module: &Module, id: NodeId) -> String {
-        let node = module.node(id);
-        if let Op::Delay { .. } = node.op {
-            return self.delayed(module, id);
-        }
-        let part = |position: usize| self.short(module, node.operands[position]);
-        let two = |word: &str| join(&part(0), word, &part(1));
-        match &node.op {
-            Op::Not => format!("not_{}", part(0)),
-            Op::And => two("and"),
-            Op::Or => two("or"),
-            Op::Xor => two("xor"),
-            Op::Add => two("plus"),
-            Op::Sub => two("minus"),
-            Op::SubAdd => two("minus_or_plus"),
-            Op::Mul => two("times"),
-            Op::Equal => two("equals"),
-            Op::Less => two("below"),
-            Op::Mux => match module.node(node.operands[1]).op {
-                Op::Constant(_) => join(&part(2), "unless", &part(0)),
-                _ => join(&part(1), "if", &part(0)),
-            },
-            Op::Slice { low } => format!("{}_{}_{low}", part(0), low + node.width - 1),
-            Op::OneHot => format!("{}_one_hot", part(0)),
-            Op::Lookup(_) => format!("{}_word", part(0)),
-            Op::Any => format!("{}_any", part(0)),
-            Op::All => format!("{}_all", part(0)),
-            Op::Concat => {
-                let first = node.operands.iter().find(|id| !matches!(module.node(**id).op, Op::Constant(_)));
-                first.map_or_else(|| "constant".to_owned(), |id| format!("{}_wide", self.short(module, *id)))
-            }
-            Op::MemoryRead { memory } => format!("{}_word", module.memories[*memory].name),
-            Op::InstanceOutput { instance, port } => {
-                let instance = &module.instances[*instance];
-                format!("{}_{}", instance.name, instance.module.ports[*port].name)
-            }
-            Op::Register { .. } => "state".to_owned(),
-            Op::Parameter(index) => format!("{}_value", module.parameters[*index].name.to_lowercase()),
-            Op::Input | Op::Constant(_) | Op::Wire | Op::Delay { .. } => "value".to_owned(),
-        }
-    }
-
-    /// A delayed value is its source's name and the stage it has come to, or the cycles it has waited.
-    fn delayed(&self, module: &Module, id: NodeId) -> String {
-        let (mut root, mut total) = (id, 0);
-        while let Op::Delay { cycles } = module.node(root).op {
-            total += cycles;
-            root = module.node(root).operands[0];
-        }
-        let base = self.short(module, root);
-        match stage(module, id) {
-            Some(stage) => format!("{base}_s{stage}"),
-            None => format!("{base}_d{total}"),
-        }
-    }
-
-    fn short(&self, module: &Module, id: NodeId) -> String {
-        let node = module.node(id);
-        if let Some(name) = self.declared[id.index()].as_ref().or(node.name.as_ref()) {
-            return name.clone();
-        }
-        match node.op {
-            Op::Constant(value) => format!("{value}"),
-            _ => self.derive(module, id),
-        }
-    }
 }
 
 /// Values that only a named register uses.
 fn next_values(module: &Module) -> HashMap<NodeId, &str> {
     let registers = module.nodes.iter().filter(|node| matches!(node.op, Op::Register { .. }));
     registers.filter_map(|node| Some((node.operands[0], node.name.as_deref()?))).collect()
-}
-
-/// The stage in which a value is available. Each rank of registers adds one.
-pub(super) fn stage(module: &Module, id: NodeId) -> Option<u32> {
-    let node: &Node = module.node(id);
-    match node.op {
-        Op::Delay { cycles } if node.stage.is_none() => Some(stage(module, node.operands[0])? + cycles),
-        Op::Input if module.nodes.iter().any(|n| n.stage.is_some()) => Some(node.stage.unwrap_or(0)),
-        _ => node.stage,
-    }
-}
-
-fn join(left: &str, word: &str, right: &str) -> String {
-    let whole = format!("{left}_{word}_{right}");
-    if whole.len() <= LONGEST_DERIVED {
-        return whole;
-    }
-    let cut: String = left.chars().take(LONGEST_DERIVED).collect();
-    format!("{}_{word}", cut.trim_end_matches('_'))
 }
 
 /// Two values of one name are distinguished by a number: the only counter in a name.
@@ -169,6 +82,12 @@ fn unique(taken: &HashSet<String>, wanted: String) -> String {
         }
         number += 1;
     }
+}
+
+/// True if a concatenation has one operand beside zeros.
+fn is_between_zeros(module: &Module, node: &Node) -> bool {
+    let others = node.operands.iter().filter(|id| module.node(**id).op != Op::Constant(0));
+    others.count() == 1
 }
 
 /// The number of uses of each node, and whether a use needs an identifier.
@@ -203,6 +122,14 @@ impl Uses {
                 }
             }
         }
+        // What is written in place again and again is read as often.
+        for id in module.ids().collect::<Vec<_>>().into_iter().rev() {
+            let again = uses.count[id.index()].saturating_sub(1);
+            if again > 0 && uses.is_transparent(module, id) {
+                let operands: BTreeSet<_> = module.node(id).operands.iter().collect();
+                operands.into_iter().for_each(|operand| uses.count[operand.index()] += again);
+            }
+        }
         for id in module.ids() {
             let inline =
                 |operand: &NodeId| if uses.needs_name(module, *operand) { 0 } else { uses.size[operand.index()] };
@@ -216,6 +143,19 @@ impl Uses {
         uses
     }
 
+    /// True for what is always written in place: a complement, a value between zeros, a bit as a mask.
+    fn is_transparent(&self, module: &Module, id: NodeId) -> bool {
+        let node = module.node(id);
+        if node.name.is_some() || self.sliced[id.index()] {
+            return false;
+        }
+        match node.op {
+            Op::Not => true,
+            Op::Concat => module.repeated_bit(id).is_some() || is_between_zeros(module, node),
+            _ => false,
+        }
+    }
+
     fn needs_name(&self, module: &Module, id: NodeId) -> bool {
         let node = module.node(id);
         match node.op {
@@ -225,7 +165,7 @@ impl Uses {
             Op::Input | Op::Wire | Op::Lookup(_) => true,
             _ if node.name.is_some() || self.sliced[id.index()] => true,
             Op::Slice { .. } => false,
-            Op::Not => self.size[id.index()] > 1 && self.count[id.index()] > 1,
+            Op::Not | Op::Concat if self.is_transparent(module, id) => false,
             _ => self.count[id.index()] > 1 || self.size[id.index()] > LARGEST_INLINE,
         }
     }

@@ -5,9 +5,9 @@ use std::collections::BTreeSet;
 use super::super::module::{Instance, InstanceCount, Memory, Module, NodeId, Op};
 use super::super::state::address_width;
 use super::delay::DelayKind;
+use super::derive::stage;
 use super::expression::{Expressions, constant, range};
 use super::lookup::{is_block_memory, lookup};
-use super::names::stage;
 use super::print::is_register;
 use super::{Memories, Style};
 

@@ -37,11 +37,12 @@ impl Recurrence for Reciprocal {
         let (partial, zeros) = (state[0], state[1]);
         let Step { partial, negative } = Step { partial, negative: partial.msb() }.next(kept[0], index);
         let zeros = if zeros.width() == 1 { negative } else { zeros.low(zeros.width() - 1).concat(negative) };
+        let zeros = zeros.named(&format!("zeros_{index}"));
         vec![partial, zeros]
     }
 
     fn outcome<'g>(&self, state: &[Signal<'g>]) -> Vec<Signal<'g>> {
-        vec![!state[1]]
+        vec![(!state[1]).named("digits")]
     }
 
     fn finish<'g>(&self, a: Signal<'g>, outcome: &[Signal<'g>]) -> Signal<'g> {

@@ -50,12 +50,14 @@ impl Recurrence for Root {
         let graph = root.graph();
         // With the root so far r and the remainder m, a digit 1 subtracts 4r + 1 from 4m + the next two bits.
         let shifted = remainder.concat(rest.map_or_else(|| graph.constant(2, 0), |rest| rest.high(2)));
+        let shifted = shifted.named(&format!("shifted_{index}"));
         let trial = root.concat(graph.constant(2, 1)).extend(shifted.width());
         let difference = (shifted - trial).named(&format!("difference_{index}"));
         let negative = difference.msb().named(&format!("borrow_{index}"));
         let width = remainder.width();
         let remainder = negative.select(shifted.low(width), difference.low(width)).named(&format!("remainder_{index}"));
-        let mut state = vec![remainder, root.low(root.width() - 1).concat(!negative)];
+        let root = root.low(root.width() - 1).concat(!negative).named(&format!("root_{index}"));
+        let mut state = vec![remainder, root];
         state.extend(rest.map(|rest| match rest.width() {
             2 => graph.constant(2, 0),
             width => rest.low(width - 2).append_zeros(2),

@@ -102,7 +102,7 @@ impl<'g> Operand<'g> {
         if !self.domain.keeps_subnormals() {
             return self.exponent;
         }
-        let low = self.exponent.bit(0) | !self.hidden;
+        let low = self.name(self.exponent.bit(0) | !self.hidden, "effective_exponent_0");
         self.name(self.exponent.drop_low(1).concat(low), "effective_exponent")
     }
 

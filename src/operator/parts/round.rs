@@ -75,9 +75,9 @@ impl<'g> Fields<'g> {
     /// These fields if `condition` (1 bit) is set, otherwise zero, which rounding does not change.
     pub fn gate(self, condition: Signal<'g>) -> Self {
         Self {
-            exponent: self.exponent.gate(condition),
+            exponent: self.exponent.gate(condition).named("exponent_field"),
             doubled: self.doubled.map(|doubled| doubled & condition),
-            ..self.with_fraction(self.fraction.gate(condition), condition)
+            ..self.with_fraction(self.fraction.gate(condition).named("fraction_field"), condition)
         }
     }
 

@@ -84,7 +84,7 @@ impl<'g> Signed<'g> {
         let width = width_for(min, max);
         let one = self.bits.graph().constant(1, 1);
         Self {
-            bits: (self.bits(width).concat(one) + other.bits(width).concat(one)).drop_low(1),
+            bits: (self.bits(width).concat(one) + other.bits(width).concat(one)).named("sum_and_carry").drop_low(1),
             min,
             max,
             offset_from: None,

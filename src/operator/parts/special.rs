@@ -41,7 +41,8 @@ pub fn result<'g>(domain: Domain, sign: Signal<'g>, value: Unrounded<'g>, specia
 pub fn pack<'g>(domain: Domain, sign: Signal<'g>, fields: Fields<'g>, special: Special<'g>) -> Signal<'g> {
     if domain.is_normal() {
         let is_zero = special.zero.named("is_zero");
-        return sign.named("sign").concat(fields.gate(!is_zero).rounded());
+        let is_nonzero = (!is_zero).named("is_nonzero");
+        return sign.named("sign").concat(fields.gate(is_nonzero).rounded());
     }
     let Chosen { is_special, nan, exponent, fraction } = Chosen::of(domain, special, fields.overflow, fields.underflow);
     let magnitude = if fields.underflow.as_constant() == Some(0) {

@@ -128,7 +128,7 @@ impl<'g> Emitter<'_, 'g> {
                 if at.is_none() {
                     let Some(signal) = self.at(id, start) else { continue };
                     known.push(key);
-                    signals.push(if negated { negate(signal) } else { signal });
+                    signals.push(if negated { self.negate(id, signal) } else { signal });
                 }
                 by_phase[phase] = Some(at.unwrap_or(known.len() - 1));
             }
@@ -143,6 +143,15 @@ impl<'g> Emitter<'_, 'g> {
     fn operand(&self, index: usize, position: usize) -> ValueId {
         let operands = &self.kernel.values[index].operands;
         operands[position.min(operands.len() - 1)]
+    }
+
+    /// The number with the opposite sign.
+    fn negate(&self, id: ValueId, number: Signal<'g>) -> Signal<'g> {
+        let opposite = (!number.msb()).concat(number.low(number.width() - 1));
+        match self.names.signal(id) {
+            Some(name) => opposite.named(&format!("minus_{name}")),
+            None => opposite,
+        }
     }
 
     fn at(&self, id: ValueId, cycle: u32) -> Option<Signal<'g>> {
@@ -165,7 +174,11 @@ impl<'g> Emitter<'_, 'g> {
                 let last = operands.len() - 1;
                 let operand = |position: usize| {
                     let signal = operands[position.min(last)];
-                    if position == 1 && self.kinds.negated[id.index()] { negate(signal) } else { signal }
+                    if position == 1 && self.kinds.negated[id.index()] {
+                        self.negate(value.operands[position.min(last)], signal)
+                    } else {
+                        signal
+                    }
                 };
                 let inputs: Vec<_> = ports.iter().enumerate().map(|(index, port)| (*port, operand(index))).collect();
                 let mut inputs = inputs;
@@ -183,9 +196,4 @@ impl<'g> Emitter<'_, 'g> {
             None => signal,
         })
     }
-}
-
-/// The number with the opposite sign.
-fn negate(number: Signal<'_>) -> Signal<'_> {
-    (!number.msb()).concat(number.low(number.width() - 1))
 }

@@ -5,7 +5,7 @@ use super::Rows;
 
 const CONTROL: Rows = &[(
     "a job begins with the last one's error",
-    "error <= accept ? (mode_any ? 4'd5 : 4'd0) : ended;",
+    "error <= accept ? (has_unknown_mode ? 4'd5 : 4'd0) : ended;",
     "error <= ended;",
     12,
     "runs_without_error",
@@ -22,7 +22,7 @@ const ROUNDS: Rows = &[
     ),
     (
         "a group crosses its block",
-        "wire unit_1 = turn_within_wide_plus_1 < block_size;",
+        "wire unit_1 = turn_within_plus_1 < block_size;",
         "wire unit_1 = 1'b1;",
         25,
         "every_other_cycle",
@@ -35,22 +35,22 @@ const PHASE: Rows =
 const SIEVE: Rows = &[
     (
         "hits are dropped too",
-        "dropped_pairs <= (group_here - hits_to_1) & not_start_wide;",
-        "dropped_pairs <= group_here & not_start_wide;",
+        "dropped_pairs <= start ? 2'd0 : (group_here - hits_to_1);",
+        "dropped_pairs <= start ? 2'd0 : group_here;",
         27,
         "each_is_sifted",
     ),
     (
         "a hit is counted and lost",
-        "hits_rank_0 <= hits_to_1 & not_start_wide;",
-        "hits_rank_0 <= hits_to_0 & not_start_wide;",
+        "hits_rank_0 <= start ? 2'd0 : hits_to_1;",
+        "hits_rank_0 <= start ? 2'd0 : hits_to_0;",
         27,
         "no_hit_is_lost",
     ),
 ];
 
 const HITS_CREDITS: Rows =
-    &[("room is never used up", "({3'd0, places_freed} - entered_wide)", "{3'd0, places_freed}", 21, "hits_add_up")];
+    &[("room is never used up", "({3'd0, places_freed} - {4'd0, entered})", "{3'd0, places_freed}", 21, "hits_add_up")];
 
 const BACKLOG: Rows = &[
     ("a hit counts as nine", "(left + {4'd0, put})", "(left + (|put ? 6'd17 : 6'd0))", 29, "backlog_fits"),

@@ -16,15 +16,15 @@ const CONTROL: Rows = &[
     ),
     (
         "begins without waiting for the delay lines",
-        "(accept | waits_to_begin_and_not_failing) & filled_heard;",
+        "(accept | still_waits) & filled_heard;",
         "accept;",
         3,
         "nothing_before_it_is_filled",
     ),
     (
         "waits for the delay lines after it began",
-        "(accept_and_not_refuses | waits_to_begin_and_not_failing) & ~filled_heard;",
-        "accept_and_not_refuses | waits_to_begin_and_not_failing;",
+        "(takes_job | still_waits) & ~filled_heard;",
+        "takes_job | still_waits;",
         9,
         "waits_or_runs",
     ),
@@ -48,7 +48,7 @@ const FEEDER: Rows = &[
         9,
         "takes_a_line",
     ),
-    ("a turn too many", "(turn_plus_2 >= scpus_wide)", "(turn_plus_2 > scpus_wide)", 21, "turn_is_an_scpu"),
+    ("a turn too many", "(turn_plus_2 >= {1'b0, scpus})", "(turn_plus_2 > {1'b0, scpus})", 21, "turn_is_an_scpu"),
     ("two pairs count as one", "entered <= go_1 ? 2'd2 : ", "entered <= go_1 ? 2'd1 : ", 20, "each_once"),
     ("counts no line that it takes", "if (start_or_take) lines_left", "if (start) lines_left", 19, "flags_are_right"),
     ("every line is short", "one_lines_left ? last_place : 1'b1", "last_place", 19, "only_last_is_short"),
@@ -57,14 +57,14 @@ const FEEDER: Rows = &[
 const CREDITS: Rows = &[
     (
         "pairs that came out are still inside",
-        "(pairs_inside + entered_wide) - {4'd0, emerged_now};",
-        "pairs_inside + entered_wide;",
+        "(pairs_inside + {4'd0, entered}) - {4'd0, emerged_now};",
+        "pairs_inside + {4'd0, entered};",
         27,
         "inside_is_right",
     ),
     (
         "room is never used up",
-        "(line_left ? 6'd2 : 6'd0) - entered_wide",
+        "(line_left ? 6'd2 : 6'd0) - {4'd0, entered}",
         "line_left ? 6'd2 : 6'd0",
         21,
         "places_add_up",
@@ -78,8 +78,8 @@ const CREDITS: Rows = &[
     ),
     (
         "a pair takes eight places",
-        "(line_left ? 6'd2 : 6'd0) - entered_wide",
-        "(line_left ? 6'd2 : 6'd0) - {entered_wide[2:0], 3'd0}",
+        "(line_left ? 6'd2 : 6'd0) - {4'd0, entered}",
+        "(line_left ? 6'd2 : 6'd0) - {1'b0, entered, 3'd0}",
         22,
         "never_negative",
     ),
@@ -165,8 +165,8 @@ const PORT_DISPATCHER: Rows = &[
 
 const PORT_SLOT: Rows = &[(
     "every result is the complement",
-    "record_0 <= answers[0] ? unit_record : record_0_in;",
-    "record_0 <= answers[0] ? ~unit_record : record_0_in;",
+    "record_0 <= answers_lane_0 ? unit_record : record_0_in;",
+    "record_0 <= answers_lane_0 ? ~unit_record : record_0_in;",
     32,
     "wr_data",
 )];

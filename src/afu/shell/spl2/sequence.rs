@@ -73,7 +73,8 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     waiting.next(read_granted | (*waiting & !answered & !overdue));
     let pause_bits = map::RUNNING_POLL_CYCLES.max(map::IDLE_POLL_CYCLES).ilog2() + 1;
     let pause = graph.register("pause", pause_bits, 0);
-    let may_ask = (!*waiting & !read_granted & !pause.any()).named("may_ask");
+    let pauses = pause.any().named("pauses");
+    let may_ask = (!*waiting & !read_granted & !pauses).named("may_ask");
     let switches = graph.wire("switches", 1);
     let asks = ((at_context | (at_poll & !switches) | at_run) & may_ask).registered("asks");
 
@@ -119,26 +120,29 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let runs = (got_job | at_run).named("runs");
     let poll_pause = |cycles: u32| constant(pause_bits, cycles.into());
     let next_pause = runs.select(poll_pause(map::RUNNING_POLL_CYCLES), poll_pause(map::IDLE_POLL_CYCLES));
-    let counted = pause.any().select(pause.minus(1), *pause);
+    let counted = pauses.select(pause.minus(1), *pause);
     // Polling for the next job begins as soon as one has ended.
     let set_pause = (answered & !at_context).select(next_pause, counted);
     pause.next(set_pause.gate(!at_status));
 
     // Lines that the job takes, of each buffer.
     let layout = spec.layout();
-    let fits = |per_line: u32, more: u32, name: &str| {
+    let fits = |per_line: u32, more: u32, buffer: &str| {
         let rounded = job_count.extend(COUNT_BITS + 1).plus(u128::from(per_line - 1));
+        let rounded = rounded.named(&format!("count_to_{per_line}"));
         let needed = rounded.drop_low(per_line.ilog2()).extend(COUNT_BITS + 1).plus(more.into());
-        needed.delay(1).named(name).at_most(lines.extend(COUNT_BITS + 1)).delay(1)
+        let needed = needed.delay(1).named(&format!("{buffer}_lines"));
+        needed.at_most(lines.extend(COUNT_BITS + 1)).delay(1).named(&format!("{buffer}_fits"))
     };
-    let source_fits = fits(layout.pairs_per_line(), map::DATA_LINE, "source_lines");
-    let destination_fits = fits(layout.contacts_per_line(), 0, "destination_lines");
+    let source_fits = fits(layout.pairs_per_line(), map::DATA_LINE, "source");
+    let destination_fits = fits(layout.contacts_per_line(), 0, "destination");
     // The number of lines of hits is not known in advance; the core keeps to the available room.
     let only_hits = spec.config.results == Results::Hits;
     let fits = if only_hits { source_fits } else { (source_fits & destination_fits).named("fits") };
     let start = (at_start & fits).named("start");
     let refused = graph.register("refused", 1, 0);
-    refused.next((at_start & !fits) | (*refused & !at_start));
+    let refuses = (at_start & !fits).named("refuses");
+    refused.next(refuses | (*refused & !at_start));
 
     // Latencies, in cycles since the start.
     let since = graph.data_register("since_start", CYCLE_BITS);
@@ -211,7 +215,7 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     compare.next(*measure);
     begin.next(*compare);
     run.next(start | (at_run & !core_done));
-    latencies.next((at_start & !fits) | (at_run & core_done) | (at_latency & !written));
+    latencies.next(refuses | (at_run & core_done) | (at_latency & !written));
     counters.next((at_latency & written) | (at_performance & !written));
     fence.next((at_performance & written) | (at_fence & !written));
     report.next((at_fence & written) | (at_status & !written));

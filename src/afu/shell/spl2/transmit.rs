@@ -79,11 +79,12 @@ pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let write_number = number(&graph, "write_number", own_granted, power_on);
     let is_fence = (end_write_fence & !register_write).named("is_fence");
     let write_line = words::kind(&graph, Request::WriteLine);
+    let own_address = register_write.select(register_write_address, end_write_address).named("own_wr_address");
     let own_header = words::header(
         &graph,
         is_fence.select(words::kind(&graph, Request::WriteFence), write_line),
         register_write.select(constant(1, 0), end_write_virtual),
-        register_write.select(register_write_address, end_write_address),
+        own_address,
         words::own_mdata(&graph, write_number),
     );
     let own_header = own_header.delay(1).named("own_header");
@@ -136,7 +137,14 @@ impl<'g> Turns<'g> {
         let turn = graph.data_register(&format!("own_{port}_turn"), 1);
         let open = graph.data_register(&format!("core_{port}_turn"), 1);
         let room = (!almost_full).delay(1).named(&format!("{port}_room"));
-        Self { turn, open, almost_full, own_turn: *turn, own: *turn & room, core: *open }
+        Self {
+            turn,
+            open,
+            almost_full,
+            own_turn: *turn,
+            own: (*turn & room).named(&format!("own_{port}_goes")),
+            core: *open,
+        }
     }
 
     /// The next turn is the shell's if it `wants` it, even if its present request may be granted in this turn, because
