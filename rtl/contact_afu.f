@@ -7,9 +7,8 @@ spl2_sequence.v
 spl2_registers.v
 contact_afu_control.v
 contact_afu_packer.v
-line_memory_256x512.v
+line_memory.v
 contact_afu_dispatcher.v
-line_memory_64x512.v
 contact_afu_collector.v
 contact_afu_credits.v
 contact_afu_feeder.v

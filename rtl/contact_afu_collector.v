@@ -143,7 +143,10 @@ module contact_afu_collector (
     end
   end
 
-  line_memory_64x512 reorder (
+  line_memory #(
+    .DEPTH (32'd64),
+    .WIDTH (32'd512)
+  ) reorder (
     .clk         (clk),
     .write       (is_current),
     .write_index (response_slot),

@@ -165,7 +165,10 @@ module contact_afu_dispatcher (
     end
   end
 
-  line_memory_256x512 finished (
+  line_memory #(
+    .DEPTH (32'd256),
+    .WIDTH (32'd512)
+  ) finished (
     .clk         (clk),
     .write       (line_valid),
     .write_index (tail),

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::error::BuildErrors;
 use super::graph::Graph;
-use super::module::{Module, Primitive};
+use super::module::{Module, Primitive, Size};
 use super::state::address_width;
 
 /// True if the written and the read value can be left out.
@@ -19,7 +19,7 @@ pub enum Ports {
 
 /// The memory as a module with inputs `write_index`, `write_word`, `read_index` and those of `ports`, and an output
 /// `word`: what stood at `read_index` two cycles ago. A word must not be read in the cycle in which it is written. As
-/// `primitive`, if there is one.
+/// `primitive`, if there is one; otherwise gated memories of all sizes share one file.
 ///
 /// # Errors
 /// Returns the first error that the graph recorded.
@@ -30,7 +30,11 @@ pub(crate) fn block_memory(
     primitive: Option<Primitive>,
 ) -> Result<Arc<Module>, BuildErrors> {
     let kind = if ports == Ports::Gated { "line_memory" } else { "memory" };
-    let graph = Graph::new(format!("{kind}_{depth}x{width}{}", primitive.map_or("", Primitive::suffix)));
+    let shares_file = ports == Ports::Gated && primitive.is_none();
+    let graph = Graph::new(match shares_file {
+        true => kind.to_owned(),
+        false => format!("{kind}_{depth}x{width}{}", primitive.map_or("", Primitive::suffix)),
+    });
     graph.about("a word is written, another is read two cycles later: one block memory with its registers");
     let bits = address_width(depth);
     let write = match ports {
@@ -54,5 +58,6 @@ pub(crate) fn block_memory(
     let memory = Arc::make_mut(&mut module);
     memory.latency = 2;
     memory.primitive = primitive;
+    memory.size = shares_file.then_some(Size { depth, width });
     Ok(module)
 }

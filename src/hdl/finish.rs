@@ -246,6 +246,7 @@ fn renumber(inner: Inner, order: &[NodeId]) -> Module {
         paths: Vec::new(),
         latency: 0,
         primitive: None,
+        size: None,
         timing: None,
     };
     module.paths = paths(&module);

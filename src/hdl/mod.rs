@@ -32,7 +32,7 @@ pub use error::{BuildErrors, Error};
 pub use evaluate::{EvaluateError, Evaluator, Pin};
 pub use graph::Graph;
 pub use module::{
-    Instance, InstanceCount, Memory, Module, Node, NodeId, Op, Parameter, Port, Primitive, Reset, Rounded,
+    Instance, InstanceCount, Memory, Module, Node, NodeId, Op, Parameter, Port, Primitive, Reset, Rounded, Size,
 };
 pub use signal::Signal;
 pub use state::{Instantiated, MemoryHandle, Register};

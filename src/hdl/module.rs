@@ -223,6 +223,15 @@ impl Primitive {
     }
 }
 
+/// The size of a memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Size {
+    /// The number of words, at least 2.
+    pub depth: u32,
+    /// The bits of a word.
+    pub width: u32,
+}
+
 /// The reset style of generated registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Reset {
@@ -257,6 +266,9 @@ pub struct Module {
     pub latency: u32,
     /// The vendor's primitive that synthesis takes in the place of its nodes.
     pub primitive: Option<Primitive>,
+    /// The size of a memory whose file serves every size: its Verilog has the size as parameters, which an instance
+    /// sets.
+    pub size: Option<Size>,
     /// The timing of its stages, for a pipeline made by [`cut`](super::cut).
     pub timing: Option<super::Timing>,
 }

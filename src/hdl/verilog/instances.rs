@@ -1,6 +1,6 @@
 //! Instances in the body of a module: one, or a chain of as many as a parameter gives.
 
-use super::super::module::{Instance, InstanceCount, NodeId, Op, next_in_chain};
+use super::super::module::{Instance, InstanceCount, NodeId, Op, Size, next_in_chain};
 use super::expression::range;
 use super::sections::Sections;
 use super::unused::unconnected;
@@ -70,8 +70,11 @@ impl Sections<'_> {
         lines.join(",\n")
     }
 
-    /// Parameters that an instance takes from this module, if both have them.
-    fn inherited(&self, instance: &Instance) -> String {
+    /// The size of a memory, or the parameters that an instance takes from this module, if both have them.
+    fn parameters(&self, instance: &Instance) -> String {
+        if let Some(Size { depth, width }) = instance.module.size {
+            return format!("#(\n    .DEPTH (32'd{depth}),\n    .WIDTH (32'd{width})\n  ) ");
+        }
         let known = |name: &str| self.module.parameters.iter().any(|parameter| parameter.name == name);
         let parameters = instance.module.parameters.iter().filter(|parameter| parameter.rounded.is_none());
         let names = parameters.map(|p| &p.name).filter(|name| known(name));
@@ -84,7 +87,7 @@ impl Sections<'_> {
         match instance.count {
             InstanceCount::One => {
                 let list = indent(&self.connections(instance, |_| None), 4);
-                format!("\n  {module} {}{name} (\n    {list}\n  );\n", self.inherited(instance))
+                format!("\n  {module} {}{name} (\n    {list}\n  );\n", self.parameters(instance))
             }
             InstanceCount::Parameter(parameter) => self.chain(instance, &self.module.parameters[parameter].name),
         }
@@ -132,7 +135,7 @@ impl Sections<'_> {
         });
         out + &format!(
             "      {module} {}unit (\n        {}\n      );\n    end\n  endgenerate\n",
-            self.inherited(instance),
+            self.parameters(instance),
             indent(&list, 8)
         )
     }

@@ -6,6 +6,7 @@ mod derive;
 mod expression;
 mod instances;
 mod layout;
+mod line_memory;
 mod lookup;
 mod names;
 mod primitive;

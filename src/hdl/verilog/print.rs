@@ -4,6 +4,7 @@ use super::super::module::{Module, NodeId, Op, Parameter, Rounded};
 use super::Style;
 use super::expression::{Expressions, range};
 use super::layout::lay_out;
+use super::line_memory::line_memory;
 use super::names::Names;
 use super::primitive;
 use super::sections::Sections;
@@ -13,6 +14,9 @@ pub(super) fn print(module: &Module, style: &Style) -> String {
     let names = Names::of(module, &["clk", style.reset_port()]);
     let expressions = Expressions { module, names: &names };
     let mut out = header(module, style);
+    if module.size.is_some() {
+        return out + &line_memory(&format!("{}{}", style.prefix, module.name), style.memories);
+    }
     out += &interface(module, style, &names);
     out += &range_checks(module);
     out += &local_parameters(module);

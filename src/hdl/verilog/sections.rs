@@ -18,6 +18,14 @@ const LARGEST_DISTRIBUTED: u32 = 4096;
 /// A memory narrower than this would waste a block RAM.
 const NARROWEST_BLOCK: u32 = 8;
 
+/// The attribute of a block memory.
+pub(super) const fn block_style(memories: Memories) -> &'static str {
+    match memories {
+        Memories::Any => "  (* ram_style = \"block\", ramstyle = \"no_rw_check\" *)\n",
+        Memories::BlocksAndLuts | Memories::Blocks => "  (* ram_style = \"block\" *)\n",
+    }
+}
+
 pub(super) struct Sections<'a> {
     pub(super) module: &'a Module,
     pub(super) style: &'a Style,
@@ -251,10 +259,9 @@ impl<'a> Sections<'a> {
         let is_small = depth <= DEEPEST_DISTRIBUTED && depth.saturating_mul(width) <= LARGEST_DISTRIBUTED;
         let attributes = match (self.style.memories, is_small || width < NARROWEST_BLOCK) {
             (Memories::Any, true) => "  (* ram_style = \"distributed\", ramstyle = \"MLAB, no_rw_check\" *)\n",
-            (Memories::Any, false) => "  (* ram_style = \"block\", ramstyle = \"no_rw_check\" *)\n",
             (Memories::BlocksAndLuts, true) => "  (* ram_style = \"distributed\" *)\n",
-            (Memories::BlocksAndLuts | Memories::Blocks, false) => "  (* ram_style = \"block\" *)\n",
             (Memories::Blocks, true) => "",
+            (memories, false) => block_style(memories),
         };
         format!("{attributes}  reg {}{name} [0:{}];\n", range(width), depth - 1)
     }
