@@ -17,9 +17,9 @@ fp_sqrt_e10f23z_normal_every_5_last.v
 fp_sqrt_e10f23z_normal_every_5_first.v
 fp_sqrt_e10f23z_normal_every_5.v
 fp_add_magnitudes_e10f23z_normal.v
+fp_convert_e8f23_finite_to_e10f23z.v
 multiplier_12x12.v
 fp_mul_e10f23z_normal.v
-fp_convert_e8f23_finite_to_e10f23z.v
 fp_add_e10f23z_normal.v
 fp_recip_e10f23z_normal_every_5_last.v
 fp_recip_e10f23z_normal_every_5_first.v

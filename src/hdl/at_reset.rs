@@ -41,6 +41,7 @@ impl Scope<'_> {
                 Op::And => values().try_fold(mask, |all, value| Some(all & value?))?,
                 Op::Or => values().try_fold(0, |any, value| Some(any | value?))?,
                 Op::Mux => of(if of(0)? == 0 { 2 } else { 1 })?,
+                Op::Case { .. } => of((of(0)? as usize).saturating_add(1).min(node.operands.len() - 1))?,
                 Op::Slice { low } => of(0)?.checked_shr(*low)?,
                 Op::Concat => {
                     let widths = node.operands.iter().map(|operand| self.module.node(*operand).width);

@@ -251,6 +251,10 @@ impl DelayModel {
             }
             Op::Mux if constant(1) || constant(2) => self.gate + load(0),
             Op::Mux => self.mux + load(0),
+            Op::Case { .. } => {
+                let levels = (node.operands.len() - 1).next_power_of_two().ilog2();
+                f64::from(levels) * self.mux + load(0)
+            }
             Op::Add | Op::Sub => busiest() + self.adder(node.width),
             // The complement shares the look-up tables of the chain, or is as fast as a gate before it.
             Op::SubAdd => busiest().max(load(2) + self.carry_in) + self.adder(node.width),

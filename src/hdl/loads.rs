@@ -8,7 +8,7 @@ pub(super) fn loads(module: &Module) -> Vec<u32> {
     let mut loads = vec![0; module.nodes.len()];
     for node in &module.nodes {
         let chooses = |position: usize| match node.op {
-            Op::Mux => position == 0,
+            Op::Mux | Op::Case { .. } => position == 0,
             Op::SubAdd => position == 2,
             Op::And | Op::Or | Op::Xor => module.repeated_bit(node.operands[position]).is_some(),
             _ => false,

@@ -6,6 +6,7 @@
 
 mod at_reset;
 mod block_memory;
+mod case;
 mod cut;
 mod delay_block;
 mod delay_model;

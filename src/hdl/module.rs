@@ -46,6 +46,11 @@ pub enum Op {
     Less,
     /// Operands: condition (1 bit), value if set, value if clear.
     Mux,
+    /// Operands: a number of any width, then the value for each number, the last one also for all numbers above.
+    Case {
+        /// For each value, what it is for.
+        notes: Arc<[String]>,
+    },
     /// Operands from the most significant down, of any widths.
     Concat,
     /// `width` bits of the operand from bit `low` on.

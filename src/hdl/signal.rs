@@ -37,6 +37,11 @@ impl<'g> Signal<'g> {
         self.id.map_or(0, NodeId::index)
     }
 
+    /// True if both are handles of the same node.
+    pub(crate) fn is_same(self, other: Self) -> bool {
+        std::ptr::eq(self.graph, other.graph) && self.id == other.id
+    }
+
     /// The graph it belongs to.
     pub fn graph(self) -> &'g Graph {
         self.graph
@@ -45,6 +50,11 @@ impl<'g> Signal<'g> {
     /// The width in bits; 0 if it is poisoned.
     pub fn width(self) -> u32 {
         self.id.map_or(0, |id| self.graph.inner.borrow().nodes[id.index()].width)
+    }
+
+    /// The name that the value was given.
+    pub(crate) fn name(self) -> Option<String> {
+        self.graph.node(self.id?).name
     }
 
     /// The value, if it is a constant.

@@ -43,6 +43,12 @@ impl Names {
         self.signals[id.index()].as_deref()
     }
 
+    /// A constant's number, or its bits.
+    pub fn constant(&self, kernel: &Kernel, id: ValueId) -> String {
+        let bits = || kernel.as_constant(id).map_or_else(String::new, |bits| format!("0x{bits:x}"));
+        constant_name(kernel, id).unwrap_or_else(bits)
+    }
+
     /// A new name for the operator that makes the value.
     pub fn instance(&mut self, id: ValueId, operator: Operator) -> String {
         let base = format!("{}_{}", operator.name(), self.signal(id).unwrap_or("value"));

@@ -1,6 +1,7 @@
 //! What a reader of the Verilog meets in every configuration: lines that fit a screen, and names and expressions that a
 //! person would write.
 
+use std::collections::HashSet;
 use std::sync::LazyLock;
 
 use contact_afu::afu::{Afu, Spec};
@@ -137,6 +138,64 @@ fn constants_are_folded() {
     assert!(is_unfolded("  wire a = (turn + 2'd2) == 2'd2;"));
     assert!(is_unfolded("  wire [7:0] flags = {5'd0, {flow, hit}};"));
     assert!(!is_unfolded("  wire a = (turn + 2'd2) == scpus;"));
+}
+
+/// A value waits in a shift register, not in a chain of registers with a number each. A register behind a memory is no
+/// chain.
+#[test]
+fn chains_are_shift_registers() {
+    let assigned = |line: &'static str| {
+        let (left, right) = line.split_once(" <= ")?;
+        Some((left.rsplit(' ').next()?, right.trim_end_matches(';')))
+    };
+    let base = |name: &'static str| {
+        let (base, number) = name.rsplit_once("_kept_")?;
+        (!number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit())).then_some(base)
+    };
+    let is_link = |line: &'static str| {
+        let (register, source) = assigned(line)?;
+        (base(register)? == base(source)?).then_some(source)
+    };
+    assert_eq!(is_link("    if (phase_4) hit_kept_11 <= hit_kept_10;"), Some("hit_kept_10"));
+    let of_memories: HashSet<(&str, &str)> = LINES
+        .iter()
+        .filter_map(|(place, line)| {
+            let (register, source) = assigned(line)?;
+            source.contains("_words[").then_some((place.as_str(), register))
+        })
+        .collect();
+    for (place, line) in &*LINES {
+        let is_chain = is_link(line).is_some_and(|source| !of_memories.contains(&(place.as_str(), source)));
+        assert!(!is_chain, "{place}: {line}");
+    }
+}
+
+/// The header of a shared kernel says what each unit does in each phase, and so does the code.
+#[test]
+fn a_shared_kernel_prints_its_schedule() {
+    for interval in [2, 5, 10, 16] {
+        let afu = Afu::generate(Spec::from(Config { interval, ..Config::shipped() })).unwrap();
+        let files = afu.files();
+        let (_, text) = files.iter().find(|(name, _)| name == "sphere_kernel.v").unwrap();
+        let begin = text.find("// phase  cycle  unit").unwrap();
+        let header = &text[begin..text.find("\n`default_nettype none").unwrap()];
+        let phases: Vec<u32> = header
+            .lines()
+            .filter_map(|line| {
+                let mut words = line.strip_prefix("// ")?.split_whitespace().map(str::parse::<u32>);
+                let (phase, cycle) = (words.next()?.ok()?, words.next()?.ok()?);
+                assert_eq!(phase, cycle % interval, "{line}");
+                Some(phase)
+            })
+            .collect();
+        assert!(phases.len() > 30 && phases.is_sorted(), "{header}");
+        assert!(header.contains("  ny = dy * inverse_distance"), "{header}");
+        // Every selection by phase is a complete case with a comment for each phase.
+        let cases = text.matches("    case (operand_").count();
+        let notes = text.lines().filter(|line| line.starts_with("      // phase ")).count();
+        assert!(cases > 4 && notes >= 2 * cases, "interval {interval}: {cases} cases, {notes} notes");
+        assert_eq!(text.matches("      default: ").count(), text.matches("    endcase").count());
+    }
 }
 
 #[test]

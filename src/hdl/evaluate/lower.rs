@@ -179,6 +179,15 @@ impl Lowered {
             Op::Mux => {
                 (0..count).map(|i| self.step(Kind::Mux, [operands[0][0], operands[1][i], operands[2][i]], 0)).collect()
             }
+            Op::Case { .. } => {
+                let word = |value: &Vec<Word>, i: usize| value[i];
+                (0..count)
+                    .map(|i| {
+                        let values = operands[1..].iter().map(|value| word(value, i)).collect();
+                        self.choose(values, operands[0][0], widths[0])
+                    })
+                    .collect()
+            }
             Op::Concat => self.concat(node, operands, widths),
             Op::Slice { low } => (0..count).map(|i| self.slice(&operands[0], widths[0], low, bits(i), i)).collect(),
             Op::OneHot => (0..count).map(|i| self.step(Kind::OneHot, [operands[0][0]; 3], i as u32)).collect(),
@@ -206,12 +215,20 @@ impl Lowered {
         }
     }
 
-    /// Word `index` of a table's word: a tree of selections, by the address from its lowest bit on.
+    /// Word `index` of a table's word.
     fn lookup(&mut self, table: &[u128], address: &[Word], index: usize) -> Word {
         let part = |word: &u128| if index < 2 { (*word >> (64 * index)) as u64 } else { 0 };
-        let mut words: Vec<Word> = table.iter().map(|word| self.constant(part(word))).collect();
-        for bit in 0..table.len().ilog2() {
-            let chosen = self.step(Kind::Slice, [address[0]; 3], field(bit, 1));
+        let words: Vec<Word> = table.iter().map(|word| self.constant(part(word))).collect();
+        self.choose(words, address[0], table.len().ilog2())
+    }
+
+    /// The word whose place is a number of this many bits, or the last word: a tree of selections, by the number from
+    /// its lowest bit on.
+    fn choose(&mut self, mut words: Vec<Word>, number: Word, bits: u32) -> Word {
+        let last = words[words.len() - 1];
+        words.resize(1 << bits, last);
+        for bit in 0..bits {
+            let chosen = self.step(Kind::Slice, [number; 3], field(bit, 1));
             words = words
                 .chunks(2)
                 .map(|pair| match *pair {

@@ -35,6 +35,7 @@ impl Derivation<'_> {
             Op::Equal => self.compared(node, "equals", "equals"),
             Op::Less => self.compared(node, "below", "above"),
             Op::Mux => self.choice(node),
+            Op::Case { .. } => join(&part(1), "by", &part(0)),
             Op::Slice { low } if node.width == 1 => format!("{}_{low}", part(0)),
             Op::Slice { low } => format!("{}_{}_{low}", part(0), low + node.width - 1),
             Op::OneHot => format!("{}_one_hot", part(0)),
@@ -227,8 +228,8 @@ fn without_start_of<'t>(left: &str, right: &'t str) -> &'t str {
 }
 
 /// Words that stand between two others.
-const BETWEEN: [&str; 13] =
-    ["or", "and", "xor", "if", "unless", "nor", "plus", "minus", "times", "below", "above", "with", "to"];
+const BETWEEN: [&str; 14] =
+    ["or", "and", "xor", "if", "unless", "nor", "plus", "minus", "times", "below", "above", "with", "to", "by"];
 
 fn is_number(text: &str) -> bool {
     text.starts_with(|c: char| c.is_ascii_digit())

@@ -26,7 +26,7 @@ impl Expressions<'_> {
         let compares = |id: NodeId| in_place(id) && matches!(self.module.node(id).op, Op::Less | Op::Equal);
         let compound = match node.op {
             Op::And | Op::Or | Op::Xor | Op::Add | Op::Sub | Op::SubAdd | Op::Mul => true,
-            Op::Equal | Op::Less | Op::Mux | Op::OneHot => true,
+            Op::Equal | Op::Less | Op::Mux | Op::Case { .. } | Op::OneHot => true,
             Op::Not => compares(node.operands[0]),
             _ => false,
         };
@@ -64,6 +64,7 @@ impl Expressions<'_> {
                     None => format!("{} ? {} : {}", term(0), term(1), self.otherwise(no)),
                 }
             }
+            Op::Case { .. } => self.cases(node),
             Op::Concat => self.concatenation(node),
             Op::Slice { low } => self.slice(node, *low),
             Op::OneHot => format!("{} << {}", constant(node.width, 1), term(0)),
@@ -121,6 +122,23 @@ impl Expressions<'_> {
             Op::Equal if self.names.declared[operand.index()].is_none() => pair("!="),
             _ => format!("~{}", self.term(operand)),
         }
+    }
+
+    /// A case as an expression, where it is not the next value of a register.
+    fn cases(&self, node: &Node) -> String {
+        let (number, values) = (node.operands[0], &node.operands[1..]);
+        let width = self.module.node(number).width;
+        let mut out = String::new();
+        for (place, value) in values.iter().enumerate() {
+            out += &match place + 1 == values.len() {
+                true => self.term(*value),
+                false => {
+                    let place = constant(width, place as u128);
+                    format!("({} == {place}) ? {} : ", self.term(number), self.term(*value))
+                }
+            };
+        }
+        out
     }
 
     /// `x & {8{c}}` reads better as a choice.

@@ -3,7 +3,7 @@
 use super::Memories;
 use super::sections::block_style;
 
-/// A gated block memory: what [`block_memory`](crate::hdl::block_memory) describes, with its size as parameters.
+/// A gated block memory: what `hdl::block_memory` describes, with its size as parameters.
 pub(super) fn line_memory(name: &str, memories: Memories) -> String {
     format!(
         "module {name} #(

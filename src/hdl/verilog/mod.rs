@@ -1,6 +1,7 @@
 //! Verilog-2005 that a hardware engineer can read: the generator's names, stage banners, one file per module, every
 //! operand sized. It is clean under `-Wall` without pragmas, because widths always match.
 
+mod cases;
 mod delay;
 mod derive;
 mod expression;

@@ -93,6 +93,8 @@ fn is_between_zeros(module: &Module, node: &Node) -> bool {
 /// The number of uses of each node, and whether a use needs an identifier.
 struct Uses {
     count: Vec<u32>,
+    /// How many registers without an enable take the value.
+    taken: Vec<u32>,
     sliced: Vec<bool>,
     size: Vec<u32>,
 }
@@ -103,7 +105,8 @@ const LARGEST_INLINE: u32 = 9;
 impl Uses {
     fn count(module: &Module) -> Self {
         let nodes = module.nodes.len();
-        let mut uses = Self { count: vec![0; nodes], sliced: vec![false; nodes], size: vec![0; nodes] };
+        let mut uses =
+            Self { count: vec![0; nodes], taken: vec![0; nodes], sliced: vec![false; nodes], size: vec![0; nodes] };
         let memory_ports = module.memories.iter().filter_map(|m| m.write).flatten();
         let instance_inputs = module.instances.iter().flat_map(|i| i.inputs.iter().flatten().copied());
         let outputs = module.ports.iter().filter(|p| p.output).filter_map(|p| p.node);
@@ -111,6 +114,9 @@ impl Uses {
             uses.count[id.index()] += 1;
         }
         for node in &module.nodes {
+            if let (Op::Register { reset: None }, [next]) = (&node.op, &node.operands[..]) {
+                uses.taken[next.index()] += 1;
+            }
             let mut seen = HashSet::new();
             for operand in &node.operands {
                 // Repetition inside one concatenation is written once.
@@ -165,6 +171,7 @@ impl Uses {
             Op::Input | Op::Wire | Op::Lookup(_) => true,
             _ if node.name.is_some() || self.sliced[id.index()] => true,
             Op::Slice { .. } => false,
+            Op::Case { .. } => self.count[id.index()] > self.taken[id.index()],
             Op::Not | Op::Concat if self.is_transparent(module, id) => false,
             _ => self.count[id.index()] > 1 || self.size[id.index()] > LARGEST_INLINE,
         }

@@ -37,7 +37,8 @@ fn header(module: &Module, style: &Style) -> String {
     let mut out = String::from("// SPDX-License-Identifier: MIT OR Apache-2.0\n");
     out += &format!("// {}{}\n", style.prefix, module.name);
     for line in &module.about {
-        out += &format!("// {line}\n");
+        out += format!("// {line}").trim_end();
+        out.push('\n');
     }
     if !style.header.is_empty() {
         out += "//\n";

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use super::super::module::{Instance, InstanceCount, Memory, Module, NodeId, Op};
 use super::super::state::address_width;
+use super::cases::Cases;
 use super::delay::DelayKind;
 use super::derive::stage;
 use super::expression::{Expressions, constant, range};
@@ -172,7 +173,8 @@ impl<'a> Sections<'a> {
 
     /// Clocked blocks: one for data, one for what is reset.
     fn clocked(&self, ids: &[NodeId]) -> String {
-        let (mut data, mut reset, mut running) = (String::new(), String::new(), String::new());
+        let (mut data, mut cases) = (String::new(), Cases::new(self.module, self.text));
+        let (mut reset, mut running) = (String::new(), String::new());
         for id in ids {
             let node = self.module.node(*id);
             let Some(name) = &self.text.names.declared[id.index()] else { continue };
@@ -187,6 +189,7 @@ impl<'a> Sections<'a> {
                     let memory = &self.module.memories[*memory].name;
                     data += &format!("    {}{name} <= {memory}[{}];\n", enable(), operand(0));
                 }
+                Op::Register { reset: None } if cases.take(name, node) => {}
                 Op::Register { reset: value } => {
                     let line = format!("{}{name} <= {};\n", enable(), operand(0));
                     match value {
@@ -215,6 +218,7 @@ impl<'a> Sections<'a> {
         if !data.is_empty() {
             out += &format!("  always @(posedge clk) begin\n{data}  end\n");
         }
+        out += &cases.text();
         if !reset.is_empty() {
             out += &self.reset_block(&reset, &running);
         }

@@ -45,6 +45,7 @@ fn of(module: &Module, node: &Node) -> u32 {
         Op::Equal => operand() * 2 / 3,
         Op::Any | Op::All => operand() / 3,
         Op::And | Op::Or | Op::Xor | Op::Mux => node.width.div_ceil(2),
+        Op::Case { .. } => choice(node.operands.len() as u32 - 1, node.width),
         Op::OneHot => node.width,
         Op::Lookup(_) => node.width * (1 << operand().min(10)) / 16,
         Op::Mul => {

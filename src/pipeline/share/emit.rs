@@ -1,11 +1,13 @@
 //! Turns a kernel with a time table into a module: shared instances, selections before them, and values that wait.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::keep::{Keeper, Phases};
 use super::kinds::{Kind, Kinds};
 use super::mux::Chooser;
 use super::schedule::Plan;
+use super::time_table::{Operation, computation, time_table};
 use crate::hdl::{BuildErrors, Graph, Module, Register, Signal};
 use crate::operator::INPUTS;
 use crate::pipeline::emit::chosen;
@@ -29,6 +31,7 @@ pub(super) fn emit(kernel: &Kernel, kinds: &Kinds, plan: &Plan) -> Result<Arc<Mo
         phases: Phases::new(&graph, interval, take),
         names: Names::new(kernel),
         values: vec![None; kernel.values.len()],
+        units: BTreeMap::new(),
     };
     emitter.emit();
     let mut module = graph.finish()?;
@@ -55,6 +58,8 @@ struct Emitter<'a, 'g> {
     phases: Phases<'g>,
     names: Names,
     values: Vec<Option<Keeper<'g>>>,
+    /// The instances that compute one value each.
+    units: BTreeMap<usize, String>,
 }
 
 impl<'g> Emitter<'_, 'g> {
@@ -75,11 +80,25 @@ impl<'g> Emitter<'_, 'g> {
         }
         let mut chooser = Chooser::new(self.graph);
         shared.iter().for_each(|instance| self.connect(&mut chooser, instance));
+        self.describe(&shared);
         for (name, id) in &self.kernel.outputs {
             if let Some(signal) = self.at(*id, self.plan.latency) {
                 self.graph.output(name, signal);
             }
         }
+    }
+
+    /// Writes the time table into the header.
+    fn describe(&self, shared: &[Shared<'g>]) {
+        let unit = |index: usize| {
+            let shared = shared.iter().find(|of| Some(of.instance) == self.plan.instance[index]);
+            shared.map(|of| of.name.clone()).or_else(|| self.units.get(&index).cloned())
+        };
+        let operations = (0..self.kernel.values.len()).filter_map(|index| {
+            let (start, unit) = (self.plan.start[index]?, unit(index)?);
+            Some(Operation { cycle: start, unit, computes: computation(self.kernel, &self.names, index) })
+        });
+        time_table(self.plan.interval, operations.collect()).into_iter().for_each(|line| self.graph.about(line));
     }
 
     fn kind(&self, instance: usize) -> &Kind {
@@ -114,26 +133,24 @@ impl<'g> Emitter<'_, 'g> {
     fn connect(&self, chooser: &mut Chooser<'g>, shared: &Shared<'g>) {
         let places = &self.plan.instances[shared.instance].places;
         for (position, register) in shared.operands.iter().enumerate() {
-            let mut known: Vec<(ValueId, Option<usize>, bool)> = Vec::new();
-            let mut signals = Vec::new();
+            let mut signals: Vec<(Signal<'g>, String)> = Vec::new();
             let mut by_phase = vec![None; places.len()];
             for (phase, index) in places.iter().enumerate() {
                 let Some(index) = *index else { continue };
                 let Some(start) = self.plan.start[index] else { continue };
                 let id = self.operand(index, position);
                 let negated = position == 1 && self.kinds.negated[index];
-                let form = self.values[id.index()].as_ref().and_then(|keeper| keeper.form(start));
-                let key = (id, form, negated);
-                let at = known.iter().position(|other| *other == key);
-                if at.is_none() {
-                    let Some(signal) = self.at(id, start) else { continue };
-                    known.push(key);
-                    signals.push(if negated { self.negate(id, signal) } else { signal });
+                let Some(signal) = self.at(id, start) else { continue };
+                let signal = if negated { self.negate(id, signal) } else { signal };
+                let note = format!("phase {phase}: {}", computation(self.kernel, &self.names, index));
+                let at = signals.iter().position(|(other, _)| other.is_same(signal));
+                match at {
+                    Some(at) => signals[at].1 += &format!("; {note}"),
+                    None => signals.push((signal, note)),
                 }
-                by_phase[phase] = Some(at.unwrap_or(known.len() - 1));
+                by_phase[phase] = Some(at.unwrap_or(signals.len() - 1));
             }
-            let name = format!("{}_{}", shared.name, INPUTS[position]);
-            if let Some(chosen) = chooser.choose(&self.phases, &name, &by_phase, &signals) {
+            if let Some(chosen) = chooser.choose(&self.phases, &by_phase, &signals) {
                 register.next(chosen);
             }
         }
@@ -145,10 +162,10 @@ impl<'g> Emitter<'_, 'g> {
         operands[position.min(operands.len() - 1)]
     }
 
-    /// The number with the opposite sign.
+    /// The number with the opposite sign. A unit's result is named after the unit, because it is not always this value.
     fn negate(&self, id: ValueId, number: Signal<'g>) -> Signal<'g> {
         let opposite = (!number.msb()).concat(number.low(number.width() - 1));
-        match self.names.signal(id) {
+        match number.name().or_else(|| self.names.signal(id).map(str::to_owned)) {
             Some(name) => opposite.named(&format!("minus_{name}")),
             None => opposite,
         }
@@ -187,6 +204,7 @@ impl<'g> Emitter<'_, 'g> {
                     inputs.push((PHASE, self.phases.since(start)));
                 }
                 let name = self.names.instance(id, operator);
+                self.units.insert(id.index(), name.clone());
                 self.graph.instance(&name, &module, &inputs).output("result")
             }
             (source, operands) => chosen(source, operands)?,

@@ -23,16 +23,12 @@ pub(super) struct Phases<'g> {
 impl<'g> Phases<'g> {
     /// A ring of `interval` phases that restarts one cycle after `take`.
     pub fn new(graph: &'g Graph, interval: u32, take: Signal<'g>) -> Self {
-        let registers: Vec<_> = (0..interval).map(|index| graph.register(&format!("phase_{index}"), 1, 0)).collect();
-        let now: Vec<_> = registers.iter().map(|register| register.value()).collect();
-        let next: Vec<_> = (0..interval as usize)
-            .map(|index| match index {
-                0 => (take | now[now.len() - 1]).named("phase_0_next"),
-                _ => (now[index - 1] & !take).named(&format!("phase_{index}_next")),
-            })
-            .collect();
-        registers.iter().zip(&next).for_each(|(register, next)| register.next(*next));
-        Self { graph, now, next, places: HashMap::new() }
+        let phase = graph.register("phase", interval, 0);
+        let rotated = phase.low(interval - 1).concat(phase.msb());
+        let next = take.select(phase.same(1), rotated).named("phase_next");
+        phase.next(next);
+        let bits = |of: Signal<'g>| (0..interval).map(|index| of.bit(index)).collect();
+        Self { graph, now: bits(phase.value()), next: bits(next), places: HashMap::new() }
     }
 
     fn interval(&self) -> u32 {
@@ -88,16 +84,20 @@ impl<'g> Keeper<'g> {
         wanted: &BTreeSet<u32>,
     ) -> Self {
         let mut this = Self(vec![Kept { signal, first: ready, last: ready + stays - 1 }]);
-        for &cycle in wanted {
-            while let Some(from) = this.0.last().copied().filter(|kept| kept.last < cycle) {
-                this.0.push(keep(phases, &format!("{name}_kept_{}", this.0.len()), from, cycle));
+        let steps = steps(phases.interval(), signal.width(), ready + stays - 1, wanted);
+        for (index, row) in steps.chunk_by(|one, next| [one, next] == [&Step::Register; 2]).enumerate() {
+            let Some(from) = this.0.last().copied() else { break };
+            let name = if index == 0 { format!("{name}_kept") } else { format!("{name}_kept_{}", index + 1) };
+            match row[0] {
+                Step::Register => this.0.extend(registers(phases, &name, from, row.len() as u32)),
+                Step::Memory { depth } => this.0.push(memory(phases, &name, from, depth)),
             }
         }
         this
     }
 
     /// The form that is available in `cycle`.
-    pub fn form(&self, cycle: u32) -> Option<usize> {
+    fn form(&self, cycle: u32) -> Option<usize> {
         self.0.iter().position(|kept| (kept.first..=kept.last).contains(&cycle))
     }
 
@@ -107,20 +107,52 @@ impl<'g> Keeper<'g> {
     }
 }
 
-/// The next stored form of a value, on the way to `wanted`. It is stored in the last cycle in which the form before is
-/// available.
-fn keep<'g>(phases: &mut Phases<'g>, name: &str, from: Kept<'g>, wanted: u32) -> Kept<'g> {
-    let (graph, interval, width) = (phases.graph, phases.interval(), from.signal.width());
-    let distance = wanted - from.last;
-    if distance.div_ceil(interval) < LONGEST_ROW || width < NARROWEST_MEMORY {
-        let register = graph.data_register(name, width);
-        register.next_if(phases.at(from.last), from.signal);
-        return Kept { signal: register.value(), first: from.last + 1, last: from.last + interval };
+/// One stored form of a value, made of the one before. It is stored in the last cycle in which that is available.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Step {
+    /// A register, which keeps it for another interval.
+    Register,
+    /// A memory.
+    Memory { depth: u32 },
+}
+
+/// The steps by which a value that is there until cycle `last` reaches the `wanted` cycles.
+fn steps(interval: u32, width: u32, mut last: u32, wanted: &BTreeSet<u32>) -> Vec<Step> {
+    let mut steps = Vec::new();
+    for &cycle in wanted {
+        while last < cycle {
+            let distance = cycle - last;
+            if distance.div_ceil(interval) < LONGEST_ROW || width < NARROWEST_MEMORY {
+                steps.push(Step::Register);
+                last += interval;
+            } else {
+                let depth = 2 + (distance - 2) / interval;
+                steps.push(Step::Memory { depth });
+                last += 1 + (depth - 1) * interval;
+            }
+        }
     }
-    // The value is written at `place` while the next word, which is the oldest, is read. A read takes one cycle.
-    let depth = 2 + (distance - 2) / interval;
+    steps
+}
+
+/// A shift register of this many words, which moves once per interval, and its words from the newest on.
+fn registers<'g>(phases: &Phases<'g>, name: &str, from: Kept<'g>, words: u32) -> Vec<Kept<'g>> {
+    let (interval, width) = (phases.interval(), from.signal.width());
+    let row = phases.graph.data_register(name, words * width);
+    let shifted = if words == 1 { from.signal } else { row.low((words - 1) * width).concat(from.signal) };
+    row.next_if(phases.at(from.last), shifted);
+    let word = |word: u32| {
+        let first = from.last + 1 + word * interval;
+        Kept { signal: row.slice(word * width, width), first, last: first + interval - 1 }
+    };
+    (0..words).map(word).collect()
+}
+
+/// The value is written at `place` while the next word, which is the oldest, is read. A read takes one cycle.
+fn memory<'g>(phases: &mut Phases<'g>, name: &str, from: Kept<'g>, depth: u32) -> Kept<'g> {
+    let interval = phases.interval();
     let [place, next] = phases.place(depth, from.last);
-    let memory = graph.memory(&format!("{name}_words"), depth, width);
+    let memory = phases.graph.memory(&format!("{name}_words"), depth, from.signal.width());
     memory.write(phases.at(from.last), place, from.signal);
     let signal = memory.read(next).named(name);
     let first = from.last + 2 + (depth - 2) * interval;

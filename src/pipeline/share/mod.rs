@@ -14,6 +14,7 @@ mod kinds;
 mod legality;
 mod mux;
 mod schedule;
+mod time_table;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
