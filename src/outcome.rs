@@ -1,7 +1,39 @@
 //! The outcome of a job: what the AFU counted, what it wrote and when, whatever shell is around it.
 
+use std::fmt;
+
 use crate::afu::JobError;
 use crate::link::Line;
+
+/// An access of memory that was answered with an error.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Failure {
+    /// Read or write.
+    pub channel: Channel,
+    /// The response: 2 SLVERR, 3 DECERR.
+    pub response: u8,
+    /// The byte address of the line that was read, or of the burst that was written.
+    pub address: u64,
+}
+
+/// The channel of a response.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Channel {
+    /// R of AXI4.
+    Read,
+    /// B of AXI4.
+    Write,
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let response = if self.response == 2 { "SLVERR" } else { "DECERR" };
+        match self.channel {
+            Channel::Read => write!(f, "the read of {:#x} was answered with {response} on channel R", self.address),
+            Channel::Write => write!(f, "the write at {:#x} was answered with {response} on channel B", self.address),
+        }
+    }
+}
 
 /// The outcome of a job that ended, well or with an error.
 #[derive(Clone, Debug, PartialEq)]
@@ -10,6 +42,8 @@ pub struct Outcome {
     pub cycles: u64,
     /// The AFU's error code: 0 if all went well.
     pub error: u8,
+    /// The first access of memory that failed, if the shell says which.
+    pub failure: Option<Failure>,
     /// Contacts, as the AFU counted them.
     pub contacts: u32,
     /// Invalid pairs, as the AFU counted them.

@@ -42,6 +42,9 @@ const HELD_LINES: u64 = 66;
 const SHELL_READS: u64 = 2;
 /// Lines that it writes for itself: identity, scratch, latency, performance, fence, status.
 const SHELL_WRITES: u64 = 6;
+/// Cycles in which the host writes the registers of a job over AXI4-Lite, with much to spare.
+#[cfg(feature = "cosim")]
+const AXI_ACCESSES: f64 = 1000.0;
 /// The chance that a right AFU meets more refusals than are allowed for.
 const RARE: f64 = 1e-9;
 
@@ -83,6 +86,18 @@ pub fn spl2(afu: &Capability, link: &LinkModel, spl2: &Spl2Model, work: &Work) -
         let reads = own.reads + polls.min(own.reads);
         pause + cycles(afu, link, &Work { reads, ..own }, &of_reads, &of_writes)
     })
+}
+
+/// Patience with an AFU behind AXI4, whose memory refuses and holds back as these stalls say, beside its link.
+#[cfg(feature = "cosim")]
+pub(crate) fn axi(
+    afu: &Capability,
+    link: &LinkModel,
+    of_reads: &[Stalls],
+    of_writes: &[Stalls],
+    work: &Work,
+) -> Patience {
+    both(afu, work, |work| AXI_ACCESSES + cycles(afu, link, work, of_reads, of_writes))
 }
 
 /// The bound for the whole job, and for what an AFU may hold of it: with that much inside and nothing more to read, it

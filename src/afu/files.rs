@@ -61,11 +61,13 @@ impl Afu {
     }
 
     fn sdc(&self) -> String {
-        format!("{}\ncreate_clock -name clk -period {:.3} [get_ports clk]\n", self.clock_comment(), self.period_ns())
+        let (comment, clock, period) = (self.clock_comment(), self.shell().clock(), self.period_ns());
+        format!("{comment}\ncreate_clock -name {clock} -period {period:.3} [get_ports {clock}]\n")
     }
 
     fn xdc(&self) -> String {
-        format!("{}\ncreate_clock -period {:.3} -name clk [get_ports clk]\n", self.clock_comment(), self.period_ns())
+        let (comment, clock, period) = (self.clock_comment(), self.shell().clock(), self.period_ns());
+        format!("{comment}\ncreate_clock -period {period:.3} -name {clock} [get_ports {clock}]\n")
     }
 
     /// The list of Verilog files, with the command of each tool.

@@ -16,11 +16,12 @@ impl Afu {
         let spec = self.spec();
         let mut out = format!(
             "# Ports of `{}`\n\nOne clock. {}All outputs are registered or functions of registers.\nA line is {} bits; word i \
-             of a line is bits 32·i+31 to 32·i; addresses count lines.\n\n| port | direction | bits | in reset | meaning \
+             of a line is bits 32·i+31 to 32·i; addresses count {}.\n\n| port | direction | bits | in reset | meaning \
              |\n|---|---|---|---|---|\n",
             self.top_name(),
             self.scpus(),
-            spec.line_bits
+            spec.line_bits,
+            self.shell().addresses_count()
         );
         let Ports { inputs, outputs } = self.ports();
         for Declaration { name, bits, meaning } in inputs {
@@ -62,7 +63,7 @@ mod tests {
     #[test]
     fn the_top_has_the_ports_that_are_declared() {
         for (shell, results) in
-            [Shell::Line, Shell::Spl2].into_iter().flat_map(|s| [(s, Results::All), (s, Results::Hits)])
+            [Shell::Line, Shell::Spl2, Shell::Axi].into_iter().flat_map(|s| [(s, Results::All), (s, Results::Hits)])
         {
             let afu = Afu::generate(Spec::from(Config { shell, results, ..Config::default() })).expect("an AFU");
             let declared = afu.ports();

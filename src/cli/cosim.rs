@@ -42,11 +42,13 @@ pub struct Cosim {
     /// With --results hits the file holds only the contacts of pairs that touch, each with the index of its pair.
     #[arg(long, value_name = "FILE")]
     contacts: Option<PathBuf>,
-    /// Link between AFU and memory: ideal, late, shuffled, hostile, harp1, harp2, pcie3x8, or a .toml file
+    /// Link between AFU and memory: ideal, late, shuffled, hostile, harp1, harp2, pcie3x8, zynqmp, ddr4, or a .toml
+    /// file
     ///
     /// `ideal` shows what the AFU alone can do. `late`, `shuffled` and `hostile` are made to find faults: high latency,
     /// responses out of order, stalls. `harp1` and `harp2` are Intel's Xeons with an FPGA, `pcie3x8` is a card on PCI
-    /// Express. docs/link.md describes the models and the file.
+    /// Express, `zynqmp` a port of a Zynq UltraScale+, `ddr4` a channel of memory on a card. docs/link.md describes the
+    /// models and the file.
     #[arg(long, value_name = "NAME|FILE", default_value = "ideal")]
     link: String,
     /// Seed of random pairs, of the link, and of the initial values of registers without reset

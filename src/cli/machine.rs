@@ -64,10 +64,11 @@ pub struct Machine {
     /// need more logic and more cycles.
     #[arg(long, value_name = "CHOICE")]
     pub multipliers: Option<Multipliers>,
-    /// Logic around the AFU's line port: spl2 or line [default: spl2]
+    /// Logic around the AFU's line port: spl2, axi or line [default: spl2]
     ///
-    /// `spl2` connects the AFU to SPL2, the interface of Intel's HARP v1 (a Xeon with an FPGA), as in the paper. `line`
-    /// adds nothing: the AFU's own port reads and writes memory in lines of 64 bytes.
+    /// `spl2` connects the AFU to SPL2, the interface of Intel's HARP v1 (a Xeon with an FPGA), as in the paper. `axi`
+    /// has an AXI4 master for memory and an AXI4-Lite slave for registers, as boards of today have them. `line` adds
+    /// nothing: the AFU's own port reads and writes memory in lines of 64 bytes.
     #[arg(long, value_name = "SHELL")]
     pub shell: Option<Shell>,
     /// Reads, and writes, that the AFU keeps in flight: 16, 32, 64, 128 or 256 [default: 64]
@@ -75,6 +76,11 @@ pub struct Machine {
     /// A link carries at most so many lines per latency: 64 lines in 850 ns are 4.8 GB/s. SPL2 takes at most 64.
     #[arg(long, value_name = "N")]
     pub outstanding: Option<u32>,
+    /// Bits of the AXI4 master's data, only for shell axi: 128, 256 or 512 [default: 512]
+    ///
+    /// A line of 64 bytes is 4, 2 or 1 beats.
+    #[arg(long, value_name = "BITS")]
+    pub bus: Option<u32>,
     /// Clock frequency in MHz, 1 to 2000 [default: 200]
     ///
     /// Pipelines are cut into stages for this clock, and it converts cycles into time.
@@ -142,6 +148,7 @@ impl Machine {
         set(&mut config.multipliers, &self.multipliers);
         set(&mut config.shell, &self.shell);
         set(&mut config.outstanding, &self.outstanding);
+        set(&mut config.bus, &self.bus);
         if let Some(clock) = self.clock {
             // A file's stages are of the file's clock.
             (config.clock_mhz, config.cut_mhz) = (clock, None);
@@ -224,6 +231,7 @@ impl One {
             ("--multipliers", m.multipliers.is_some()),
             ("--shell", m.shell.is_some()),
             ("--outstanding", m.outstanding.is_some()),
+            ("--bus", m.bus.is_some()),
             ("--clock", m.clock.is_some()),
             ("--cut-for", m.cut_for.is_some()),
             ("--target", m.target.is_some()),
@@ -256,7 +264,10 @@ fn interval_of(text: &str) -> Result<u32, Failure> {
 
 /// The longest interval at which SCPUs still take all pairs that the link brings, and takes contacts of.
 fn longest_interval(config: &Config, link: &str) -> Result<u32, Failure> {
-    let (spec, link) = (Spec::from(config.clone()), link::read(link, config.clock_mhz)?);
+    let (spec, mut link) = (Spec::from(config.clone()), link::read(link, config.clock_mhz)?);
+    if config.shell == Shell::Axi {
+        link = link.on_bus(config.bus);
+    }
     // Contacts alone may be none.
     let contacts = if config.results == Results::Hits { 0 } else { MANY };
     let cycles = link.limit_cycles(spec.layout().source_lines(MANY), spec.layout().destination_lines(contacts));

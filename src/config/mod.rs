@@ -22,6 +22,9 @@ pub const INTERVALS: std::ops::RangeInclusive<u32> = 1..=64;
 /// The reads, and the writes, that an AFU can have in flight.
 pub const OUTSTANDING: std::ops::RangeInclusive<u32> = 16..=256;
 
+/// The widths that the AXI4 master's data can have, in bits.
+pub const BUSES: [u32; 3] = [128, 256, 512];
+
 /// The most that SPL2 takes: its own hardware is almost full at 58 reads, and at 54 writes.
 const OUTSTANDING_OVER_SPL2: u32 = 64;
 
@@ -67,6 +70,9 @@ pub struct Config {
     /// The most reads, and the most writes, in flight: a power of two, one of [`OUTSTANDING`].
     #[serde(skip_serializing_if = "is_usual")]
     pub outstanding: u32,
+    /// Bits of the AXI4 master's data, one of [`BUSES`]. Only the shell `axi` has one.
+    #[serde(skip_serializing_if = "is_widest")]
+    pub bus: u32,
     /// The clock in MHz. It converts cycles into time, and stages are cut for it unless `cut_mhz` is given.
     pub clock_mhz: f64,
     /// The clock in MHz that stages are cut for, if it differs: place and route may reach less than they were cut for.
@@ -92,6 +98,7 @@ impl Default for Config {
             multipliers: Multipliers::Use,
             shell: Shell::Spl2,
             outstanding: 64,
+            bus: 512,
             clock_mhz: 200.0,
             cut_mhz: None,
             prefix: None,
@@ -112,7 +119,7 @@ pub enum Error {
     #[error("{0} requests in flight: expected 16, 32, 64, 128 or 256")]
     Outstanding(u32),
     /// More than SPL2 takes.
-    #[error("{0} requests in flight: expected at most 64 below shell spl2; use shell line for more")]
+    #[error("{0} requests in flight: expected at most 64 below shell spl2; use shell axi or line for more")]
     OutstandingOverSpl2(u32),
     /// A clock out of range.
     #[error("clock {0} MHz: expected 1 to 2000 MHz")]
@@ -142,9 +149,12 @@ pub enum Error {
         "profile exact with record {0}: results would be exact for the rounded pairs only, not for yours; use record f32"
     )]
     ExactRecord(RecordFormat),
-    /// A shell that is not implemented.
-    #[error("shell axi: not implemented; use spl2 (Intel HARP v1) or line (the line port itself)")]
-    Axi,
+    /// Not one of [`BUSES`].
+    #[error("bus of {0} bits: expected 128, 256 or 512")]
+    Bus(u32),
+    /// A width for a bus that the shell does not have.
+    #[error("bus of {0} bits below shell {1}: only shell axi has a bus of another width; leave it out")]
+    NoBus(u32, Shell),
 }
 
 impl Config {
@@ -164,6 +174,12 @@ impl Config {
         }
         if self.shell == Shell::Spl2 && self.outstanding > OUTSTANDING_OVER_SPL2 {
             return Err(Error::OutstandingOverSpl2(self.outstanding));
+        }
+        if !BUSES.contains(&self.bus) {
+            return Err(Error::Bus(self.bus));
+        }
+        if self.shell != Shell::Axi && !is_widest(&self.bus) {
+            return Err(Error::NoBus(self.bus, self.shell));
         }
         let clocks = [self.clock_mhz, self.cut_mhz()];
         if let Some(clock) = clocks.into_iter().find(|clock| !(1.0..=2000.0).contains(clock)) {
@@ -194,9 +210,6 @@ impl Config {
         }
         if let Some(radius) = self.radius.filter(|&radius| self.record.round(radius).is_infinite()) {
             return Err(Error::RecordRadius(radius, self.record));
-        }
-        if self.shell == Shell::Axi {
-            return Err(Error::Axi);
         }
         Ok(())
     }
@@ -246,6 +259,7 @@ impl Config {
             ("--multipliers", self.multipliers.to_string(), default.multipliers.to_string()),
             ("--shell", self.shell.to_string(), default.shell.to_string()),
             ("--outstanding", self.outstanding.to_string(), default.outstanding.to_string()),
+            ("--bus", self.bus.to_string(), default.bus.to_string()),
             ("--clock", self.clock_mhz.to_string(), default.clock_mhz.to_string()),
             ("--cut-for", cut(self), cut(&default)),
             ("--prefix", self.prefix.clone().unwrap_or_default(), String::new()),
@@ -258,6 +272,11 @@ impl Config {
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
 fn is_usual(outstanding: &u32) -> bool {
     *outstanding == Config::default().outstanding
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+fn is_widest(bus: &u32) -> bool {
+    *bus == Config::default().bus
 }
 
 fn is_prefix(text: &str) -> bool {
@@ -349,7 +368,8 @@ mod tests {
             (Config { prefix: Some("2x".into()), ..Config::default() }, "prefix `2x`"),
             (Config { prefix: Some("a-b".into()), ..Config::default() }, "prefix `a-b`"),
             (Config { prefix: Some(String::new()), ..Config::default() }, "prefix ``"),
-            (Config { shell: Shell::Axi, ..Config::default() }, "shell axi"),
+            (Config { bus: 64, shell: Shell::Axi, ..Config::default() }, "bus of 64 bits: expected 128, 256 or 512"),
+            (Config { bus: 128, ..Config::default() }, "bus of 128 bits below shell spl2"),
         ];
         for (config, begins) in bad {
             let error = config.check().expect_err(begins).to_string();

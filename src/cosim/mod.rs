@@ -5,6 +5,7 @@
 //! a simulated link and checks every cycle.
 
 mod abi;
+pub mod axi;
 pub mod drive;
 mod error;
 mod instance;

@@ -243,6 +243,7 @@ fn renumber(inner: Inner, order: &[NodeId]) -> Module {
         memories: memories.into_iter().map(|(_, memory)| memory).collect(),
         instances: instances.into_iter().map(|(_, instance)| instance).collect(),
         reset: inner.reset.map(|id| new[&id]),
+        clock: inner.clock,
         paths: Vec::new(),
         latency: 0,
         primitive: None,

@@ -20,6 +20,7 @@ pub(super) struct Inner {
     pub memories: Vec<Memory>,
     pub instances: Vec<Instance>,
     pub reset: Option<NodeId>,
+    pub clock: Option<&'static str>,
     pub errors: Vec<Error>,
 }
 
@@ -47,6 +48,7 @@ impl Graph {
                 memories: Vec::new(),
                 instances: Vec::new(),
                 reset: None,
+                clock: None,
                 errors: Vec::new(),
             }),
         }
@@ -171,6 +173,11 @@ impl Graph {
         if self.inner.borrow_mut().reset.replace(ids[0]).is_some() {
             self.error("reset by: the module's reset is given twice".to_owned(), place);
         }
+    }
+
+    /// Gives the clock port of this module another name than `clk`: for the top of a platform that has its own.
+    pub fn clocked_by(&self, name: &'static str) {
+        self.inner.borrow_mut().clock = Some(name);
     }
 
     /// Checks all that was recorded, drops what no output needs and puts the rest in order.

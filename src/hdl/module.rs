@@ -265,6 +265,8 @@ pub struct Module {
     pub instances: Vec<Instance>,
     /// The value (1 bit, high in reset) that resets this module and all below it, in place of a reset port.
     pub reset: Option<NodeId>,
+    /// The name of the clock port, if it is not `clk`.
+    pub clock: Option<&'static str>,
     /// For each port: the inputs (port indices) an output depends on without a register between.
     pub paths: Vec<BTreeSet<usize>>,
     /// Register ranks between inputs and outputs, for a pipeline.
@@ -325,6 +327,11 @@ impl Module {
     /// Ids of all nodes, operands first.
     pub fn ids(&self) -> impl Iterator<Item = NodeId> + use<> {
         (0..self.nodes.len() as u32).map(NodeId)
+    }
+
+    /// The name of the clock port.
+    pub(crate) fn clock(&self) -> &'static str {
+        self.clock.unwrap_or("clk")
     }
 
     /// True if anything inside is clocked.

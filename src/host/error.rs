@@ -1,9 +1,10 @@
 //! Errors of a session, and what to do about them.
 
 use super::transport::TransportError;
-use crate::afu::shell::spl2::map;
+use crate::afu::shell::spl2::map::AFU_ID;
 use crate::config::RecordFormat;
 use crate::count::counted;
+use crate::outcome::{Failure, Outcome};
 use crate::record::{JobError, OtherRadius};
 
 /// Why a transaction has no results.
@@ -44,14 +45,16 @@ pub enum HostError {
     #[error(
         "expected AFU_ID {:032x} version {}, found {afu_id:032x} version {version}: load the AFU that this version of the \
          program generates",
-        map::AFU_ID,
-        map::VERSION
+        AFU_ID,
+        expected
     )]
     Identity {
         /// The AFU_ID that was found.
         afu_id: u128,
         /// The version of its register map.
         version: u32,
+        /// The version that the host knows.
+        expected: u32,
     },
     /// The device is an AFU of another configuration.
     #[error(
@@ -100,6 +103,23 @@ pub enum HostError {
         /// What to do.
         advice: &'static str,
     },
+    /// An access of memory failed, and with it the job.
+    #[error("the AFU ended the job with error {code} ({what}): {failure}; {advice}")]
+    Access {
+        /// The error code.
+        code: u8,
+        /// The meaning of the code.
+        what: &'static str,
+        /// The access.
+        failure: Failure,
+        /// What to do.
+        advice: &'static str,
+    },
+    /// The soft reset did not end.
+    #[error(
+        "the soft reset did not end after {0} cycles: memory owes a response; reset the interconnect and the AFU together"
+    )]
+    NotDrained(u64),
     /// The job had invalid pairs.
     #[error(
         "{}; the {field} of the first, pair {first}, is in {record} NaN, infinite or a negative radius: correct it or leave it out",
@@ -149,13 +169,17 @@ pub enum HitError {
 }
 
 impl HostError {
-    /// The error of a status code; `None` if the code is not an error.
-    pub(super) fn of_status(code: u8) -> Option<Self> {
+    /// The error with which a job ended; `None` if it ended well.
+    pub(super) fn of_outcome(outcome: &Outcome) -> Option<Self> {
+        let code = outcome.error;
         if code == 0 {
             return None;
         }
         let unknown = ("unknown code", "load an AFU of this program's version");
         let (what, advice) = JobError::of_code(code).map_or(unknown, |error| (error.what(), error.advice()));
-        Some(Self::Job { code, what, advice })
+        Some(match outcome.failure {
+            Some(failure) => Self::Access { code, what, failure, advice },
+            None => Self::Job { code, what, advice },
+        })
     }
 }

@@ -5,8 +5,11 @@
 //! in software ([`Software`]), which answer alike, byte for byte. A session is also an
 //! [`Engine`](crate::kernel::Engine): a batch is one transaction, or several where the buffers hold fewer pairs.
 
+#[cfg(feature = "cosim")]
+mod behind_axi;
 mod engine;
 mod error;
+mod handshake;
 mod open;
 pub(crate) mod received;
 mod report;
@@ -22,6 +25,7 @@ mod verilated;
 mod workspace;
 
 pub use error::{HitError, HostError};
+pub use handshake::Protocol;
 pub use report::Report;
 pub use results::JobResults;
 pub use session::{Expected, Session};

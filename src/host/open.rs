@@ -7,7 +7,6 @@ use super::results::JobResults;
 use super::session::Session;
 use super::transport::Transport;
 use super::workspace::pages_for;
-use crate::afu::shell::spl2::map;
 use crate::kernel::settle;
 use crate::outcome::Outcome;
 use crate::query::PairRecord;
@@ -15,7 +14,7 @@ use crate::query::PairRecord;
 #[derive(Debug)]
 pub(super) struct Open<'s, T: Transport> {
     pub(super) session: &'s mut Session<T>,
-    is_spl_started: bool,
+    is_set_up: bool,
     /// The pairs in the source. The host needs them again if the AFU leaves some unsettled.
     pairs: Vec<PairRecord>,
     report: Report,
@@ -25,7 +24,7 @@ impl<'s, T: Transport> Open<'s, T> {
     pub(super) fn new(session: &'s mut Session<T>) -> Self {
         let stated = session.transport.link().session;
         let report = Report { stated_set_up: stated.set_up, stated_tear_down: stated.tear_down, ..Report::default() };
-        Self { session, is_spl_started: false, pairs: Vec::new(), report }
+        Self { session, is_set_up: false, pairs: Vec::new(), report }
     }
 
     /// Number of pairs in the source.
@@ -48,10 +47,10 @@ impl<'s, T: Transport> Open<'s, T> {
         self.session.load(pairs)
     }
 
-    pub(super) fn start_spl(&mut self) -> Result<(), HostError> {
+    pub(super) fn set_up(&mut self) -> Result<(), HostError> {
         let begun = self.session.transport.cycle();
-        self.is_spl_started = true;
-        self.session.start_spl()?;
+        self.is_set_up = true;
+        self.session.set_up()?;
         self.report.set_up = self.session.transport.cycle() - begun;
         Ok(())
     }
@@ -63,7 +62,7 @@ impl<'s, T: Transport> Open<'s, T> {
 
     pub(super) fn abort(&mut self) -> Result<(), HostError> {
         let count = self.count();
-        self.session.set_control(count, true)
+        self.session.abort(count)
     }
 
     pub(super) fn outcome(&self, begin: &Begin, end: &Status) -> Outcome {
@@ -72,7 +71,7 @@ impl<'s, T: Transport> Open<'s, T> {
 
     /// The records of a job that ended well, and what the job took.
     pub(super) fn results(&mut self, outcome: &Outcome) -> Result<JobResults, HostError> {
-        HostError::of_status(outcome.error).map_or(Ok(()), Err)?;
+        HostError::of_outcome(outcome).map_or(Ok(()), Err)?;
         let layout = self.session.workspace.layout();
         let Records { numbers, mut contacts } = Records::read(layout, self.count(), outcome)?;
         // Before anyone reads the records. Only the profile `exact` leaves pairs unsettled, and it has a record for
@@ -100,21 +99,21 @@ impl<'s, T: Transport> Open<'s, T> {
         let Session { transport, workspace, .. } = &mut *self.session;
         let (layout, pairs) = (*workspace.layout(), self.pairs.len() as u64);
         let used = [
-            (workspace.source(), layout.source_lines(pairs) + u64::from(map::DATA_LINE)),
+            (workspace.source(), layout.source_lines(pairs) + workspace.control_lines()),
             (workspace.destination(), layout.destination_lines(pairs)),
         ];
         for (base, lines) in used {
             for line in (0..lines).filter_map(|line| workspace.line(base, line).ok()) {
-                transport.memory_mut().forget(line..line + 1);
+                transport.forget(line..line + 1);
             }
         }
     }
 
     /// Stops SPL and frees the part of the workspace that the transaction used. Returns the cycles that it took.
     pub(super) fn finish(&mut self) -> Result<Report, HostError> {
-        if std::mem::take(&mut self.is_spl_started) {
+        if std::mem::take(&mut self.is_set_up) {
             let begun = self.session.transport.cycle();
-            let stopped = self.session.stop_spl();
+            let stopped = self.session.tear_down();
             self.report.tear_down = self.session.transport.cycle() - begun;
             self.free();
             stopped?;

@@ -3,9 +3,8 @@
 use super::error::{HitError, HostError};
 use super::session::Session;
 use super::transport::Transport;
-use crate::afu::shell::spl2::map::{self, latency, performance, status};
-use crate::link::{LINE_BYTES, Line, Traffic};
-use crate::outcome::Outcome;
+use crate::link::{LINE_BYTES, Traffic};
+use crate::outcome::{Failure, Outcome};
 use crate::query::{ContactRecord, Flow};
 use crate::record::{Contacts, Layout};
 
@@ -18,36 +17,45 @@ pub(super) struct Begin {
     pub(super) logged: usize,
 }
 
-/// The status of a job.
+/// The status of a job that has ended.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Status {
-    pub(super) line: Line,
-    /// The cycle in which it arrived.
+    pub(super) error: u8,
+    pub(super) failure: Option<Failure>,
+    pub(super) contacts: u32,
+    pub(super) invalid: u32,
+    /// All ones if there is none.
+    pub(super) first_invalid: u32,
+    pub(super) cycles_busy: u64,
+    pub(super) cycles_input: u64,
+    pub(super) cycles_output: u64,
+    /// Cycles from the job's start to its first source line, and to its first written line; 0 if there was none.
+    pub(super) first_read: u64,
+    pub(super) first_write: u64,
+    /// The cycle in which the host was told.
     pub(super) cycle: u64,
 }
 
-/// The outcome of the job with this beginning and end. Bytes count all traffic over the link since the start word.
+/// The outcome of the job with this beginning and end. Bytes count all traffic over the link since the start.
 pub(super) fn outcome<T: Transport>(session: &Session<T>, begin: &Begin, pairs: u32, end: &Status) -> Outcome {
     let (transport, workspace) = (&session.transport, &session.workspace);
-    let (latencies, figures) = (session.dsm(map::LATENCY_LINE), session.dsm(map::PERFORMANCE_LINE));
-    let word = |field: map::Field, line: &Line| field.get(line) as u64;
-    let of_status = |field: map::Field| field.get(&end.line) as u32;
     let traffic = transport.traffic();
     let reads = traffic.read_responses - begin.traffic.read_responses;
     let writes = traffic.writes - begin.traffic.writes;
-    let (first_read, first_write) = (word(latency::FIRST_READ, &latencies), word(latency::FIRST_WRITE, &latencies));
+    let Status { first_read, first_write, .. } = *end;
     let results = workspace.limits(pairs.into()).results;
-    let stored = |line: u64| transport.memory().get(workspace.physical(line * LINE_BYTES)?).copied();
+    let stored = |line: u64| transport.line(workspace.physical(line * LINE_BYTES)?);
     let sent = |line: u64| Some(transport.sent(line)?.saturating_sub(begin.cycle));
     Outcome {
         cycles: end.cycle.saturating_sub(begin.cycle),
-        error: of_status(status::ERROR) as u8,
-        contacts: of_status(status::CONTACTS),
-        invalid: of_status(status::INVALID),
-        first_invalid: Some(of_status(status::FIRST_INVALID)).filter(|&pair| pair != u32::MAX),
-        cycles_busy: word(performance::BUSY, &figures),
-        cycles_input: word(performance::INPUT, &figures),
-        cycles_output: word(performance::OUTPUT, &figures),
+        error: end.error,
+        failure: end.failure,
+        contacts: end.contacts,
+        invalid: end.invalid,
+        first_invalid: Some(end.first_invalid).filter(|&pair| pair != u32::MAX),
+        cycles_busy: end.cycles_busy,
+        cycles_input: end.cycles_input,
+        cycles_output: end.cycles_output,
         latency_cycles: (first_read > 0 && first_write > 0).then(|| first_write.saturating_sub(first_read)),
         bytes_read: reads * LINE_BYTES,
         bytes_written: writes * LINE_BYTES,

@@ -1,17 +1,17 @@
 //! A device with its workspace, and the operations that transactions use.
 
 use super::error::HostError;
+use super::handshake::{Identity, Protocol, axi, spl2};
 use super::received::{Begin, Status};
 use super::report::Report;
 use super::transaction::{Pointed, Transaction};
-use super::transport::{Transport, TransportError};
-use super::workspace::{AFU_DSM, SPL_CONTEXT, SPL_DSM, Workspace};
-use crate::afu::shell::spl2::map::{self, Csr, control, identity, status};
+use super::transport::Transport;
+use super::workspace::Workspace;
+use crate::afu::shell::spl2::map::AFU_ID;
 use crate::afu::{Afu, BuildError, Spec};
 use crate::config::Config;
-use crate::link::spl2::CsrOffset;
 use crate::link::{LINE_BYTES, Line, Traffic};
-use crate::patience::{self, Patience, Work};
+use crate::patience::{Patience, Work};
 use crate::query::PairRecord;
 use crate::record::{Capability, LINE_BITS, Layout, Part, pack};
 
@@ -113,118 +113,66 @@ impl<T: Transport> Session<T> {
         &self.reports
     }
 
-    /// Writes both halves of a 64-bit CSR.
-    fn write_pointer(&mut self, high: u32, low: u32, address: u64) -> Result<(), TransportError> {
-        self.transport.write_csr(high, (address >> 32) as u32)?;
-        self.transport.write_csr(low, address as u32)
-    }
-
-    fn zero(&mut self, address: u64, lines: u64) {
-        let first = address / LINE_BYTES;
-        (first..first + lines).for_each(|line| self.transport.memory_mut().set(line, &[0; 16]));
-    }
-
     /// The most cycles that this number of pairs may take.
-    fn patience(&self, pairs: u64) -> Patience {
+    pub(super) fn patience(&self, pairs: u64) -> Patience {
         let layout = self.workspace.layout();
         let (reads, writes) = (layout.source_lines(pairs), layout.destination_lines(pairs));
         let work = Work { pairs, reads, writes, watchdog: self.watchdog };
-        patience::spl2(&self.afu, self.transport.link(), &self.transport.spl2(), &work)
+        self.transport.patience(&self.afu, &work)
     }
 
     /// Puts pairs into the source as the next job. Its start word is not written yet.
     pub(super) fn load(&mut self, pairs: &[PairRecord]) -> Result<(), HostError> {
         let (layout, count) = (*self.workspace.layout(), pairs.len() as u64);
-        self.put(self.workspace.source(), map::CONTROL_LINE.into(), &[0; 16])?;
-        for (number, line) in (u64::from(map::DATA_LINE)..).zip(pack(&layout, pairs)) {
-            self.put(self.workspace.source(), number, &line)?;
+        if self.transport.protocol() == Protocol::Spl2 {
+            spl2::clear_control(self)?;
+        }
+        for (number, line) in (0..).zip(pack(&layout, pairs)) {
+            self.put(self.workspace.pairs(), number, &line)?;
         }
         for number in 0..layout.destination_lines(count) {
             let at = self.workspace.line(self.workspace.destination(), number)?;
-            self.transport.memory_mut().forget(at..at + 1);
+            self.transport.forget(at..at + 1);
         }
         self.sequence = self.sequence.wrapping_add(1);
         Ok(())
     }
 
-    fn put(&mut self, base: u64, number: u64, line: &Line) -> Result<(), HostError> {
+    pub(super) fn put(&mut self, base: u64, number: u64, line: &Line) -> Result<(), HostError> {
         let at = self.workspace.line(base, number)?;
-        self.transport.memory_mut().set(at, line);
+        self.transport.put(at, line);
         Ok(())
     }
 
-    /// Resets SPL and the AFU, gives them their memory, waits for the AFU to identify itself, and enables it.
-    pub(super) fn start_spl(&mut self) -> Result<(), HostError> {
-        let pair = |high: Csr, low: Csr| (high.offset, low.offset);
+    /// Resets the AFU, gives it its memory if it needs to be told, and waits for it to identify itself.
+    pub(super) fn set_up(&mut self) -> Result<(), HostError> {
         self.transport.limit(None);
-        self.transport.write_csr(CsrOffset::Control as u32, 1)?;
-        self.zero(SPL_DSM, 1);
-        self.write_pointer(CsrOffset::DsmHigh as u32, CsrOffset::DsmLow as u32, SPL_DSM)?;
-        self.wait_for(|session| session.line_at(SPL_DSM)[0] != 0)?;
-        self.zero(AFU_DSM, map::DSM_BYTES / LINE_BYTES);
-        self.transport.watch(AFU_DSM / LINE_BYTES..(AFU_DSM + map::DSM_BYTES) / LINE_BYTES);
-        let (high, low) = pair(map::DSM_BASE_HIGH, map::DSM_BASE_LOW);
-        self.write_pointer(high, low, AFU_DSM)?;
-        self.wait_for(|session| identity::AFU_ID.get(&session.dsm(map::IDENTITY_LINE)) != 0)?;
-        self.check_identity()?;
-        self.workspace.describe(self.transport.memory_mut())?;
-        let status = self.workspace.line(self.workspace.context(), map::STATUS_LINE.into())?;
-        self.transport.watch(status..status + 1);
-        self.write_pointer(CsrOffset::ContextHigh as u32, CsrOffset::ContextLow as u32, SPL_CONTEXT)?;
-        let (high, low) = pair(map::CONTEXT_BASE_HIGH, map::CONTEXT_BASE_LOW);
-        self.write_pointer(high, low, self.workspace.context())?;
-        Ok(self.transport.write_csr(CsrOffset::Control as u32, 2)?)
-    }
-
-    /// Disables SPL, then resets it.
-    pub(super) fn stop_spl(&mut self) -> Result<(), HostError> {
-        self.transport.write_csr(CsrOffset::Control as u32, 0)?;
-        Ok(self.transport.write_csr(CsrOffset::Control as u32, 1)?)
-    }
-
-    /// Waits for an identity in a DSM.
-    fn wait_for(&mut self, is_there: impl Fn(&Self) -> bool) -> Result<(), HostError> {
-        let (begun, patience) = (self.transport.cycle(), self.patience(0).whole);
-        while !is_there(self) {
-            let waited = self.transport.cycle() - begun;
-            if waited > patience {
-                return Err(HostError::NoIdentity(waited));
-            }
-            self.transport.advance(1)?;
+        match self.transport.protocol() {
+            Protocol::Spl2 => spl2::set_up(self),
+            Protocol::Axi => axi::set_up(self),
         }
-        Ok(())
     }
 
-    /// True if the DSM has the identity of the expected AFU.
+    /// Stops the AFU.
+    pub(super) fn tear_down(&mut self) -> Result<(), HostError> {
+        match self.transport.protocol() {
+            Protocol::Spl2 => spl2::tear_down(self),
+            Protocol::Axi => axi::tear_down(self),
+        }
+    }
+
+    /// Checks that the expected AFU has identified itself.
     pub(super) fn check_identity(&mut self) -> Result<(), HostError> {
-        let line = self.dsm(map::IDENTITY_LINE);
-        let (afu_id, version) = (identity::AFU_ID.get(&line), identity::VERSION.get(&line) as u32);
-        if (afu_id, version) != (map::AFU_ID, map::VERSION) {
-            return Err(HostError::Identity { afu_id, version });
+        let Identity { afu_id, version, capability } = match self.transport.protocol() {
+            Protocol::Spl2 => spl2::identity(self),
+            Protocol::Axi => axi::identity(self)?,
+        };
+        let expected = self.transport.protocol().version();
+        if (afu_id, version) != (AFU_ID, expected) {
+            return Err(HostError::Identity { afu_id, version, expected });
         }
-        let found = identity::CAPABILITY.get(&line) as u64;
-        self.afu = Capability::from_bits(found);
-        self.expected.check(found)
-    }
-
-    fn line_at(&self, address: u64) -> Line {
-        self.transport.memory().get(address / LINE_BYTES).copied().unwrap_or_default()
-    }
-
-    /// A line of the AFU's DSM.
-    pub(super) fn dsm(&self, line: u32) -> Line {
-        self.line_at(AFU_DSM + u64::from(line) * LINE_BYTES)
-    }
-
-    /// Writes the control memory.
-    pub(super) fn set_control(&mut self, pairs: u32, abort: bool) -> Result<(), HostError> {
-        let mut line = [0; 16];
-        control::COUNT.set(&mut line, pairs.into());
-        control::SEQUENCE.set(&mut line, self.sequence.into());
-        control::ABORT.set(&mut line, abort.into());
-        control::WATCHDOG.set(&mut line, self.watchdog.into());
-        control::START.set(&mut line, map::START_WORD.into());
-        self.put(self.workspace.source(), map::CONTROL_LINE.into(), &line)
+        self.afu = Capability::from_bits(capability);
+        self.expected.check(capability)
     }
 
     /// Begins the job that is loaded. From now on the device may access only the lines of this job.
@@ -232,18 +180,40 @@ impl<T: Transport> Session<T> {
         let Self { transport, workspace, .. } = self;
         transport.limit(Some(workspace.limits(pairs.into())));
         let (cycle, traffic, logged) = (transport.cycle(), transport.traffic(), transport.device_writes().len());
-        self.set_control(pairs, false)?;
+        match self.transport.protocol() {
+            Protocol::Spl2 => spl2::start(self, pairs)?,
+            Protocol::Axi => axi::start(self, pairs)?,
+        }
         Ok(Begin { cycle, traffic, logged })
     }
 
-    /// The status of the job with this beginning; `None` until it has arrived.
-    pub(super) fn status(&self, begin: &Begin) -> Option<Status> {
-        let status_line = u64::from(map::STATUS_LINE) * LINE_BYTES;
-        let at = self.workspace.physical(self.workspace.context() + status_line)?;
-        let of_job = |line: &Line| status::SEQUENCE.get(line) == self.sequence.into() && status::DONE.get(line) == 1;
-        let new = self.transport.device_writes().get(begin.logged..)?;
-        let write = new.iter().find(|write| write.address == at && of_job(&write.data))?;
-        Some(Status { line: write.data, cycle: write.cycle })
+    /// Asks the AFU to end the job.
+    pub(super) fn abort(&mut self, pairs: u32) -> Result<(), HostError> {
+        match self.transport.protocol() {
+            Protocol::Spl2 => spl2::abort(self, pairs),
+            Protocol::Axi => axi::abort(self),
+        }
+    }
+
+    /// True if the job with this beginning has ended, as far as the host was told.
+    pub(super) fn has_ended(&self, begin: &Begin) -> bool {
+        match self.transport.protocol() {
+            Protocol::Spl2 => spl2::has_ended(self, begin),
+            Protocol::Axi => self.transport.interrupt(),
+        }
+    }
+
+    /// The status of the job with this beginning, if it has ended.
+    fn status(&mut self, begin: &Begin) -> Result<Option<Status>, HostError> {
+        match self.transport.protocol() {
+            Protocol::Spl2 => Ok(spl2::status(self, begin)),
+            Protocol::Axi => axi::status(self),
+        }
+    }
+
+    /// A line of memory; zeros if it was never written.
+    pub(super) fn line_at(&self, address: u64) -> Line {
+        self.transport.line(address / LINE_BYTES).unwrap_or_default()
     }
 
     /// Waits for the status of a job of `pairs` pairs, and calls `progress` now and then with the traffic over the link
@@ -257,7 +227,7 @@ impl<T: Transport> Session<T> {
         let patience = self.patience(pairs.into());
         let whole = self.max_cycles.unwrap_or(patience.whole);
         loop {
-            if let Some(status) = self.status(begin) {
+            if let Some(status) = self.status(begin)? {
                 return Ok(status);
             }
             let now = self.transport.cycle();

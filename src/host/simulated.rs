@@ -5,10 +5,10 @@ use super::session::PROGRESS_CYCLES;
 use super::{Expected, HostError, Session, Transport, Workspace};
 use crate::config::{Config, Results, Shell};
 use crate::cosim::drive::DriveError;
-use crate::cosim::spl2::Machine;
-use crate::cosim::{Driver, Instance, Job, Outcome};
+use crate::cosim::{Driver, Instance, Job, Outcome, axi, spl2};
+use crate::link::axi::Handshake;
 use crate::link::spl2::{Spl2, Spl2Model};
-use crate::link::{Link, Traffic};
+use crate::link::{Link, LinkError, LinkModel, Traffic};
 use crate::query::PairRecord;
 use crate::record::pack;
 
@@ -25,22 +25,32 @@ impl Run<'_> {
     /// Runs the job on `afu` over `link`.
     ///
     /// # Errors
-    /// Returns the error of the host or, if the shell has no registers, of the driver.
-    pub(crate) fn on<E>(self, afu: &Instance, link: Link) -> Result<Outcome, E>
+    /// Returns an error if the link's model has an invalid value. Returns the error of the host or, if the shell has no
+    /// registers, of the driver.
+    pub(crate) fn on<E>(self, afu: &Instance, link: LinkModel) -> Result<Outcome, E>
     where
-        E: From<HostError> + From<DriveError>,
+        E: From<HostError> + From<DriveError> + From<LinkError>,
     {
         Ok(match self.config.shell {
             Shell::Spl2 => {
-                let spl = Spl2::new(Spl2Model::default(), link, self.seed);
-                self.through_a_host(Machine::new(afu, spl).map_err(HostError::from)?)?
+                let spl = Spl2::new(Spl2Model::default(), Link::new(link, self.seed)?, self.seed);
+                let device = spl2::Machine::new(afu, spl).map_err(HostError::from)?;
+                let workspace = Workspace::for_pairs(self.expected.layout, self.pairs.len() as u64, self.seed)?;
+                self.through_a_host(device, workspace)?
             }
-            Shell::Line | Shell::Axi => self.at_the_line_port(Driver::new(afu, link)?)?,
+            Shell::Axi => {
+                let device = axi::Machine::new(afu, link, Handshake::Free, self.seed).map_err(HostError::from)?;
+                let workspace = Workspace::contiguous(self.expected.layout, self.pairs.len() as u64)?;
+                self.through_a_host(device, workspace)?
+            }
+            Shell::Line => {
+                let link = Link::new(link, self.seed)?;
+                self.at_the_line_port(Driver::new(afu, link)?)?
+            }
         })
     }
 
-    fn through_a_host(self, device: impl Transport) -> Result<Outcome, HostError> {
-        let workspace = Workspace::for_pairs(self.expected.layout, self.pairs.len() as u64, self.seed)?;
+    fn through_a_host(self, device: impl Transport, workspace: Workspace) -> Result<Outcome, HostError> {
         let mut session = Session::new(device, workspace, self.expected);
         let running = session.transaction().send(self.pairs)?.start()?.confirm()?;
         Ok(running.wait_with(self.progress)?.outcome())

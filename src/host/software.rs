@@ -69,6 +69,16 @@ impl Software {
         })
     }
 
+    /// Physical memory.
+    pub fn memory(&self) -> &Memory {
+        &self.memory
+    }
+
+    /// Physical memory, writable.
+    pub fn memory_mut(&mut self) -> &mut Memory {
+        &mut self.memory
+    }
+
     /// The address whose low half was just written.
     fn address(&self, high: u32, low: u32) -> u64 {
         u64::from(self.csrs.get(&high).copied().unwrap_or(0)) << 32 | u64::from(low)
@@ -214,12 +224,16 @@ impl Transport for Software {
         Ok(())
     }
 
-    fn memory(&self) -> &Memory {
-        &self.memory
+    fn line(&self, at: u64) -> Option<Line> {
+        self.memory.get(at).copied()
     }
 
-    fn memory_mut(&mut self) -> &mut Memory {
-        &mut self.memory
+    fn put(&mut self, at: u64, line: &Line) {
+        self.memory.set(at, line);
+    }
+
+    fn forget(&mut self, lines: Range<u64>) {
+        self.memory.forget(lines);
     }
 
     fn advance(&mut self, cycles: u64) -> Result<(), TransportError> {

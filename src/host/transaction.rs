@@ -146,7 +146,7 @@ impl<'s, T: Transport> Transaction<'s, T, Pointed> {
     /// expected, or if the device breaks its protocol.
     pub fn send(mut self, pairs: &[PairRecord]) -> Result<Transaction<'s, T, Loaded>, HostError> {
         self.open.load(pairs)?;
-        self.open.start_spl()?;
+        self.open.set_up()?;
         Ok(self.to(|_| Loaded(())))
     }
 }
@@ -193,7 +193,7 @@ impl<'s, T: Transport> Transaction<'s, T, Running> {
 
     /// True if the status has arrived.
     pub fn is_done(&self) -> bool {
-        self.open.session.status(&self.state.begin).is_some()
+        self.open.session.has_ended(&self.state.begin)
     }
 
     /// Step 5: waits for the status.

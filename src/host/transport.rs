@@ -2,10 +2,13 @@
 
 use std::ops::Range;
 
+use super::handshake::Protocol;
 use crate::link::spl2::{DeviceWrite, Limits, Spl2Error, Spl2Model};
-use crate::link::{LinkModel, Memory, Traffic};
+use crate::link::{Line, LinkModel, Traffic};
+use crate::patience::{self, Patience, Work};
+use crate::record::Capability;
 
-/// A device below SPL2, with the memory that it shares with the host.
+/// A device, with the memory that it shares with the host.
 pub trait Transport {
     /// Writes a 32-bit CSR of SPL or the AFU. The write has arrived when this returns.
     ///
@@ -13,11 +16,32 @@ pub trait Transport {
     /// Returns the device's protocol errors since then.
     fn write_csr(&mut self, byte_offset: u32, value: u32) -> Result<(), TransportError>;
 
-    /// Physical memory, in lines.
-    fn memory(&self) -> &Memory;
+    /// Reads a 32-bit register of the AFU.
+    ///
+    /// # Errors
+    /// Returns an error if the device has no register that can be read, and the device's protocol errors since then.
+    fn read_csr(&mut self, byte_offset: u32) -> Result<u32, TransportError> {
+        Err(TransportError::Device(format!("register {byte_offset:#x} cannot be read")))
+    }
 
-    /// Physical memory, writable by the host.
-    fn memory_mut(&mut self) -> &mut Memory;
+    /// The registers of the device.
+    fn protocol(&self) -> Protocol {
+        Protocol::Spl2
+    }
+
+    /// A line of physical memory; `None` if it is known that it was never written.
+    fn line(&self, at: u64) -> Option<Line>;
+
+    /// Writes a line of physical memory.
+    fn put(&mut self, at: u64, line: &Line);
+
+    /// Forgets lines of physical memory, so that the device must write them. On real memory there is nothing to do.
+    fn forget(&mut self, _lines: Range<u64>) {}
+
+    /// True while the device raises its interrupt.
+    fn interrupt(&self) -> bool {
+        false
+    }
 
     /// Advances the device by this number of clock cycles.
     ///
@@ -29,10 +53,12 @@ pub trait Transport {
     fn cycle(&self) -> u64;
 
     /// From now on the device's writes to these physical lines are logged.
-    fn watch(&mut self, lines: Range<u64>);
+    fn watch(&mut self, _lines: Range<u64>) {}
 
     /// The device's writes to watched lines, in the order in which they arrived.
-    fn device_writes(&self) -> &[DeviceWrite];
+    fn device_writes(&self) -> &[DeviceWrite] {
+        &[]
+    }
 
     /// Restricts the device to the lines of a job, or lifts the restriction. A simulated device fails if it accesses
     /// another line. A device that nobody can observe ignores this.
@@ -57,8 +83,15 @@ pub trait Transport {
         Spl2Model::default()
     }
 
-    /// The traffic so far.
-    fn traffic(&self) -> Traffic;
+    /// The cycles that a job may take on the device that reports this capability.
+    fn patience(&self, afu: &Capability, work: &Work) -> Patience {
+        patience::spl2(afu, self.link(), &self.spl2(), work)
+    }
+
+    /// The traffic so far. A device that cannot be observed has none.
+    fn traffic(&self) -> Traffic {
+        Traffic::default()
+    }
 }
 
 /// A protocol error of a device, or of the host that drives it.

@@ -1,4 +1,4 @@
-//! The Verilated AFU as a device.
+//! The Verilated AFU below SPL2 as a device.
 
 use std::ops::Range;
 
@@ -6,7 +6,7 @@ use super::error::HostError;
 use super::transport::{Transport, TransportError};
 use crate::cosim::spl2::{Machine, MachineError};
 use crate::link::spl2::{DeviceWrite, Limits, Spl2Error, Spl2Model};
-use crate::link::{LinkModel, Memory, Traffic};
+use crate::link::{Line, LinkModel, Traffic};
 
 impl From<MachineError> for TransportError {
     fn from(error: MachineError) -> Self {
@@ -29,12 +29,16 @@ impl Transport for Machine<'_> {
         Ok(Machine::write_csr(self, byte_offset, value)?)
     }
 
-    fn memory(&self) -> &Memory {
-        &self.spl().link().memory
+    fn line(&self, at: u64) -> Option<Line> {
+        self.memory().get(at).copied()
     }
 
-    fn memory_mut(&mut self) -> &mut Memory {
-        &mut self.spl_mut().link_mut().memory
+    fn put(&mut self, at: u64, line: &Line) {
+        self.memory_mut().set(at, line);
+    }
+
+    fn forget(&mut self, lines: Range<u64>) {
+        self.memory_mut().forget(lines);
     }
 
     fn advance(&mut self, cycles: u64) -> Result<(), TransportError> {

@@ -12,11 +12,13 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use super::error::HostError;
 use crate::afu::shell::spl2::map::{self, pointers};
 use crate::link::spl2::{Limits, MAX_PAGES, PAGE_BYTES, PAGE_LINES, Pages};
-use crate::link::{LINE_BYTES, Memory};
+use crate::link::{LINE_BYTES, Line};
 use crate::record::Layout;
 
 /// The virtual byte address of a workspace.
 const BASE: u64 = 0x0000_7F12_3460_0000;
+/// The byte address of a workspace of physical memory that is contiguous.
+const CONTIGUOUS: u64 = 0x8_4000_0000;
 /// Lines of the AFU's context.
 const CONTEXT_LINES: u64 = 2;
 /// The range of physical pages from which a workspace's pages are taken: the second terabyte.
@@ -33,6 +35,12 @@ const PAGE_TABLE: u64 = 0x4000;
 pub struct Workspace {
     pages: Pages,
     layout: Layout,
+    /// Virtual byte address of the first page.
+    base: u64,
+    /// Lines in front of source and destination: the context.
+    reserved: u64,
+    /// Lines of the source in front of the pairs: the control memory.
+    control: u64,
     /// Lines from the beginning of the workspace to the source, and to the destination.
     source: u64,
     destination: u64,
@@ -59,7 +67,32 @@ impl Workspace {
         }
         let lines = half_lines(pages);
         let pages = Pages::new(BASE, scattered);
-        Ok(Self { pages, layout, source: CONTEXT_LINES, destination: CONTEXT_LINES + lines, lines })
+        Ok(Self {
+            pages,
+            layout,
+            base: BASE,
+            reserved: CONTEXT_LINES,
+            control: map::DATA_LINE.into(),
+            source: CONTEXT_LINES,
+            destination: CONTEXT_LINES + lines,
+            lines,
+        })
+    }
+
+    /// The smallest workspace that holds `pairs` pairs and their contacts, for a device that sees physical memory: its
+    /// pages follow each other, and its addresses are physical. It has no context and no control memory.
+    ///
+    /// # Errors
+    /// Returns [`HostError::Pages`] if 2 GB are not enough.
+    pub fn contiguous(layout: Layout, pairs: u64) -> Result<Self, HostError> {
+        let lines = layout.source_lines(pairs).max(layout.destination_lines(pairs));
+        let pages = (2 * lines).div_ceil(PAGE_LINES).max(1);
+        if pages > MAX_PAGES {
+            return Err(HostError::Pages(pages));
+        }
+        let lines = pages * PAGE_LINES / 2;
+        let pages = Pages::new(CONTIGUOUS, (0..pages).map(|page| CONTIGUOUS + page * PAGE_BYTES));
+        Ok(Self { pages, layout, base: CONTIGUOUS, reserved: 0, control: 0, source: 0, destination: lines, lines })
     }
 
     /// The same pages with another source and destination, as offsets in lines from the beginning, each `lines` long.
@@ -69,7 +102,7 @@ impl Workspace {
     pub fn with_buffers(self, source: u64, destination: u64, lines: u32) -> Result<Self, HostError> {
         let (lines, all) = (u64::from(lines), self.pages() * PAGE_LINES);
         let ends_inside = source.max(destination).checked_add(lines).is_some_and(|end| end <= all);
-        if !ends_inside || source.min(destination) < CONTEXT_LINES {
+        if !ends_inside || source.min(destination) < self.reserved {
             return Err(HostError::Buffers("they do not fit behind the context: give the workspace more pages"));
         }
         if source.abs_diff(destination) < lines {
@@ -103,23 +136,33 @@ impl Workspace {
 
     /// The most pairs that a transaction may have: what source and destination hold, and what a count can represent.
     pub fn capacity(&self) -> u64 {
-        let pairs = self.lines.saturating_sub(map::DATA_LINE.into()) * u64::from(self.layout.pairs_per_line());
+        let pairs = self.lines.saturating_sub(self.control) * u64::from(self.layout.pairs_per_line());
         pairs.min(self.lines * u64::from(self.layout.contacts_per_line())).min(u32::MAX.into())
     }
 
     /// Virtual byte address of the AFU's context.
     pub fn context(&self) -> u64 {
-        BASE
+        self.base
     }
 
     /// pSource: virtual byte address of the control memory, behind which the pairs lie.
     pub fn source(&self) -> u64 {
-        BASE + self.source * LINE_BYTES
+        self.base + self.source * LINE_BYTES
+    }
+
+    /// Virtual byte address of the first pair.
+    pub fn pairs(&self) -> u64 {
+        self.source() + self.control * LINE_BYTES
+    }
+
+    /// Lines of the source in front of the pairs.
+    pub(super) fn control_lines(&self) -> u64 {
+        self.control
     }
 
     /// pDest: virtual byte address of the first contact.
     pub fn destination(&self) -> u64 {
-        BASE + self.destination * LINE_BYTES
+        self.base + self.destination * LINE_BYTES
     }
 
     /// Lines of source, and of destination.
@@ -143,25 +186,27 @@ impl Workspace {
         let line = |address: u64| address / LINE_BYTES;
         let (context, source, destination) = (line(self.context()), line(self.source()), line(self.destination()));
         let [pointers, status] = [map::POINTERS_LINE, map::STATUS_LINE].map(|number| context + u64::from(number));
-        let source_lines = u64::from(map::DATA_LINE) + self.layout.source_lines(pairs);
+        let source_lines = self.control + self.layout.source_lines(pairs);
+        let sources = source..source + source_lines;
+        let has_context = self.reserved > 0;
         Limits {
-            reads: vec![pointers..pointers + 1, source..source + source_lines],
-            status: status..status + 1,
+            reads: if has_context { vec![pointers..pointers + 1, sources] } else { vec![sources] },
+            status: if has_context { status..status + 1 } else { 0..0 },
             results: destination..destination + self.layout.destination_lines(pairs),
         }
     }
 
-    /// Writes SPL's context, the page table, and the AFU's context.
-    pub(super) fn describe(&self, memory: &mut Memory) -> Result<(), HostError> {
-        self.pages.write(memory, SPL_CONTEXT, PAGE_TABLE);
+    /// The lines of SPL's context, of the page table, and of the AFU's context.
+    pub(super) fn described(&self) -> Result<Vec<(u64, Line)>, HostError> {
+        let mut lines = self.pages.described(SPL_CONTEXT, PAGE_TABLE);
         let mut context = [0; 16];
         pointers::SOURCE.set(&mut context, self.source().into());
         pointers::DESTINATION.set(&mut context, self.destination().into());
         pointers::LINES.set(&mut context, self.buffer_lines().into());
-        memory.set(self.line(self.context(), map::POINTERS_LINE.into())?, &context);
-        memory.set(self.line(self.context(), map::STATUS_LINE.into())?, &[0; 16]);
-        memory.set(self.line(self.source(), map::CONTROL_LINE.into())?, &[0; 16]);
-        Ok(())
+        lines.push((self.line(self.context(), map::POINTERS_LINE.into())?, context));
+        lines.push((self.line(self.context(), map::STATUS_LINE.into())?, [0; 16]));
+        lines.push((self.line(self.source(), map::CONTROL_LINE.into())?, [0; 16]));
+        Ok(lines)
     }
 }
 

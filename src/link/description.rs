@@ -6,7 +6,7 @@ use super::model::{LinkError, LinkModel};
 use super::physical::Physical;
 
 /// The links that have a name: first [`LinkModel::PRESETS`], then real ones.
-pub const NAMES: [&str; 7] = ["ideal", "late", "shuffled", "hostile", "harp1", "harp2", "pcie3x8"];
+pub const NAMES: [&str; 9] = ["ideal", "late", "shuffled", "hostile", "harp1", "harp2", "pcie3x8", "zynqmp", "ddr4"];
 
 /// A link, independent of the AFU's clock.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,6 +52,8 @@ impl FromStr for Description {
             "harp1" => include_str!("presets/harp1.toml"),
             "harp2" => include_str!("presets/harp2.toml"),
             "pcie3x8" => include_str!("presets/pcie3x8.toml"),
+            "zynqmp" => include_str!("presets/zynqmp.toml"),
+            "ddr4" => include_str!("presets/ddr4.toml"),
             _ => return name.parse().map(|model| Self::Cycles(Box::new(model))),
         };
         Self::parse(name, text)

@@ -5,6 +5,8 @@
 //! and gives the same result for the same seed. Nothing here depends on Verilator, so a test can drive a link by hand.
 //! This module imports nothing of ours.
 
+#[cfg(feature = "cosim")]
+pub mod axi;
 mod cycle;
 mod description;
 mod direction;

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::direction::{Direction, Order, Stalls, Stragglers};
 use super::fault::Fault;
+use super::memory::LINE_BYTES;
 
 /// The reads, and the writes, that a link takes in flight if its description does not say how many.
 pub const USUAL_IN_FLIGHT: u32 = 64;
@@ -144,6 +145,18 @@ impl LinkModel {
         Ok(())
     }
 
+    /// The link behind an AXI4 slave with a bus of this many bits, for a master with one ID: in order, and no faster
+    /// than the bus.
+    #[must_use]
+    pub fn on_bus(self, bits: u32) -> Self {
+        let most = f64::from(bits) / (8 * LINE_BYTES) as f64;
+        let mut model = Self { order: Order::InOrder, write_order: None, ..self };
+        for direction in [&mut model.read, &mut model.write] {
+            direction.lines_per_cycle = direction.lines_per_cycle.min(most);
+        }
+        model
+    }
+
     /// The minimum number of cycles, on average over the link's randomness, to read and write this many lines. The
     /// limits are its bandwidths, its stalls and, by Little's law, its latency with its requests in flight. An AFU with
     /// fewer requests in flight than the link accepts reaches less.
@@ -192,7 +205,10 @@ mod tests {
             model.check().unwrap();
         }
         let error = "idea".parse::<LinkModel>().unwrap_err().to_string();
-        assert_eq!(error, "unknown link `idea`: use ideal, late, shuffled, hostile, harp1, harp2, pcie3x8");
+        assert_eq!(
+            error,
+            "unknown link `idea`: use ideal, late, shuffled, hostile, harp1, harp2, pcie3x8, zynqmp, ddr4"
+        );
     }
 
     #[test]

@@ -245,7 +245,7 @@ mod tests {
                 assert_eq!(description.at(mhz).unwrap().name, name);
             }
         }
-        for name in ["harp1", "harp2", "pcie3x8"] {
+        for name in ["harp1", "harp2", "pcie3x8", "zynqmp", "ddr4"] {
             assert!(named(name).figures().len() >= 12, "{name}");
         }
     }
@@ -266,7 +266,7 @@ mod tests {
     /// max(bytes read / read bandwidth, bytes written / write bandwidth, all bytes / joint bandwidth), in nanoseconds.
     #[test]
     fn the_limit_is_the_tightest_bandwidth() {
-        for name in ["harp1", "harp2", "pcie3x8"] {
+        for name in ["harp1", "harp2", "pcie3x8", "zynqmp", "ddr4"] {
             let physical = named(name);
             let gb_s = |figure: &Figure, most: f64| figure.value.min(most);
             for (reads, writes) in [(1000, 1000), (1000, 0), (0, 1000), (900, 400), (100, 1000)] {
@@ -335,7 +335,7 @@ mod tests {
     #[test]
     fn the_page_shows_the_figures() {
         let page = include_str!("../../docs/link.md");
-        for name in ["harp1", "harp2", "pcie3x8"] {
+        for name in ["harp1", "harp2", "pcie3x8", "zynqmp", "ddr4"] {
             for (key, Figure { value, source }) in named(name).figures() {
                 let row = format!("| {name} | `{key}` | {value} | {source} |");
                 assert!(page.contains(&row), "docs/link.md lacks: {row}");

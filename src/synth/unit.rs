@@ -133,7 +133,7 @@ impl Unit {
         let style = Style::default();
         let mut ports = Vec::new();
         if unit.is_clocked() {
-            ports.push("input wire clk".to_owned());
+            ports.push(format!("input wire {}", unit.clock()));
         }
         if unit.has_reset_port() {
             ports.push(format!("input wire {}", style.reset_port()));

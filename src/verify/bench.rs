@@ -12,7 +12,7 @@ use crate::cosim::{CosimError, File, Model, Source, Trace};
 use crate::host::Expected;
 use crate::host::simulated::Run;
 use crate::kernel::Reference;
-use crate::link::{Link, LinkModel, Traffic};
+use crate::link::{LinkModel, Traffic};
 use crate::query::PairRecord;
 
 /// The Verilog parameter for the number of SCPUs.
@@ -161,7 +161,6 @@ impl Bench {
             instance.trace_open(path, half_period_ps).map_err(CosimError::from)?;
         }
         let setup = Setup { config: self.config.clone(), folder: self.folder.clone(), link: link.clone(), seed };
-        let link = Link::new(link.clone(), seed)?;
         let mut tell = |traffic: Traffic| {
             let pairs = match self.config.results {
                 Results::All => traffic.write_responses * u64::from(layout.contacts_per_line()),
@@ -170,7 +169,7 @@ impl Bench {
             progress(Progress::Simulated(pairs.min(count.into())));
         };
         let run = Run { config: &self.config, expected: self.expected, pairs, seed, progress: &mut tell };
-        let outcome: Result<_, VerifyError> = run.on(&instance, link);
+        let outcome: Result<_, VerifyError> = run.on(&instance, link.clone());
         // The waveform of a failed job is the most useful one.
         let closed = if waveform.is_some() { instance.trace_close() } else { Ok(()) };
         let outcome = outcome?;

@@ -113,7 +113,8 @@ pub(super) fn check(
     let memory = Contacts::new(layout, &outcome.lines);
     let mut failed_checks = Vec::new();
     if let Some(error) = outcome.job_error() {
-        failed_checks.push(format!("the job ended with error {} ({error:?})", outcome.error));
+        let failure = outcome.failure.map_or_else(String::new, |failure| format!(": {failure}"));
+        failed_checks.push(format!("the job ended with error {} ({error:?}){failure}", outcome.error));
     }
     let job = Job { query: layout.query(), pairs, reference, memory: &memory, outcome: &outcome };
     let received = if layout.number_bits() > 0 { job.hits(&mut failed_checks) } else { job.all() };
@@ -240,6 +241,7 @@ mod tests {
         Outcome {
             cycles: 10,
             error: 0,
+            failure: None,
             contacts: records.len() as u32,
             invalid: 0,
             first_invalid: None,

@@ -30,6 +30,9 @@ class Ports:
         self.radius = float(radius[1]) if radius else None
         self.only_hits = "Only pairs in contact have a record" in text
         (self.line_bits,) = self._sizes(text, r"A line is (\d+) bits")
+        # What only the line port has.
+        if "wr_req_valid" not in self.widths:
+            return
         self.reads, self.writes = self._sizes(text, r"At most (\d+) reads and (\d+) writes are outstanding")
         (self.slot_bits,) = self._sizes(text, r"`epoch` in bits \d+:(\d+)")
         (self.first_read,) = self._sizes(text, r"R = (\d+)")

@@ -1,6 +1,7 @@
-"""Runs the cocotb bench of the line port in Icarus: run.py FOLDER, which `afu rtl --shell line` wrote.
+"""Runs a cocotb bench: run.py FOLDER [SIMULATOR], FOLDER as `afu rtl --shell line` or `--shell axi` wrote it.
 
-The bench depends only on FOLDER/PORTS.md, and on nothing else of this project. Exit status 1 if it fails.
+The bench depends only on PORTS.md and REGISTERS.md in FOLDER, and on nothing else of this project. The simulator is
+icarus, or verilator. Exit status 1 if the bench fails.
 """
 
 import os
@@ -18,12 +19,20 @@ def main() -> int:
     ports = (folder / "PORTS.md").read_text(encoding="utf-8")
     top = ports.split("`")[1]
     os.environ["AFU_PORTS"] = str(folder / "PORTS.md")
+    registers = folder / "REGISTERS.md"
+    os.environ["AFU_REGISTERS"] = str(registers)
+    bench = "axi" if registers.exists() else "line_port"
+    simulator = sys.argv[2] if len(sys.argv) > 2 else "icarus"
+    # The pin `interrupt` has the name of a word of C++ libraries.
+    options = ["-Wno-SYMRSVDWORD"] if simulator == "verilator" else []
     os.environ["PYTHONPATH"] = str(here)
     with tempfile.TemporaryDirectory() as build:
-        runner = get_runner("icarus")
+        runner = get_runner(simulator)
         sources = sorted(folder.glob("*.v"))
-        runner.build(sources=sources, hdl_toplevel=top, build_dir=build, timescale=("1ns", "1ps"))
-        results = runner.test(hdl_toplevel=top, test_module="line_port", build_dir=build, test_dir=build)
+        runner.build(
+            sources=sources, hdl_toplevel=top, build_dir=build, timescale=("1ns", "1ps"), build_args=options
+        )
+        results = runner.test(hdl_toplevel=top, test_module=bench, build_dir=build, test_dir=build)
         tests, failed = get_results(results)
     return 1 if failed or tests == 0 else 0
 

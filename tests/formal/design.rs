@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use contact_afu::afu::{Afu, Spec};
-use contact_afu::config::{Config, Results};
+use contact_afu::config::{Config, Results, Shell};
 use contact_afu::hdl::{Graph, Module};
 
 const TAGS: u32 = 4;
@@ -22,9 +22,11 @@ pub enum Design {
     Hits,
     /// Only pairs that touch come back, one per line: the number and two words.
     Records,
+    /// The shell `axi` with a bus of 256 bits and 16 lines outstanding; its core does not matter.
+    Axi,
 }
 
-use Design::{EachCycle, EveryOther, Hits, Records, ThreeEveryOther};
+use Design::{Axi, EachCycle, EveryOther, Hits, Records, ThreeEveryOther};
 
 impl Design {
     /// The suffix in reports that distinguishes it from [`EachCycle`].
@@ -35,6 +37,7 @@ impl Design {
             ThreeEveryOther => ", three at interval 2",
             Hits => ", hits",
             Records => ", hits with records",
+            Axi => ", axi",
         }
     }
 
@@ -53,6 +56,7 @@ impl Design {
             ThreeEveryOther => &["SCPUS=32'd3", "EVERY_OTHER", "THREE"],
             Hits => &["SCPUS=32'd2", "PER_LINE=2", "GATHERS"],
             Records => &["SCPUS=32'd2", "PER_LINE=1"],
+            Axi => &[],
         };
         let own = own.iter().map(|define| (*define).to_owned());
         own.chain([format!("LATENCY={latency}"), format!("LINES={lines}"), format!("CAPACITY={capacity}")]).collect()
@@ -61,7 +65,7 @@ impl Design {
     /// The number of a pair's words that come back.
     fn record_bits(self) -> u32 {
         match self {
-            EachCycle | EveryOther | ThreeEveryOther => 16,
+            EachCycle | EveryOther | ThreeEveryOther | Axi => 16,
             Hits => 0,
             Records => 8,
         }
@@ -75,7 +79,7 @@ impl Design {
             ..base.clone()
         };
         let config = match self {
-            EachCycle => base,
+            EachCycle | Axi => base,
             EveryOther => Config { interval: 2, ..base },
             ThreeEveryOther => Config { scpus: 3, interval: 2, ..base },
             Hits => of_hits("hit"),
@@ -96,30 +100,55 @@ impl Design {
 
     /// Verilog files (name and text) of the accelerator with SCPUs of this delay, and of what harnesses include.
     pub fn files(self, latency: u32) -> Vec<(String, String)> {
+        if self == Axi {
+            return axi();
+        }
         let spec = self.spec();
         let scpu = scpu(&spec, latency, self.record_bits());
         let afu = Afu::around_scpu(spec, scpu).expect("a sound accelerator");
-        let includes = [("inputs.svh".to_owned(), inputs(&afu)), ("dut.svh".to_owned(), instance(&afu))];
+        let top = format!("{} #(.SCPUS(`SCPUS))", afu.top_name());
+        let includes = [
+            ("inputs.svh".to_owned(), inputs(afu.top(), "  input wire clk,\n  input wire rst")),
+            ("dut.svh".to_owned(), instance(afu.top(), &top)),
+        ];
         afu.verilog().into_iter().chain(includes).collect()
     }
 }
 
+/// The parts of the shell `axi`, and an instance of its registers.
+fn axi() -> Vec<(String, String)> {
+    let config = Config {
+        shell: Shell::Axi,
+        bus: 256,
+        outstanding: 16,
+        profile: "e5f2z".parse().expect("a profile"),
+        ..Config::default()
+    };
+    let afu = Afu::generate(Spec::from(config)).expect("a sound accelerator");
+    let parts = afu.top().hierarchy();
+    let control = parts.iter().find(|module| module.name == "axi_control").expect("the registers");
+    let includes =
+        [("inputs.svh".to_owned(), inputs(control, "")), ("dut.svh".to_owned(), instance(control, "axi_control"))];
+    let verilog = afu.verilog().into_iter().filter(|(name, _)| name.starts_with("axi_"));
+    verilog.chain(includes).collect()
+}
+
 /// The accelerator's inputs, declared as inputs of a harness.
-fn inputs(afu: &Afu) -> String {
-    let inputs = afu.top().ports.iter().filter(|port| !port.output);
+fn inputs(module: &Module, system: &str) -> String {
+    let inputs = module.ports.iter().filter(|port| !port.output);
     let inputs: String = inputs.map(|port| format!(",\n  input wire [{}:0] {}", port.width - 1, port.name)).collect();
-    format!("  input wire clk,\n  input wire rst{inputs}\n")
+    format!("{system}{inputs}\n")
 }
 
 /// Instantiates the accelerator as `dut` and declares wires for its outputs. Its inputs are the harness's signals of
 /// the same names. Those may be narrower; the upper bits are then zero.
-fn instance(afu: &Afu) -> String {
-    let ports = &afu.top().ports;
+fn instance(module: &Module, name: &str) -> String {
+    let ports = &module.ports;
     let outputs = ports.iter().filter(|port| port.output);
     let wires: String = outputs.map(|port| format!("  wire [{}:0] {};\n", port.width - 1, port.name)).collect();
     let names = ["clk", "rst"].into_iter().chain(ports.iter().map(|port| port.name.as_str()));
     let connections: Vec<String> = names.map(|name| format!("    .{name}({name})")).collect();
-    format!("{wires}  {} #(.SCPUS(`SCPUS)) dut (\n{}\n  );\n", afu.top_name(), connections.join(",\n"))
+    format!("{wires}  {name} dut (\n{}\n  );\n", connections.join(",\n"))
 }
 
 /// An SCPU that returns as many bits of its pair as a record holds: a contact if bit 0 is set, invalid if bit 1 is set

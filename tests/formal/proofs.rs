@@ -126,7 +126,7 @@ fn of_hits(latency: u32) -> [Proof; 6] {
     ]
 }
 
-/// All proofs. The collector and the dispatcher on their own do not depend on the SCPUs.
+/// All proofs. The collector, the dispatcher and the parts of the shell `axi` on their own do not depend on the SCPUs.
 pub fn proofs() -> Vec<Proof> {
     let alone = ["collector", "dispatcher"].map(|name| Proof::new(name, name, 1, Inductive(2)).short());
     let short = ["credits", "any link, any host", "a job of one pair", "jobs are whole"];
@@ -137,7 +137,9 @@ pub fn proofs() -> Vec<Proof> {
     let others = each.flat_map(|latency| every_other(latency).into_iter().chain(of_hits(latency)));
     let others =
         others.map(|proof| Proof { is_short: proof.latency == 1 && short_others.contains(&proof.name), ..proof });
-    alone.into_iter().chain(around).chain(others).collect()
+    let axi = ["axi_reads", "axi_writes", "axi_lite"]
+        .map(|name| Proof::new(name, name, 1, Inductive(2)).of(Design::Axi).short());
+    alone.into_iter().chain(axi).chain(around).chain(others).collect()
 }
 
 /// The proof with this name, at the smallest latency.

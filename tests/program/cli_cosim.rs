@@ -88,7 +88,7 @@ fn wrong_options_are_exit_2_before_anything_is_built() {
         (&["--rtl", "absent", "--profile", "paper"], "--profile does not go with --rtl"),
         (&["--rtl", "absent", "--query", "sphere-plane"], "--query does not go with --rtl"),
         (&["--interval", "0"], "interval 0"),
-        (&["--shell", "axi"], "shell axi"),
+        (&["--shell", "axi", "--bus", "100"], "bus of 100 bits"),
     ] {
         let refused = afu(room.path(), &[&["cosim"][..], arguments].concat()).code(2);
         let said = said(&refused);

@@ -126,7 +126,8 @@ fn what_is_not_built_yet_or_out_of_range_is_one_line_and_exit_2() {
     for (arguments, word) in [
         (["--interval", "65"], "interval 65"),
         (["--interval", "fast"], "--interval fast"),
-        (["--shell", "axi"], "shell axi"),
+        (["--shell", "pcie"], "unknown shell `pcie`"),
+        (["--bus", "256"], "bus of 256 bits below shell spl2"),
         (["--target", "tin"], "tin"),
         // There is no Verilog for these targets, and the program does not write any other in its place.
         (["--target", "cyclonev"], "`afu synth --target cyclonev` estimates the area"),

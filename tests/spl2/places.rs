@@ -1,7 +1,7 @@
 //! Buffers anywhere in the 2 GB: across page boundaries, with pages in a different order in physical memory, and up to
 //! the very last line.
 
-use contact_afu::host::{HostError, Transport, TransportError};
+use contact_afu::host::{HostError, TransportError};
 use contact_afu::link::spl2::{MAX_PAGES, PAGE_LINES};
 
 use crate::bench::{Case, end, machine, model, quick, session, workspace};

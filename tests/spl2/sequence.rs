@@ -3,7 +3,7 @@
 
 use contact_afu::afu::shell::spl2::map::{self, control, pointers, status};
 use contact_afu::cosim::spl2::Machine;
-use contact_afu::host::{Transport, Workspace};
+use contact_afu::host::Workspace;
 use contact_afu::link::spl2::PAGE_LINES;
 
 use crate::bench::{Case, end, machine, model, quick, session};

@@ -1,5 +1,6 @@
 //! Shells around the core. A shell is a value behind `ShellDesign`; only `of` lists them.
 
+pub mod axi;
 mod line;
 pub mod spl2;
 
@@ -20,8 +21,18 @@ pub(super) trait ShellDesign: Debug + Sync {
     /// The top module, around `core`.
     fn top(&self, spec: &Spec, core: &Arc<Module>) -> Result<Arc<Module>, BuildErrors>;
 
+    /// The name of the top module's clock.
+    fn clock(&self) -> &'static str {
+        "clk"
+    }
+
     /// The top module's ports.
     fn ports(&self, spec: &Spec) -> Ports;
+
+    /// What the top module's addresses count.
+    fn addresses_count(&self) -> &'static str {
+        "lines"
+    }
 
     /// For a top that resets itself: the input that holds it in reset, and its active level.
     fn held(&self) -> Option<(&'static str, u128)> {
@@ -48,10 +59,11 @@ pub(super) struct BenchText {
     pub(super) first_line: usize,
 }
 
-/// The shell of this name; `axi` does not exist yet, and [`crate::config::Config::check`] refuses it.
+/// The shell of this name.
 pub(super) fn of(shell: Shell) -> &'static dyn ShellDesign {
     match shell {
         Shell::Spl2 => &spl2::Spl2,
-        Shell::Line | Shell::Axi => &line::Line,
+        Shell::Line => &line::Line,
+        Shell::Axi => &axi::Axi,
     }
 }

@@ -174,6 +174,7 @@ impl Running {
         Outcome {
             cycles: cycle - self.started,
             error: ports.error(),
+            failure: None,
             contacts: counters.contacts,
             invalid: counters.invalid,
             first_invalid,

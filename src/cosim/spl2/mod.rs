@@ -9,6 +9,7 @@ mod ports;
 pub use error::MachineError;
 
 use super::instance::{Clock, Instance};
+use crate::link::Memory;
 use crate::link::spl2::{Header, Spl2, Transmit};
 use ports::Ports;
 
@@ -106,6 +107,16 @@ impl<'a> Machine<'a> {
     /// SPL2 and the link below.
     pub fn spl(&self) -> &Spl2 {
         &self.spl
+    }
+
+    /// Physical memory.
+    pub fn memory(&self) -> &Memory {
+        &self.spl.link().memory
+    }
+
+    /// Physical memory, writable.
+    pub fn memory_mut(&mut self) -> &mut Memory {
+        &mut self.spl.link_mut().memory
     }
 
     /// SPL2 and the link below, to plant faults, watch lines and set limits.

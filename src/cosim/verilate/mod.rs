@@ -147,6 +147,9 @@ const FIXED_ARGUMENTS: [&str; 7] =
 
 fn verilator_arguments(design: &Design, files: &[File]) -> Vec<String> {
     let mut arguments: Vec<String> = FIXED_ARGUMENTS.map(str::to_owned).to_vec();
+    // A port may have the name of a word of C++ libraries, as Vitis' `interrupt` has. The harness knows what Verilator
+    // calls it.
+    arguments.push("-Wno-SYMRSVDWORD".to_owned());
     arguments.extend(["--prefix".to_owned(), PREFIX.to_owned(), "--top-module".to_owned(), design.top.to_owned()]);
     match design.trace {
         Trace::Off => {}

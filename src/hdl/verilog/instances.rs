@@ -45,7 +45,7 @@ impl Sections<'_> {
         let outputs = self.outputs_of(position);
         let mut list = Vec::new();
         if instance.module.is_clocked() {
-            list.push((String::from("clk"), String::from("clk")));
+            list.push((instance.module.clock().to_owned(), self.module.clock().to_owned()));
         }
         if instance.module.has_reset_port() {
             list.push((self.style.reset_port().to_owned(), self.style.reset_port().to_owned()));

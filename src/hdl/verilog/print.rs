@@ -11,7 +11,7 @@ use super::sections::Sections;
 use super::unused::unused;
 
 pub(super) fn print(module: &Module, style: &Style) -> String {
-    let names = Names::of(module, &["clk", style.reset_port()]);
+    let names = Names::of(module, &[module.clock(), style.reset_port()]);
     let expressions = Expressions { module, names: &names };
     let mut out = header(module, style);
     if module.size.is_some() {
@@ -64,7 +64,7 @@ fn interface(module: &Module, style: &Style, names: &Names) -> String {
     let ranges = module.ports.iter().map(|port| range(port.width).len()).max().unwrap_or(0);
     let mut ports = Vec::new();
     if module.is_clocked() {
-        ports.push(format!("input  wire {:ranges$}clk", ""));
+        ports.push(format!("input  wire {:ranges$}{}", "", module.clock()));
     }
     if module.has_reset_port() {
         ports.push(format!("input  wire {:ranges$}{}", "", style.reset_port()));

@@ -216,7 +216,7 @@ impl<'a> Sections<'a> {
         }
         let mut out = String::new();
         if !data.is_empty() {
-            out += &format!("  always @(posedge clk) begin\n{data}  end\n");
+            out += &format!("  always @(posedge {}) begin\n{data}  end\n", self.module.clock());
         }
         out += &cases.text();
         if !reset.is_empty() {
@@ -232,8 +232,8 @@ impl<'a> Sections<'a> {
         } else {
             (format!("posedge {port}"), port.to_owned())
         };
-        let sensitivity =
-            if self.style.reset.asynchronous { format!("posedge clk or {edge}") } else { "posedge clk".to_owned() };
+        let clock = format!("posedge {}", self.module.clock());
+        let sensitivity = if self.style.reset.asynchronous { format!("{clock} or {edge}") } else { clock };
         format!(
             "  always @({sensitivity}) begin\n    if ({test}) begin\n{reset}    end else begin\n{running}    end\n  end\n"
         )

@@ -44,18 +44,24 @@ impl Pages {
 
     /// Writes the context and the table, each at a physical byte address, so that [`Pages::read`] finds them.
     pub fn write(&self, memory: &mut Memory, context: u64, table: u64) {
+        self.described(context, table).iter().for_each(|(at, line)| memory.set(*at, line));
+    }
+
+    /// The lines of context and table, each at a physical byte address.
+    pub(crate) fn described(&self, context: u64, table: u64) -> Vec<(u64, Line)> {
         let mut line = [0; 16];
         set_qword(&mut line, 0, table);
         set_qword(&mut line, 1, self.first * PAGE_BYTES);
         (line[4], line[5]) = (1, self.lines.len() as u32);
-        memory.set(context / LINE_BYTES, &line);
+        let mut lines = vec![(context / LINE_BYTES, line)];
         for (number, pages) in (0..).zip(self.lines.chunks(LINE_ENTRIES as usize)) {
             let mut entries = [0; 16];
             for (index, page) in pages.iter().enumerate() {
                 set_qword(&mut entries, index, page * LINE_BYTES);
             }
-            memory.set(table / LINE_BYTES + number, &entries);
+            lines.push((table / LINE_BYTES + number, entries));
         }
+        lines
     }
 
     /// Reads SPL2's context at a physical byte address, and the table that it points to. In the context, qword 0 is the

@@ -1,5 +1,6 @@
 //! Mutants of the controller: each is a small change of the generated Verilog and names the property that it breaks.
 
+mod axi;
 mod others;
 mod parts;
 mod whole;
@@ -44,17 +45,20 @@ impl Mutant {
 type Rows = &'static [(&'static str, &'static str, &'static str, u32, &'static str)];
 
 /// One mutant of each kind, for the test command.
-const SHORT: [&str; 6] = [
+const SHORT: [&str; 9] = [
     "lines go out before they came",
     "responses to earlier jobs count",
     "slots are freed by earlier jobs",
     "a pair takes eight places",
     "the first line is asked for again",
     "done at once",
+    "bursts of reads cross 4 KB",
+    "WLAST at the end of each line",
+    "a response without the data",
 ];
 
 pub fn all() -> Vec<Mutant> {
-    let tables = parts::TABLES.iter().chain(whole::TABLES).chain(others::TABLES);
+    let tables = parts::TABLES.iter().chain(whole::TABLES).chain(others::TABLES).chain(axi::TABLES);
     let mutants = tables.flat_map(|(tried_in, file, rows)| {
         rows.iter().map(|&(what, old, new, cycle, breaks)| {
             let is_short = SHORT.contains(&what);

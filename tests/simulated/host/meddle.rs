@@ -6,7 +6,7 @@ use std::rc::Rc;
 
 use contact_afu::host::{Transport, TransportError};
 use contact_afu::link::spl2::DeviceWrite;
-use contact_afu::link::{LinkModel, Memory, Traffic};
+use contact_afu::link::{Line, LinkModel, Traffic};
 
 /// A device, and a change that is applied to it whenever time has passed.
 pub struct Meddled<T> {
@@ -36,12 +36,16 @@ impl<T: Transport> Transport for Meddled<T> {
         done
     }
 
-    fn memory(&self) -> &Memory {
-        self.device.memory()
+    fn line(&self, at: u64) -> Option<Line> {
+        self.device.line(at)
     }
 
-    fn memory_mut(&mut self) -> &mut Memory {
-        self.device.memory_mut()
+    fn put(&mut self, at: u64, line: &Line) {
+        self.device.put(at, line);
+    }
+
+    fn forget(&mut self, lines: Range<u64>) {
+        self.device.forget(lines);
     }
 
     fn cycle(&self) -> u64 {
@@ -88,12 +92,16 @@ impl<T: Transport> Transport for Dying<T> {
         if self.left == 0 { Ok(()) } else { self.device.advance(cycles) }
     }
 
-    fn memory(&self) -> &Memory {
-        self.device.memory()
+    fn line(&self, at: u64) -> Option<Line> {
+        self.device.line(at)
     }
 
-    fn memory_mut(&mut self) -> &mut Memory {
-        self.device.memory_mut()
+    fn put(&mut self, at: u64, line: &Line) {
+        self.device.put(at, line);
+    }
+
+    fn forget(&mut self, lines: Range<u64>) {
+        self.device.forget(lines);
     }
 
     fn cycle(&self) -> u64 {

@@ -89,9 +89,9 @@ fn pretends(field: map::Field, value: u128) -> HostError {
 #[test]
 fn another_identity_or_version_is_refused() {
     let error = pretends(identity::AFU_ID, 0xBAD);
-    assert_eq!(error, HostError::Identity { afu_id: 0xBAD, version: map::VERSION });
+    assert_eq!(error, HostError::Identity { afu_id: 0xBAD, version: map::VERSION, expected: map::VERSION });
     let error = pretends(identity::VERSION, 99);
-    assert_eq!(error, HostError::Identity { afu_id: map::AFU_ID, version: 99 });
+    assert_eq!(error, HostError::Identity { afu_id: map::AFU_ID, version: 99, expected: map::VERSION });
     assert!(error.to_string().contains("load the AFU that this version of the program generates"), "{error}");
 }
 
@@ -283,9 +283,9 @@ fn the_next_job_needs_no_reset() {
     assert_eq!(retrieved.results().contacts, contacts(&many));
     let writes = csrs.borrow().len();
     let mut started = retrieved.send_next(&few).unwrap().start().unwrap();
-    let mut line = started.transport().memory().get(at).copied().unwrap();
+    let mut line = started.transport().device.memory().get(at).copied().unwrap();
     control::MODE.set(&mut line, 1);
-    started.transport_mut().memory_mut().set(at, &line);
+    started.transport_mut().device.memory_mut().set(at, &line);
     let done = started.confirm().unwrap().wait().unwrap();
     assert_eq!(done.outcome().error, 5);
     let done = done.send_next(&few).unwrap().start().unwrap().confirm().unwrap().wait().unwrap();
@@ -295,7 +295,7 @@ fn the_next_job_needs_no_reset() {
     let lines: Vec<_> = (1..150).map(|line| session.workspace().context() + 64 * line).collect();
     let left = lines.iter().filter(|&&line| {
         let at = session.workspace().physical(line).unwrap();
-        session.transport().memory().get(at).is_some()
+        session.transport().device.memory().get(at).is_some()
     });
     assert_eq!(left.count(), 1, "only the status: the pairs of both jobs are gone");
 }
@@ -342,7 +342,7 @@ fn a_dropped_transaction_ends_properly() {
             csrs.borrow().iter().filter(|csr| csr.0 == CsrOffset::Control as u32).map(|csr| csr.1).collect();
         let wanted: &[u32] = if step == 1 { &[] } else { &[1, 2, 0, 1] };
         assert_eq!(control, wanted, "step {step}");
-        assert_eq!(session.transport().memory().get(first), None, "step {step}: the source is free");
+        assert_eq!(session.transport().device.memory().get(first), None, "step {step}: the source is free");
         assert_eq!(session.run(&pairs).unwrap(), contacts(&pairs), "step {step}");
     }
     assert_eq!(expected().layout.pairs_per_line(), 2);

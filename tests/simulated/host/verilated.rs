@@ -42,9 +42,8 @@ fn without_time(number: u64, line: Line) -> Line {
 
 /// All memory that both sides share, after a job: the workspace and the DSM.
 fn memory<T: Transport>(device: &T, lines: &[u64], dsm: u64) -> (Vec<Option<Line>>, Vec<Option<Line>>) {
-    let memory = device.memory();
-    let workspace = lines.iter().map(|&line| memory.get(line).copied()).collect();
-    let dsm = (0..64).map(|number| Some(without_time(number, *memory.get(dsm + number)?))).collect();
+    let workspace = lines.iter().map(|&line| device.line(line)).collect();
+    let dsm = (0..64).map(|number| Some(without_time(number, device.line(dsm + number)?))).collect();
     (workspace, dsm)
 }
 

@@ -1,0 +1,115 @@
+//! REGISTERS.md and the C header, from the table of registers.
+
+use std::fmt::Write as _;
+
+use super::map::{self, AFU_ID, Access, REGISTERS, VERSION};
+use crate::afu::JobError;
+
+/// The map as Markdown: tables of the registers, of their fields, and of the errors.
+pub fn markdown() -> String {
+    let mut out = format!("AFU_ID `{AFU_ID:032x}`, version {VERSION} of this map.\n\n");
+    out += "| offset | bits | name | access | meaning |\n|---|---|---|---|---|\n";
+    for register in REGISTERS {
+        let access = match register.access {
+            Access::Read => "R",
+            Access::ReadWrite => "R/W",
+            Access::Toggle => "R, toggle",
+        };
+        let (offset, bits) = (register.offset, 32 * register.words);
+        let _ = writeln!(out, "| {offset:#04X} | {bits} | `{}` | {access} | {} |", register.name, register.meaning);
+    }
+    out += "\n| register | bits | field | meaning |\n|---|---|---|---|\n";
+    for register in REGISTERS {
+        for field in register.fields {
+            let (first, last) = (field.low, field.low + field.bits - 1);
+            let _ = writeln!(out, "| `{}` | {last}:{first} | `{}` | {} |", register.name, field.name, field.meaning);
+        }
+    }
+    out += "\n| error | what it is | what to do |\n|---|---|---|\n";
+    for error in JobError::ALL {
+        let _ = writeln!(out, "| {} | {} | {} |", error.code(), error.what(), error.advice());
+    }
+    out
+}
+
+/// The steps of a job as Markdown.
+pub fn job() -> String {
+    let at = |register: map::Register| format!("`{}` ({:#04X})", register.name, register.offset);
+    format!(
+        "## A job
+
+The records of pairs and contacts are in PORTS.md. Offsets between registers, and behind them, read 0; writes there
+change nothing. A register of 64 or 128 bits is words of 32 bits, the least significant first.
+
+1. Hold `ap_rst_n` low for 16 cycles. Read {identity}: it is the AFU_ID above.
+2. Put the pairs into memory, from a byte address on that is a multiple of 64. A multiple of 4096 gives the longest
+   bursts. If the CPU's caches are not coherent with the port, flush the pairs from the CPU's caches, and invalidate the
+   lines of the contacts.
+3. Write {source}, {destination}, {count}, {mode} and {watchdog}.
+4. Write 1 to {control}.
+5. Read {status} until `done` is 1. Or set bit 0 of {enable} and of {global}, and wait for the port `interrupt`; then
+   write 1 to {events}.
+6. If `error` is 0, the contacts are in memory from `destination` on. Otherwise {failure} and {address} say which access
+   of memory failed, if one did.
+7. For another job, go on with 2. After error 4, wait until `outstanding` is 0 before memory is used for anything else.
+
+To stop a job, write 1 to {reset}, and wait until it reads 0. The job ends with error 1. If it still reads 1 after the
+watchdog's time, memory owes a response that will not come: reset the interconnect and the accelerator together.
+",
+        identity = at(map::IDENTITY),
+        source = at(map::SOURCE),
+        destination = at(map::DESTINATION),
+        count = at(map::COUNT),
+        mode = at(map::MODE),
+        watchdog = at(map::WATCHDOG),
+        control = at(map::CONTROL),
+        status = at(map::STATUS),
+        enable = at(map::INTERRUPT_ENABLE),
+        global = at(map::GLOBAL_INTERRUPT_ENABLE),
+        events = at(map::INTERRUPT_STATUS),
+        failure = at(map::FAILURE),
+        address = at(map::FAILURE_ADDRESS),
+        reset = at(map::SOFT_RESET),
+    )
+}
+
+/// The map as a C header. `prefix` begins its names.
+pub(super) fn header(prefix: &str, about: &str) -> String {
+    let upper = prefix.to_uppercase();
+    let mut out = format!(
+        "/* SPDX-License-Identifier: MIT OR Apache-2.0 */
+/* Registers of the AXI4-Lite slave s_axi_control, as in REGISTERS.md.
+ * {about}
+ */
+#ifndef {upper}_REGS_H
+#define {upper}_REGS_H
+
+/* The identity, the least significant word first. */
+"
+    );
+    for word in 0..4 {
+        let value = (AFU_ID >> (32 * word)) as u32;
+        let _ = writeln!(out, "#define {upper}_AFU_ID_{word} {value:#010x}u");
+    }
+    let _ = writeln!(out, "#define {upper}_VERSION_OF_MAP {VERSION}u");
+    for register in REGISTERS {
+        let name = register.name.to_uppercase();
+        let _ = writeln!(out, "\n/* {} */", register.meaning.replace('`', ""));
+        let _ = writeln!(out, "#define {upper}_{name} {:#04x}u", register.offset);
+        for field in register.fields {
+            let mask = field.put(u32::MAX);
+            let part = field.name.to_uppercase();
+            let _ = writeln!(out, "#define {upper}_{name}_{part} {mask:#x}u /* {} */", field.meaning.replace('`', ""));
+            if field.bits > 1 {
+                let _ = writeln!(out, "#define {upper}_{name}_{part}_SHIFT {}u", field.low);
+            }
+        }
+    }
+    out += "\n/* Errors of a job, in the field error of the status. */\n";
+    for error in JobError::ALL {
+        let name: String = format!("{error:?}").to_uppercase();
+        let _ = writeln!(out, "#define {upper}_ERROR_{name} {}u /* {} */", error.code(), error.what());
+    }
+    let _ = writeln!(out, "\n#endif /* {upper}_REGS_H */");
+    out
+}

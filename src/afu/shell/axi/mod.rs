@@ -1,0 +1,77 @@
+//! The shell of AXI4: the core behind an AXI4 master for memory and an AXI4-Lite slave for the host.
+//!
+//! `control` has the registers and starts jobs. `read` and `write` merge lines into bursts and take bursts apart.
+//! [`map`] has the registers, and `document` writes them down.
+
+mod burst;
+mod control;
+mod document;
+pub mod map;
+mod port;
+mod protocol;
+mod read;
+mod top;
+mod write;
+
+use std::sync::Arc;
+
+use super::{BenchText, ShellDesign};
+use crate::afu::port::{Declaration, Ports};
+use crate::afu::{Afu, Spec};
+use crate::hdl::{BuildErrors, Module};
+pub use document::{job, markdown};
+pub(crate) use port::{ControlInputs, ControlOutputs, MemoryInputs, MemoryOutputs};
+
+/// The shell.
+#[derive(Debug)]
+pub(super) struct Axi;
+
+impl ShellDesign for Axi {
+    fn top_name(&self) -> &'static str {
+        top::NAME
+    }
+
+    fn top(&self, spec: &Spec, core: &Arc<Module>) -> Result<Arc<Module>, BuildErrors> {
+        top::top(spec, core)
+    }
+
+    fn clock(&self) -> &'static str {
+        top::CLOCK
+    }
+
+    fn addresses_count(&self) -> &'static str {
+        "bytes"
+    }
+
+    fn ports(&self, spec: &Spec) -> Ports {
+        let system = [
+            Declaration::new(top::CLOCK, 1, "clock"),
+            Declaration::new(top::RESET, 1, "reset, active low; at least 16 cycles"),
+        ];
+        let inputs = system.into_iter().chain(ControlInputs::of(spec).list()).chain(MemoryInputs::of(spec).list());
+        let outputs = ControlOutputs::of(spec).list().into_iter().chain(MemoryOutputs::of(spec).list());
+        Ports { inputs: inputs.collect(), outputs: outputs.collect() }
+    }
+
+    fn held(&self) -> Option<(&'static str, u128)> {
+        Some((top::RESET, 0))
+    }
+
+    fn protocol(&self, afu: &Afu) -> String {
+        protocol::protocol(afu)
+    }
+
+    fn bench(&self, afu: &Afu) -> BenchText {
+        let text = include_str!("bench.v").replace("@BUS@", &afu.spec().config.bus.to_string());
+        BenchText { text, first_line: 0 }
+    }
+
+    fn files(&self, afu: &Afu) -> Vec<(String, String)> {
+        let title = format!("# Registers of `{}`", afu.top_name());
+        let prefix = afu.spec().config.prefixed("contact_afu");
+        vec![
+            ("REGISTERS.md".to_owned(), format!("{title}\n\n{}\n{}", document::markdown(), document::job())),
+            (format!("{prefix}_regs.h"), document::header(&prefix, &afu.origin())),
+        ]
+    }
+}

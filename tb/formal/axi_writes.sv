@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// The writes of the shell `axi` alone, by induction: addresses and beats are stable until they are taken, a burst has
+// whole lines, does not cross 4 KB, and has its WLAST at its last beat. A burst's lines are all there before its
+// address is put out, and every line is written once, in order.
+//
+// Memory may take addresses and beats when it likes, in any order, and give responses that nobody waits for.
+`default_nettype none
+
+module axi_writes (
+  input wire         clk,
+  input wire         rst,
+  input wire         wr_valid,
+  input wire [57:0]  wr_address,
+  input wire [7:0]   wr_tag,
+  input wire [511:0] wr_data,
+  input wire         awready,
+  input wire         wready,
+  input wire         bvalid,
+  input wire [1:0]   bresp
+);
+  wire         wr_ready;
+  wire         awvalid;
+  wire [63:0]  awaddr;
+  wire [7:0]   awlen;
+  wire         wvalid;
+  wire [255:0] wdata;
+  wire         wlast;
+  axi_write dut (
+    .clk(clk), .rst(rst), .wr_valid(wr_valid), .wr_address(wr_address), .wr_tag(wr_tag), .wr_data(wr_data),
+    .awready(awready), .wready(wready), .bvalid(bvalid), .bresp(bresp), .wr_ready(wr_ready), .awvalid(awvalid),
+    .awaddr(awaddr), .awlen(awlen), .wvalid(wvalid), .wdata(wdata), .wlast(wlast), .rsp_valid(), .rsp_tag(),
+    .rsp_error(), .failed(), .failed_response(), .failed_address(), .idle()
+  );
+  (* hierconn *) wire        \dut.burst_closes ;
+  (* hierconn *) wire        \dut.burst_open ;
+  (* hierconn *) wire [57:0] \dut.burst_first ;
+  (* hierconn *) wire [1:0]  \dut.burst_more ;
+  (* hierconn *) wire        \dut.line_waiting ;
+  (* hierconn *) wire        \dut.line_follows ;
+  (* hierconn *) wire [57:0] \dut.waiting_line ;
+  (* hierconn *) wire [57:0] \dut.next_line ;
+  (* hierconn *) wire        \dut.next_burst ;
+  (* hierconn *) wire [1:0]  \dut.next_burst_more ;
+  (* hierconn *) wire        \dut.burst_leaves ;
+  (* hierconn *) wire        \dut.burst_begins_to_leave ;
+  (* hierconn *) wire        \dut.beat_leaves ;
+  (* hierconn *) wire        \dut.line_leaves ;
+  (* hierconn *) wire        \dut.beat_number ;
+  (* hierconn *) wire [1:0]  \dut.lines_left ;
+  (* hierconn *) wire [3:0]  \dut.head ;
+  (* hierconn *) wire [3:0]  \dut.tail ;
+
+  (* anyconst *) wire [15:0] chosen;
+  reg [57:0] address;
+  reg [15:0] accepted = 16'd0;
+  reg [15:0] closed = 16'd0;
+  reg [15:0] left = 16'd0;         // lines whose last beat has left for the channel
+  reg        after_reset = 1'b0;
+  reg        aw_held = 1'b0;
+  reg        w_held = 1'b0;
+  reg [71:0] aw_was;
+  reg [256:0] w_was;
+  // AWLEN of the burst whose beats leave, and of the next one; the beats of it that have left.
+  reg [7:0]  length;
+  reg [7:0]  next_length;
+  reg [7:0]  beats = 8'd0;
+  reg        is_last;
+  wire       accepts = wr_valid & wr_ready;
+  wire [57:0] first = \dut.burst_first ;
+  wire [15:0] more = {14'd0, \dut.burst_more };
+  wire [57:0] last = first + {42'd0, more};
+  wire [15:0] lines_open = \dut.burst_open ? more + 16'd1 : 16'd0;
+  wire [57:0] within = {42'd0, chosen - closed};
+  wire [15:0] leaving = \dut.burst_leaves ? {14'd0, \dut.lines_left } + 16'd1 : 16'd0;
+  wire [15:0] waiting = \dut.next_burst ? {14'd0, \dut.next_burst_more } + 16'd1 : 16'd0;
+  always @(posedge clk) begin
+    after_reset <= after_reset | rst;
+    if (accepts & accepted == chosen) address <= wr_address;
+    accepted <= rst ? 16'd0 : accepted + {15'd0, accepts};
+    closed <= rst ? 16'd0 : closed + (\dut.burst_closes ? lines_open : 16'd0);
+    left <= rst ? 16'd0 : left + {15'd0, \dut.line_leaves };
+    if (\dut.burst_closes ) next_length <= {5'd0, \dut.burst_more , 1'b1};
+    if (\dut.burst_begins_to_leave ) length <= next_length;
+    beats <= rst | \dut.burst_begins_to_leave ? 8'd0 : beats + {7'd0, \dut.beat_leaves };
+    if (\dut.beat_leaves ) is_last <= beats == length;
+    aw_held <= awvalid & ~awready & ~rst;
+    aw_was <= {awaddr, awlen};
+    w_held <= wvalid & ~wready & ~rst;
+    w_was <= {wdata, wlast};
+  end
+
+  always @* begin
+    assume (after_reset | rst);
+    assume (accepted < 16'hfff0);
+  end
+
+  always @* if (~rst & after_reset) begin
+    whole_lines: assert (~awvalid | (awaddr[5:0] == 6'd0 & awlen[0] & awlen[7:3] == 5'd0));
+    within_a_page: assert ((~awvalid | {1'b0, awaddr[11:6]} + {1'b0, awlen[7:1]} < 8'd64)
+      & (~\dut.burst_open | {1'b0, first[5:0]} + more[6:0] < 7'd64));
+    in_order: assert (accepted == closed + lines_open + {15'd0, \dut.line_waiting }
+      & closed <= accepted & accepted < 16'hfff1
+      & (~(\dut.burst_open & \dut.line_waiting & \dut.line_follows )
+         | (\dut.waiting_line == last + 58'd1 & \dut.waiting_line [5:0] != 6'd0))
+      & (~\dut.line_waiting | \dut.next_line == \dut.waiting_line + 58'd1)
+      & (~\dut.burst_open | \dut.line_waiting | \dut.next_line == last + 58'd1)
+      & (chosen < closed | chosen >= closed + lines_open | address == first + within)
+      & (~\dut.line_waiting | chosen != closed + lines_open | address == \dut.waiting_line ));
+    all_are_there: assert (closed == left + leaving + waiting & left <= closed
+      & \dut.head == left[3:0] & \dut.tail == accepted[3:0]);
+    last_is_last: assert ((~wvalid | wlast == is_last)
+      & (~\dut.next_burst | next_length == {5'd0, \dut.next_burst_more , 1'b1})
+      & (~\dut.burst_leaves | length - beats == {5'd0, \dut.lines_left , ~\dut.beat_number })
+      & (~\dut.burst_leaves | beats <= length) & (\dut.burst_leaves | ~\dut.beat_number ));
+  end
+  always @* if (aw_held & ~rst) begin
+    address_is_stable: assert (awvalid & {awaddr, awlen} == aw_was);
+  end
+  always @* if (w_held & ~rst) begin
+    data_are_stable: assert (wvalid & {wdata, wlast} == w_was);
+  end
+endmodule
+
+`default_nettype wire
