@@ -250,7 +250,7 @@ module @BENCH@;
       aw_tail = aw_tail + 1;
     end
     if (gmem_wvalid && gmem_wready) begin
-      if (~gmem_wstrb != 0) fault("bytes that are not written");
+      if (gmem_wstrb != {(BUS / 8){1'b1}}) fault("bytes that are not written");
       w_queue[w_tail % MOST] = {gmem_wlast, gmem_wdata};
       w_tail = w_tail + 1;
     end
