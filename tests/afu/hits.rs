@@ -145,7 +145,7 @@ fn a_job_that_expects_all_results_is_refused() {
 /// File, left-hand side of the assignment, and the expression assigned instead. The faults: a wrong number, two
 /// neighbours swapped, a wrong count, a wrong last line.
 const FAULTS: [Planted; 4] = [
-    ("contact_afu_sieve.v", "number_1 = ", 1, "emerged"),
+    ("contact_afu_sieve.v", "] number_1 = ", 1, "emerged"),
     ("contact_afu_sieve.v", "comes_to_0_in_0 = ", 2, "1'b0"),
     ("contact_afu_sieve.v", "hits_to_0 = ", 3, "2'd0"),
     ("contact_afu_packer.v", "wire flushes = ", 4, "1'b0"),
