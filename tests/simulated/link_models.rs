@@ -98,7 +98,7 @@ fn a_file_of_a_link_is_taken() {
     assert!(lost.contains("waiting for the data of a read"), "{lost}");
     run("harp1", 0);
     let unknown = run("harp3", 2);
-    assert!(unknown.contains("harp1, harp2, pcie3x8, or a .toml or .json file"), "{unknown}");
+    assert!(unknown.contains("harp1, harp2, pcie3x8, zynqmp, ddr4, or a .toml or .json file"), "{unknown}");
     let missing = run("missing.toml", 2);
     assert!(missing.starts_with("afu: missing.toml: "), "{missing}");
 }
