@@ -76,8 +76,8 @@ const JOB_PACKER: Rows = &[
     ("a last line without hits", "wire flushes = all_out & place & ", "wire flushes = all_out & ", 38, "only_hits"),
     (
         "the last line keeps the one before",
-        "entering_1 : enters_0[1] ? entering_0 : 32'd0,",
-        "entering_1 : enters_0[1] ? entering_0 : filling_0,",
+        "entering_1 : enters_0_place_1 ? entering_0 : 32'd0,",
+        "entering_1 : enters_0_place_1 ? entering_0 : filling_0,",
         38,
         "rest_is_zero",
     ),
