@@ -4,7 +4,7 @@ use super::Rows;
 
 const CONTROL: Rows = &[
     ("gives up as it completes", "busy & expired & ~completes;", "busy & expired;", 24, "complete_is_good"),
-    ("goes on while it drains", "(running & ~completes & ~failing)", "(running & ~completes)", 3, "one_or_other"),
+    ("goes on while it drains", "(running & ~completes & ~failing)", "(running & ~completes)", 4, "one_or_other"),
     ("begins while it runs", "wire accept = start & ~busy;", "wire accept = start & ~draining;", 10, "begins_rested"),
     ("runs before it begins", "run <= (run | begin_job)", "run <= (run | accept | waits_to_begin)", 3, "begins_first"),
     (
@@ -68,7 +68,7 @@ const FEEDER: Rows = &[
         "counts no line that it takes",
         "if (start | lines_left_step) lines_left",
         "if (start) lines_left",
-        19,
+        20,
         "flags_are_right",
     ),
     ("every line is short", "one_lines_left ? last_place : 1'b1", "last_place", 19, "only_last_is_short"),
