@@ -151,7 +151,11 @@ fn main() -> Result<(), Box<dyn Error>> {
             heading = true;
         }
         let moved = if by == 0.0 { String::new() } else { format!(" +{by}") };
-        let times: Vec<_> = columns.iter().map(|column| format!("{:.0}", column.median())).collect();
+        let time = |column: &Column<'_>| match column.contacts {
+            0 if column.name != "sorting" => "-".to_owned(),
+            _ => format!("{:.0}", column.median()),
+        };
+        let times: Vec<_> = columns.iter().map(time).collect();
         println!("| `{set}`{moved} | {count} | {} | {} |", columns[2].contacts, times.join(" | "));
         for column in columns.iter().filter(|column| column.contacts > 0) {
             // The others decide in their own arithmetic, and tangent spheres are many here.
