@@ -3,7 +3,7 @@
 //!
 //! The search of this crate (rows of boxes) beside a SIMD cell list, ODE's spaces with `dCollide`, and parry3d's broad
 //! phase with its contacts. One thread; the median of several passes, which take turns; ns per sphere. Each pass begins
-//! with the spheres in memory, in the order of a Hilbert curve, and finds every contact from them. Sorting along the curve
+//! with the spheres in memory, in the order of a Hilbert curve, and finds every contact. Sorting along the curve
 //! is a column of its own. Prints the table of docs/spheres.md. A set moved off the origin by 1000 of its units has
 //! `+1000`.
 
