@@ -88,11 +88,6 @@ impl SphereSet {
             }
         }
     }
-
-    /// True if `seed` changes the spheres.
-    pub const fn is_random(self) -> bool {
-        !matches!(self, Self::Diamond(_))
-    }
 }
 
 /// The cube root by Newton's method, whose operations round alike on every machine.
