@@ -50,7 +50,8 @@ module afu_top #(
   reg in_reset;
 
   // ---- outputs of instances ----
-  wire [5:0] epoch;
+  wire [5:0] read_epoch;
+  wire [5:0] write_epoch;
   wire [3:0] core_epoch;
   wire [11:0] own_read_number;
   wire own_read_granted;
@@ -78,6 +79,7 @@ module afu_top #(
   wire registers_context_valid;
   wire registers_context_written;
   wire registers_wr_valid;
+  wire registers_wr_chosen;
   wire [57:0] registers_wr_address;
   wire [511:0] registers_wr_line;
   wire core_busy_unused;
@@ -107,7 +109,7 @@ module afu_top #(
   // ---- at the clock edge ----
   always @(posedge clk) begin
     received <= spl_rx_data;
-    core_answered <= spl_rx_rd_valid & (~|spl_rx_hdr0[13:12] & (spl_rx_hdr0[11:6] == epoch));
+    core_answered <= spl_rx_rd_valid & (~|spl_rx_hdr0[13:12] & (spl_rx_hdr0[11:6] == read_epoch));
     spl_rx_hdr0_9_0_d1 <= spl_rx_hdr0[9:0];
     in_reset <= power_on | spl_reset | ~spl_enable;
   end
@@ -129,6 +131,7 @@ module afu_top #(
     .core_wr_tag         (core_wr_req_tag),
     .core_wr_data        (core_wr_req_data),
     .register_wr_valid   (registers_wr_valid),
+    .register_wr_chosen  (registers_wr_chosen),
     .register_wr_address (registers_wr_address),
     .register_wr_data    (registers_wr_line),
     .end_wr_valid        (sequencer_wr_valid),
@@ -136,7 +139,8 @@ module afu_top #(
     .end_wr_virtual      (sequencer_wr_virtual),
     .end_wr_address      (sequencer_wr_address),
     .end_wr_data         (sequencer_wr_data),
-    .epoch               (epoch),
+    .read_epoch          (read_epoch),
+    .write_epoch         (write_epoch),
     .core_epoch          (core_epoch),
     .read_number         (own_read_number),
     .own_rd_granted      (own_read_granted),
@@ -207,6 +211,7 @@ module afu_top #(
     .context_valid   (registers_context_valid),
     .context_written (registers_context_written),
     .wr_valid        (registers_wr_valid),
+    .wr_chosen       (registers_wr_chosen),
     .wr_address      (registers_wr_address),
     .wr_line         (registers_wr_line)
   );
@@ -256,7 +261,7 @@ module afu_top #(
     .clk     (clk),
     .rst     (rst),
     .start   (start_job),
-    .epoch   (epoch),
+    .epoch   (write_epoch),
     .valid_0 (spl_rx_wr_valid0),
     .mdata_0 (spl_rx_hdr0[13:0]),
     .valid_1 (spl_rx_wr_valid1),

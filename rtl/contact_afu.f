@@ -9,8 +9,8 @@ contact_afu_control.v
 contact_afu_packer.v
 line_memory.v
 contact_afu_dispatcher.v
-contact_afu_collector.v
 contact_afu_credits.v
+contact_afu_collector.v
 contact_afu_feeder.v
 fp_greater_e10f23z_normal.v
 fp_sqrt_e10f23z_normal_every_5_last.v

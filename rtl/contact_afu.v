@@ -59,7 +59,11 @@ module contact_afu #(
   localparam [31:0] SCPUS_IN_TURN = (SCPUS > 32'd10) ? (SCPUS / 32'd10) * 32'd10 : SCPUS;
 
   // ---- outputs of instances ----
-  wire control_begin_job;
+  wire control_begin_collector;
+  wire control_begin_feeder;
+  wire control_begin_credits;
+  wire control_begin_packer;
+  wire control_begin_dispatcher;
   wire control_run;
   wire control_given_up;
   wire [57:0] control_job_source;
@@ -77,15 +81,15 @@ module contact_afu #(
   wire write_unexpected;
   wire write_idle;
   wire dispatched;
+  wire may_enter;
+  wire none_inside;
+  wire filled;
   wire collector_line_comes;
   wire [511:0] collector_line;
   wire read_answered;
   wire read_failed;
   wire read_unexpected;
   wire read_idle;
-  wire may_enter;
-  wire none_inside;
-  wire filled;
   wire [1:0] entered;
   wire [1:0] feeder_carries;
   wire [13:0] feeder_targets;
@@ -129,10 +133,10 @@ module contact_afu #(
     .abort_job        (abort_job),
     .packer_done      (packer_done),
     .dispatched       (dispatched),
-    .read_failed      (read_failed),
-    .write_failed     (write_failed),
     .none_inside      (none_inside),
     .filled           (filled),
+    .read_failed      (read_failed),
+    .write_failed     (write_failed),
     .read_unexpected  (read_unexpected),
     .write_unexpected (write_unexpected),
     .read_answered    (read_answered),
@@ -147,7 +151,11 @@ module contact_afu #(
     .busy             (busy),
     .done             (done),
     .error            (error),
-    .begin_job        (control_begin_job),
+    .begin_collector  (control_begin_collector),
+    .begin_feeder     (control_begin_feeder),
+    .begin_credits    (control_begin_credits),
+    .begin_packer     (control_begin_packer),
+    .begin_dispatcher (control_begin_dispatcher),
     .run              (control_run),
     .given_up         (control_given_up),
     .job_source       (control_job_source),
@@ -161,7 +169,7 @@ module contact_afu #(
   contact_afu_packer packer (
     .clk           (clk),
     .rst           (rst),
-    .start         (control_begin_job),
+    .start         (control_begin_packer),
     .count         (control_job_count),
     .filled        (filled),
     .leaves        (slots_leaves_out),
@@ -182,7 +190,7 @@ module contact_afu #(
   contact_afu_dispatcher dispatcher (
     .clk            (clk),
     .rst            (rst),
-    .start          (control_begin_job),
+    .start          (control_begin_dispatcher),
     .run            (control_run),
     .given_up       (control_given_up),
     .destination    (control_job_destination),
@@ -205,10 +213,24 @@ module contact_afu #(
     .empty          (dispatched)
   );
 
+  contact_afu_credits credits (
+    .clk         (clk),
+    .rst         (rst),
+    .start       (control_begin_credits),
+    .run         (control_run),
+    .scpus       (SCPUS_IN_TURN[6:0]),
+    .entered     (entered),
+    .emerged     (group),
+    .line_left   (line_left),
+    .may_enter   (may_enter),
+    .none_inside (none_inside),
+    .filled      (filled)
+  );
+
   contact_afu_collector collector (
     .clk            (clk),
     .rst            (rst),
-    .start          (control_begin_job),
+    .start          (control_begin_collector),
     .run            (control_run),
     .given_up       (control_given_up),
     .source         (control_job_source),
@@ -232,24 +254,10 @@ module contact_afu #(
     .idle           (read_idle)
   );
 
-  contact_afu_credits credits (
-    .clk         (clk),
-    .rst         (rst),
-    .start       (control_begin_job),
-    .run         (control_run),
-    .scpus       (SCPUS_IN_TURN[6:0]),
-    .entered     (entered),
-    .emerged     (group),
-    .line_left   (line_left),
-    .may_enter   (may_enter),
-    .none_inside (none_inside),
-    .filled      (filled)
-  );
-
   contact_afu_feeder feeder (
     .clk              (clk),
     .rst              (rst),
-    .start            (control_begin_job),
+    .start            (control_begin_feeder),
     .run              (control_run),
     .scpus            (SCPUS_IN_TURN[6:0]),
     .lines            (control_lines),

@@ -34,11 +34,13 @@ module contact_afu_collector (
 );
 
   // ---- state ----
-  reg rd_req_spare_valid;
+  (* keep = "true", dont_merge *) reg rd_req_spare_valid_copy_0;
   reg may_ask;
+  reg lines_to_request_step;
   reg [31:0] lines_to_request;
   reg freed;
   reg [6:0] reserved;
+  (* keep = "true", dont_merge *) reg rd_req_spare_valid_copy_1;
   reg [57:0] rd_req_spare_address;
   reg [57:0] next_address;
   reg [9:0] rd_req_spare_tag;
@@ -63,13 +65,19 @@ module contact_afu_collector (
 
   // ---- logic ----
   wire drops_requests = start | given_up;
-  wire rd_req_next_valid = ~drops_requests & (rd_req_spare_valid | may_ask);
+  wire rd_req_next_valid = ~drops_requests & (rd_req_spare_valid_copy_0 | may_ask);
   wire rd_req_moves = ~rd_req_valid | rd_req_ready;
-  wire issue = may_ask & ~rd_req_spare_valid;
+  wire issue = may_ask & ~rd_req_spare_valid_copy_0;
+  wire lines_to_request_31_1_any = |lines_to_request[31:1];
   wire may_ask_next =
       run
-      & (issue ? |lines_to_request[31:1] : |lines_to_request)
+      & (issue                 ?
+             (lines_to_request_step ? (|lines_to_request[31:2] | (lines_to_request[1] & lines_to_request[0])) :
+              lines_to_request_31_1_any) :
+         lines_to_request_step ? lines_to_request_31_1_any :
+         |lines_to_request)
       & ~(~freed & (reserved[6] | (&reserved[5:0] & issue)));
+  wire rd_req_waits = rd_req_next_valid & ~rd_req_moves;
   wire start_or_issue = start | issue;
   wire [9:0] rd_req_spare_tag_next = {epoch, next_slot};
   wire oldest_goes = came[0];
@@ -80,11 +88,11 @@ module contact_afu_collector (
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
-    if (rd_req_moves) rd_req_address <= rd_req_spare_valid ? rd_req_spare_address : next_address;
-    if (~rd_req_spare_valid) rd_req_spare_address <= next_address;
+    if (rd_req_moves) rd_req_address <= rd_req_spare_valid_copy_1 ? rd_req_spare_address : next_address;
+    if (~rd_req_spare_valid_copy_1) rd_req_spare_address <= next_address;
     if (start_or_issue) next_address <= start ? source : (next_address + 58'd1);
-    if (rd_req_moves) rd_req_tag <= rd_req_spare_valid ? rd_req_spare_tag : rd_req_spare_tag_next;
-    if (~rd_req_spare_valid) rd_req_spare_tag <= rd_req_spare_tag_next;
+    if (rd_req_moves) rd_req_tag <= rd_req_spare_valid_copy_1 ? rd_req_spare_tag : rd_req_spare_tag_next;
+    if (~rd_req_spare_valid_copy_1) rd_req_spare_tag <= rd_req_spare_tag_next;
     arrived_age <= slot_then - next_oldest;
     response_slot <= rd_rsp_tag[5:0];
     accepted_slot <= rd_req_tag[5:0];
@@ -96,8 +104,8 @@ module contact_afu_collector (
   always @(posedge clk) begin
     if (rst) begin
       rd_req_valid <= 1'b0;
-      rd_req_spare_valid <= 1'b0;
       may_ask <= 1'b0;
+      lines_to_request_step <= 1'b0;
       lines_to_request <= 32'd0;
       freed <= 1'b0;
       reserved <= 7'd0;
@@ -119,9 +127,9 @@ module contact_afu_collector (
       outstanding <= 7'd0;
     end else begin
       rd_req_valid <= rd_req_next_valid | ~rd_req_moves;
-      rd_req_spare_valid <= rd_req_next_valid & ~rd_req_moves;
       may_ask <= may_ask_next;
-      if (start_or_issue) lines_to_request <= start ? lines : (lines_to_request - 32'd1);
+      lines_to_request_step <= issue & ~start;
+      if (start | lines_to_request_step) lines_to_request <= start ? lines : (lines_to_request - 32'd1);
       freed <= taken & ~start;
       if (start | (issue ^ freed)) reserved <= start ? 7'd0 : issue ? (reserved + 7'd1) : (reserved - 7'd1);
       if (start_or_issue) next_slot <= start ? 6'd0 : (next_slot + 6'd1);
@@ -138,8 +146,17 @@ module contact_afu_collector (
       failed <= is_awaited & error_then & ~start;
       unexpected <= run & is_response & ~is_awaited & ~start;
       is_response <= is_response_next;
-      idle <= ~|outstanding & (~rd_req_valid & ~rd_req_spare_valid) & ~may_ask;
+      idle <= ~|outstanding & (~rd_req_valid & ~rd_req_spare_valid_copy_0) & ~may_ask;
       if (start | (issue ^ answered)) outstanding <= start ? 7'd0 : issue ? (outstanding + 7'd1) : (outstanding - 7'd1);
+    end
+  end
+  (* keep = "true" *) always @(posedge clk) begin
+    if (rst) begin
+      rd_req_spare_valid_copy_0 <= 1'b0;
+      rd_req_spare_valid_copy_1 <= 1'b0;
+    end else begin
+      rd_req_spare_valid_copy_0 <= rd_req_waits;
+      rd_req_spare_valid_copy_1 <= rd_req_waits;
     end
   end
 

@@ -19,10 +19,10 @@ module contact_afu_control (
   input  wire        abort_job,
   input  wire        packer_done,
   input  wire        dispatched,
-  input  wire        read_failed,
-  input  wire        write_failed,
   input  wire        none_inside,
   input  wire        filled,
+  input  wire        read_failed,
+  input  wire        write_failed,
   input  wire        read_unexpected,
   input  wire        write_unexpected,
   input  wire        read_answered,
@@ -31,13 +31,17 @@ module contact_afu_control (
   input  wire        write_idle,
   input  wire        waits_for_input,
   input  wire        waits_for_output,
-  output reg  [63:0] cycles_busy,
-  output reg  [63:0] cycles_input,
-  output reg  [63:0] cycles_output,
-  output wire        busy,
+  output wire [63:0] cycles_busy,
+  output wire [63:0] cycles_input,
+  output wire [63:0] cycles_output,
+  output reg         busy,
   output reg         done,
   output reg  [3:0]  error,
-  output reg         begin_job,
+  output wire        begin_collector,
+  output wire        begin_feeder,
+  output wire        begin_credits,
+  output wire        begin_packer,
+  output wire        begin_dispatcher,
   output reg         run,
   output reg         given_up,
   output reg  [57:0] job_source,
@@ -49,50 +53,73 @@ module contact_afu_control (
 );
 
   // ---- state ----
+  reg [31:0] cycles_busy_high;
+  reg [31:0] cycles_busy_low;
   reg first_cycle;
-  reg running;
-  reg draining;
-  reg read_failed_heard;
-  reg write_failed_heard;
-  reg read_unexpected_heard;
-  reg write_unexpected_heard;
-  reg expired;
   reg complete;
+  reg draining;
   reg [2:0] cycles_draining;
   reg none_inside_heard;
   reg link_idle_heard;
-  reg read_answered_heard;
-  reg write_answered_heard;
+  reg expired;
+  reg response_heard;
   reg link_idle_before;
-  reg [31:0] job_watchdog;
+  reg has_watchdog;
+  reg silence_is_over;
   reg [31:0] silence;
+  reg [31:0] job_watchdog;
+  reg running;
+  reg fails;
+  reg unexpected_heard;
+  reg begin_job;
   reg waits_to_begin;
   reg filled_heard;
+  reg cycles_busy_low_is_full;
+  reg [31:0] cycles_input_high;
+  reg [31:0] cycles_input_low;
+  reg counts_input;
+  reg cycles_input_low_is_full;
+  reg [31:0] cycles_output_high;
+  reg [31:0] cycles_output_low;
+  reg counts_output;
+  reg cycles_output_low_is_full;
+  reg [3:0] told_cause;
+  (* keep = "true", dont_merge *) reg begin_job_copy_0;
+  (* keep = "true", dont_merge *) reg begin_job_copy_1;
+  (* keep = "true", dont_merge *) reg begin_job_copy_2;
+  (* keep = "true", dont_merge *) reg begin_job_copy_3;
+  (* keep = "true", dont_merge *) reg begin_job_copy_4;
   reg [31:0] job_lines;
 
   // ---- logic ----
-  assign busy = running | draining;
+  assign cycles_busy = {cycles_busy_high, cycles_busy_low};
   wire accept = start & ~busy;
-  wire has_unknown_mode = |mode;
-  wire refuses = accept & has_unknown_mode;
-  wire [3:0] cause =
-      abort_job ? 4'd1 :
-      read_failed_heard ? 4'd2 :
-      write_failed_heard ? 4'd3 :
-      ((read_unexpected_heard | write_unexpected_heard) & ~begin_job) ? 4'd7 :
-      expired ? 4'd4 :
-      4'd0;
   wire completes = run & complete;
-  wire failing = running & |cause & ~completes;
   wire stopped = &cycles_draining;
   wire drained = draining & stopped & none_inside_heard & (link_idle_heard | given_up);
   wire gives_up = busy & expired & ~completes;
-  wire link_idle = read_idle & write_idle;
-  wire link_is_alive = read_answered_heard | write_answered_heard | link_idle_before;
-  wire has_watchdog = |job_watchdog;
+  wire link_is_alive = response_heard | link_idle_before;
+  wire expires = busy & ~link_is_alive & has_watchdog & silence_is_over;
   wire begins_to_drain = draining & ~|cycles_draining;
+  wire silence_restarts = link_is_alive | ~busy | begins_to_drain;
+  wire link_idle = read_idle & write_idle;
+  wire has_unknown_mode = |mode;
+  wire refuses = accept & has_unknown_mode;
+  wire is_unexpected = unexpected_heard & ~begin_job;
+  wire failing = running & (fails | is_unexpected) & ~completes;
   wire still_waits = waits_to_begin & ~failing;
+  wire begins = (accept | still_waits) & filled_heard;
   wire takes_job = accept & ~refuses;
+  wire cycles_busy_moves = first_cycle | busy;
+  assign cycles_input = {cycles_input_high, cycles_input_low};
+  wire cycles_input_moves = first_cycle | counts_input;
+  assign cycles_output = {cycles_output_high, cycles_output_low};
+  wire cycles_output_moves = first_cycle | counts_output;
+  wire [3:0] cause =
+      |told_cause   ? told_cause :
+      is_unexpected ? 4'd7 :
+      expired       ? 4'd4 :
+      4'd0;
   wire [3:0] failed = failing ? cause : error;
   wire [3:0] ended = gives_up ? 4'd4 : failed;
   wire [32:0] rounded_count = {1'b0, count} + 33'd1;
@@ -105,70 +132,113 @@ module contact_afu_control (
   end
   always @(posedge clk) begin
     if (rst) begin
-      cycles_busy <= 64'd0;
+      cycles_busy_high <= 32'd0;
+      cycles_busy_low <= 32'd0;
       first_cycle <= 1'b0;
-      running <= 1'b0;
-      draining <= 1'b0;
-      read_failed_heard <= 1'b0;
-      write_failed_heard <= 1'b0;
-      read_unexpected_heard <= 1'b0;
-      write_unexpected_heard <= 1'b0;
-      begin_job <= 1'b0;
-      expired <= 1'b0;
+      busy <= 1'b0;
       run <= 1'b0;
       complete <= 1'b0;
+      draining <= 1'b0;
       cycles_draining <= 3'd0;
       none_inside_heard <= 1'b0;
       link_idle_heard <= 1'b0;
       given_up <= 1'b0;
-      read_answered_heard <= 1'b0;
-      write_answered_heard <= 1'b0;
+      expired <= 1'b0;
+      response_heard <= 1'b0;
       link_idle_before <= 1'b0;
-      job_watchdog <= 32'd0;
+      has_watchdog <= 1'b0;
+      silence_is_over <= 1'b0;
       silence <= 32'd0;
+      job_watchdog <= 32'd0;
+      running <= 1'b0;
+      fails <= 1'b0;
+      unexpected_heard <= 1'b0;
+      begin_job <= 1'b0;
       waits_to_begin <= 1'b0;
       filled_heard <= 1'b0;
-      cycles_input <= 64'd0;
-      cycles_output <= 64'd0;
+      cycles_busy_low_is_full <= 1'b0;
+      cycles_input_high <= 32'd0;
+      cycles_input_low <= 32'd0;
+      counts_input <= 1'b0;
+      cycles_input_low_is_full <= 1'b0;
+      cycles_output_high <= 32'd0;
+      cycles_output_low <= 32'd0;
+      counts_output <= 1'b0;
+      cycles_output_low_is_full <= 1'b0;
       done <= 1'b0;
       error <= 4'd0;
+      told_cause <= 4'd0;
       job_count <= 32'd0;
       job_epoch <= 4'd0;
       job_lines <= 32'd0;
     end else begin
-      if (first_cycle | busy) cycles_busy <= first_cycle ? 64'd1 : (cycles_busy + 64'd1);
+      if (first_cycle | (busy & cycles_busy_low_is_full)) cycles_busy_high <=
+          first_cycle ? 32'd0 : (cycles_busy_high + 32'd1);
+      if (cycles_busy_moves) cycles_busy_low <= first_cycle ? 32'd1 : (cycles_busy_low + 32'd1);
       first_cycle <= accept;
-      running <= takes_job | (running & ~completes & ~failing);
-      draining <= refuses | failing | (draining & ~drained);
-      read_failed_heard <= read_failed;
-      write_failed_heard <= write_failed;
-      read_unexpected_heard <= read_unexpected;
-      write_unexpected_heard <= write_unexpected;
-      begin_job <= (accept | still_waits) & filled_heard;
-      expired <= busy & ~link_is_alive & has_watchdog & (job_watchdog < silence);
+      busy <= accept | (busy & ~completes & ~drained);
       run <= (run | begin_job) & running & ~completes & ~failing;
       complete <= run & packer_done & dispatched & link_idle;
+      draining <= refuses | failing | (draining & ~drained);
       cycles_draining <= draining ? (stopped ? cycles_draining : (cycles_draining + 3'd1)) : 3'd0;
       none_inside_heard <= none_inside;
       link_idle_heard <= link_idle;
       given_up <= ~accept & (given_up | gives_up);
-      read_answered_heard <= read_answered;
-      write_answered_heard <= write_answered;
+      expired <= expires;
+      response_heard <= read_answered | write_answered;
       link_idle_before <= link_idle_heard;
+      has_watchdog <= accept ? |watchdog : (has_watchdog | draining);
+      silence_is_over <= ~silence_restarts & (silence >= job_watchdog);
+      silence <= silence_restarts ? 32'd0 : (silence + 32'd1);
       if (accept | (draining & ~has_watchdog)) job_watchdog <= draining ? 32'h10000 : watchdog;
-      silence <= (link_is_alive | ~busy | begins_to_drain) ? 32'd0 : (silence + 32'd1);
+      running <= takes_job | (running & ~completes & ~failing);
+      fails <= (running & (abort_job | read_failed | write_failed)) | expires;
+      unexpected_heard <= read_unexpected | write_unexpected;
+      begin_job <= begins;
       waits_to_begin <= (takes_job | still_waits) & ~filled_heard;
       filled_heard <= filled;
-      if (first_cycle | (waits_for_input & run)) cycles_input <= first_cycle ? 64'd0 : (cycles_input + 64'd1);
-      if (first_cycle | (waits_for_output & run)) cycles_output <= first_cycle ? 64'd0 : (cycles_output + 64'd1);
+      if (cycles_busy_moves) cycles_busy_low_is_full <= ~first_cycle & (&cycles_busy_low[31:1] & ~cycles_busy_low[0]);
+      if (first_cycle | (counts_input & cycles_input_low_is_full))
+        cycles_input_high <= first_cycle ? 32'd0 : (cycles_input_high + 32'd1);
+      if (cycles_input_moves) cycles_input_low <= first_cycle ? 32'd0 : (cycles_input_low + 32'd1);
+      counts_input <= waits_for_input & run;
+      if (cycles_input_moves) cycles_input_low_is_full <=
+          ~first_cycle & (&cycles_input_low[31:1] & ~cycles_input_low[0]);
+      if (first_cycle | (counts_output & cycles_output_low_is_full))
+        cycles_output_high <= first_cycle ? 32'd0 : (cycles_output_high + 32'd1);
+      if (cycles_output_moves) cycles_output_low <= first_cycle ? 32'd0 : (cycles_output_low + 32'd1);
+      counts_output <= waits_for_output & run;
+      if (cycles_output_moves) cycles_output_low_is_full <=
+          ~first_cycle & (&cycles_output_low[31:1] & ~cycles_output_low[0]);
       done <= ~accept & (done | completes | drained);
       error <= accept ? (has_unknown_mode ? 4'd5 : 4'd0) : ended;
+      told_cause <= running ? (abort_job ? 4'd1 : read_failed ? 4'd2 : write_failed ? 4'd3 : 4'd0) : 4'd0;
       if (accept) job_count <= count;
       if (accept) job_epoch <= epoch;
       if (accept) job_lines <= rounded_count[32:1];
     end
   end
+  (* keep = "true" *) always @(posedge clk) begin
+    if (rst) begin
+      begin_job_copy_0 <= 1'b0;
+      begin_job_copy_1 <= 1'b0;
+      begin_job_copy_2 <= 1'b0;
+      begin_job_copy_3 <= 1'b0;
+      begin_job_copy_4 <= 1'b0;
+    end else begin
+      begin_job_copy_0 <= begins;
+      begin_job_copy_1 <= begins;
+      begin_job_copy_2 <= begins;
+      begin_job_copy_3 <= begins;
+      begin_job_copy_4 <= begins;
+    end
+  end
 
+  assign begin_collector = begin_job_copy_0;
+  assign begin_feeder = begin_job_copy_1;
+  assign begin_credits = begin_job_copy_2;
+  assign begin_packer = begin_job_copy_3;
+  assign begin_dispatcher = begin_job_copy_4;
   assign lines = job_lines;
 
   // Bits that nothing needs.

@@ -23,7 +23,7 @@ module contact_afu_dispatcher (
   output reg          wr_req_valid,
   output reg  [57:0]  wr_req_address,
   output reg  [9:0]   wr_req_tag,
-  output reg  [511:0] wr_req_data,
+  output wire [511:0] wr_req_data,
   output reg          line_left,
   output reg          answered,
   output reg          failed,
@@ -33,8 +33,6 @@ module contact_afu_dispatcher (
 );
 
   // ---- state ----
-  reg wr_req_spare_valid;
-  reg line_in_word;
   reg may_send;
   reg read_valid;
   reg ready;
@@ -50,15 +48,10 @@ module contact_afu_dispatcher (
   reg [5:0] accepted_slot;
   reg accepted;
   reg wr_req_of_job;
-  reg [9:0] wr_req_spare_tag;
-  reg [9:0] word_tag;
   reg [5:0] next_slot;
   reg [5:0] slot_then;
   reg [5:0] oldest;
-  reg [57:0] wr_req_spare_address;
-  reg [57:0] word_address;
   reg [57:0] next_address;
-  reg [511:0] wr_req_spare_data;
   reg [7:0] tail;
   reg [7:0] head;
   reg error_then;
@@ -66,53 +59,40 @@ module contact_afu_dispatcher (
   reg is_response;
   reg [6:0] outstanding;
 
-  // ---- outputs of instances ----
-  wire [511:0] wr_req_spare_data_next;
-
   // ---- logic ----
-  wire drops_requests = start | given_up;
-  wire wr_req_next_valid = ~drops_requests & (wr_req_spare_valid | line_in_word);
   wire wr_req_moves = ~wr_req_valid | wr_req_ready;
-  wire has_line = may_send & read_valid;
-  wire room_at_port = ~wr_req_spare_valid;
-  wire word_free = ~line_in_word | room_at_port;
-  wire goes = has_line & word_free;
+  wire goes = may_send & read_valid & wr_req_moves;
+  wire drops_requests = start | given_up;
   wire read = ~read_valid | goes;
   wire take = read & ready;
+  wire stored_8_1_any = |stored[8:1];
+  wire stored_any = |stored;
   wire oldest_goes = came[0];
   wire [63:0] marked = came | (answered ? (64'd1 << arrived_age) : 64'd0);
   wire is_awaited = |(awaited & answers);
   wire is_response_next = is_current & ~start;
   wire start_or_goes = start | goes;
   wire [5:0] next_oldest = oldest + {5'd0, oldest_goes};
-  wire is_idle = ~|outstanding & ~line_in_word & (~wr_req_valid & room_at_port);
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
     arrived_age <= slot_then - next_oldest;
     response_slot <= wr_rsp_tag[5:0];
     accepted_slot <= wr_req_tag[5:0];
-    if (wr_req_moves) wr_req_tag <= wr_req_spare_valid ? wr_req_spare_tag : word_tag;
-    if (room_at_port) wr_req_spare_tag <= word_tag;
-    if (goes) word_tag <= {epoch, next_slot};
+    if (goes) wr_req_tag <= {epoch, next_slot};
     slot_then <= response_slot;
-    if (wr_req_moves) wr_req_address <= wr_req_spare_valid ? wr_req_spare_address : word_address;
-    if (room_at_port) wr_req_spare_address <= word_address;
-    if (goes) word_address <= next_address;
+    if (goes) wr_req_address <= next_address;
     if (start_or_goes) next_address <= start ? destination : (next_address + 58'd1);
-    if (wr_req_moves) wr_req_data <= wr_req_spare_valid ? wr_req_spare_data : wr_req_spare_data_next;
-    if (room_at_port) wr_req_spare_data <= wr_req_spare_data_next;
     error_then <= wr_rsp_error_d1;
     wr_rsp_error_d1 <= wr_rsp_error;
   end
   always @(posedge clk) begin
     if (rst) begin
       wr_req_valid <= 1'b0;
-      wr_req_spare_valid <= 1'b0;
-      line_in_word <= 1'b0;
       may_send <= 1'b0;
       read_valid <= 1'b0;
       ready <= 1'b0;
+      line_left <= 1'b0;
       stored <= 9'd0;
       came <= 64'd0;
       reserved <= 7'd0;
@@ -127,7 +107,6 @@ module contact_afu_dispatcher (
       oldest <= 6'd0;
       tail <= 8'd0;
       head <= 8'd0;
-      line_left <= 1'b0;
       failed <= 1'b0;
       unexpected <= 1'b0;
       is_response <= 1'b0;
@@ -135,13 +114,17 @@ module contact_afu_dispatcher (
       outstanding <= 7'd0;
       empty <= 1'b0;
     end else begin
-      wr_req_valid <= wr_req_next_valid | ~wr_req_moves;
-      wr_req_spare_valid <= wr_req_next_valid & ~wr_req_moves;
-      line_in_word <= ~drops_requests & (goes | (line_in_word & ~room_at_port));
+      wr_req_valid <= (goes & ~drops_requests) | ~wr_req_moves;
       may_send <= run & ~(~oldest_goes & (reserved[6] | (&reserved[5:0] & goes)));
       read_valid <= ~start & (take | (read_valid & ~goes));
-      ready <= ~start & (line_valid | (|stored[8:1] | (stored[0] & ~take)));
-      if (start | (line_valid ^ take)) stored <= start ? 9'd0 : line_valid ? (stored + 9'd1) : (stored - 9'd1);
+      ready <=
+          ~start
+          & (line_valid
+             | (take      ? (line_left ? (|stored[8:2] | (stored[1] & stored[0])) : stored_8_1_any) :
+                line_left ? stored_8_1_any :
+                stored_any));
+      line_left <= take & ~start;
+      if (start | (line_valid ^ line_left)) stored <= start ? 9'd0 : line_valid ? (stored + 9'd1) : (stored - 9'd1);
       came <= start ? 64'd0 : oldest_goes ? {1'b0, marked[63:1]} : marked;
       if (start | (goes ^ oldest_goes)) reserved <= start ? 7'd0 : goes ? (reserved + 7'd1) : (reserved - 7'd1);
       answered <= is_awaited & ~start;
@@ -155,13 +138,12 @@ module contact_afu_dispatcher (
       oldest <= start ? 6'd0 : next_oldest;
       if (start | line_valid) tail <= start ? 8'd0 : (tail + 8'd1);
       if (start | take) head <= start ? 8'd0 : (head + 8'd1);
-      line_left <= take & ~start;
       failed <= is_awaited & error_then & ~start;
       unexpected <= run & is_response & ~is_awaited & ~start;
       is_response <= is_response_next;
-      idle <= is_idle;
+      idle <= ~|outstanding & ~wr_req_valid & ~goes;
       if (start | (goes ^ answered)) outstanding <= start ? 7'd0 : goes ? (outstanding + 7'd1) : (outstanding - 7'd1);
-      empty <= ~start & ~|stored & ~read_valid;
+      empty <= ~start & ~stored_any & ~read_valid;
     end
   end
 
@@ -176,7 +158,7 @@ module contact_afu_dispatcher (
     .read_index  (head),
     .read        (read),
     .advance     (goes),
-    .word        (wr_req_spare_data_next)
+    .word        (wr_req_data)
   );
 
 endmodule

@@ -22,7 +22,7 @@ module contact_afu_feeder (
   output reg  [13:0]  targets,
   output reg  [511:0] pairs,
   output reg  [5:0]   head,
-  output reg          taken,
+  output wire         taken,
   output reg          waits_for_input,
   output reg          waits_for_output
 );
@@ -34,21 +34,31 @@ module contact_afu_feeder (
   reg in_hand;
   reg last;
   reg place;
-  reg any_lines_waiting;
-  reg any_lines_left;
+  reg line_waits;
   reg one_lines_left;
   reg turn_within;
   reg block_is_last;
   reg [6:0] turn_block;
+  reg lines_left_step;
   reg [31:0] lines_left;
   reg [6:0] lines_waiting;
   reg [1:0] carries_rank_0;
   reg [6:0] turn;
-  reg first_place;
-  reg [511:0] held;
-  reg takes_line;
-  reg take_d1;
-  reg place_d1;
+  (* keep = "true", dont_merge *) reg aligns_by_1_copy_3;
+  reg [127:0] held_3;
+  (* keep = "true", dont_merge *) reg aligns_by_1_copy_2;
+  reg [127:0] held_2;
+  (* keep = "true", dont_merge *) reg aligns_by_1_copy_1;
+  reg [127:0] held_1;
+  (* keep = "true", dont_merge *) reg aligns_by_1_copy_0;
+  reg [127:0] held_0;
+  (* keep = "true", dont_merge *) reg takes_line_copy_0;
+  reg takes_line_soon;
+  reg first_place_soon;
+  (* keep = "true", dont_merge *) reg takes_line_copy_1;
+  (* keep = "true", dont_merge *) reg takes_line_copy_2;
+  (* keep = "true", dont_merge *) reg takes_line_copy_3;
+  reg any_lines_left;
 
   // ---- logic ----
   wire may_go = phase == turn_phase;
@@ -58,7 +68,6 @@ module contact_afu_feeder (
   wire go_0 = may_go_on & may_go & in_hand & present_0;
   wire [2:0] place_after_1 = place_after_0 + 3'd1;
   wire line_done_after_1 = {2'd0, last} < place_after_1;
-  wire line_waits = any_lines_waiting & any_lines_left;
   wire next_last = one_lines_left ? last_place : 1'b1;
   wire present_1 = ~line_done_after_1 | (|place_after_1[2:1] & line_waits & (next_last >= place_after_1[0]));
   wire [1:0] turn_within_plus_1 = {1'b0, turn_within} + 2'd1;
@@ -81,33 +90,55 @@ module contact_afu_feeder (
   wire line_done_after_2 = {2'd0, last} < place_after_2;
   wire line_done = go_1 ? line_done_after_2 : go_0 ? line_done_after_1 : line_done_after_0;
   wire take = line_waits & (line_done | ~in_hand);
-  wire lines_left_31_1_any = |lines_left[31:1];
+  wire lines_left_31_2_any = |lines_left[31:2];
+  wire lines_left_1_0_equals_2_unless_31_2_any = (lines_left[1:0] == 2'd2) & ~lines_left_31_2_any;
   wire one_lines_left_next =
-      start ? (lines[0] & ~|lines[31:1]) :
-      take  ? (~|lines_left[31:2] & lines_left[1] & ~lines_left[0]) :
-      (lines_left[0] & ~lines_left_31_1_any);
-  wire start_or_take = start | take;
+      start           ? ((lines[1:0] == 2'd1) & ~|lines[31:2]) :
+      take            ?
+          (lines_left_step ? ((lines_left[1:0] == 2'd3) & ~lines_left_31_2_any) :
+           lines_left_1_0_equals_2_unless_31_2_any) :
+      lines_left_step ? lines_left_1_0_equals_2_unless_31_2_any :
+      ((lines_left[1:0] == 2'd1) & ~lines_left_31_2_any);
+  wire lines_waiting_6_1_any = |lines_waiting[6:1];
+  wire line_comes_or_left_step_if_take_unless_start =
+      ~start
+      & (line_comes
+         | (take            ?
+                (lines_left_step ? (|lines_waiting[6:2] | (lines_waiting[1] & lines_waiting[0])) :
+                 lines_waiting_6_1_any) :
+            lines_left_step ? lines_waiting_6_1_any :
+            |lines_waiting));
+  wire lines_left_31_1_any = |lines_left[31:1];
+  wire step_if_take =
+      take            ?
+          (lines_left_step ? (lines_left_31_2_any | (lines_left[1] & lines_left[0])) : lines_left_31_1_any) :
+      lines_left_step ? lines_left_31_1_any :
+      |lines_left;
   wire next_place = go_1 ? place_after_2[0] : go_0 ? place_after_1[0] : place;
   wire [7:0] turn_plus_1 = {1'b0, turn} + 8'd1;
   wire [7:0] turn_after_1 = (turn_plus_1 >= {1'b0, scpus}) ? (turn_plus_1 - {1'b0, scpus}) : turn_plus_1;
   wire [7:0] turn_plus_2 = {1'b0, turn} + 8'd2;
   wire [7:0] turn_after_2 = (turn_plus_2 >= {1'b0, scpus}) ? (turn_plus_2 - {1'b0, scpus}) : turn_plus_2;
   wire [6:0] next_turn = (entered == 2'd2) ? turn_after_2[6:0] : (entered == 2'd1) ? turn_after_1[6:0] : turn;
-  wire [1023:0] window = {line, held};
-  wire [1023:0] aligned_by_1 = first_place ? {256'd0, window[1023:256]} : window;
-  wire [511:0] aligned = aligned_by_1[511:0];
+  wire [511:0] aligned_by_1 = {
+    aligns_by_1_copy_3 ? line[255:128] : held_3,
+    aligns_by_1_copy_2 ? line[127:0] : held_2,
+    aligns_by_1_copy_1 ? held_3 : held_1,
+    aligns_by_1_copy_0 ? held_2 : held_0
+  };
   wire waits = run & (in_hand | any_lines_left);
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
     if (take) last <= next_last;
     targets <= {turn_after_1[6:0], turn};
-    pairs <= aligned;
-    first_place <= place_d1;
-    if (takes_line) held <= line;
-    takes_line <= take_d1;
-    take_d1 <= take;
-    place_d1 <= place;
+    pairs <= aligned_by_1;
+    if (takes_line_copy_3) held_3 <= line[511:384];
+    if (takes_line_copy_2) held_2 <= line[383:256];
+    if (takes_line_copy_1) held_1 <= line[255:128];
+    if (takes_line_copy_0) held_0 <= line[127:0];
+    takes_line_soon <= take;
+    first_place_soon <= place;
     waits_for_input <= waits & ~in_hand;
     waits_for_output <= waits & in_hand & ~may_go_on;
   end
@@ -119,19 +150,19 @@ module contact_afu_feeder (
       turn_phase <= 3'd0;
       in_hand <= 1'b0;
       place <= 1'b0;
-      any_lines_waiting <= 1'b0;
-      any_lines_left <= 1'b0;
+      line_waits <= 1'b0;
       one_lines_left <= 1'b0;
       turn_within <= 1'b0;
       block_is_last <= 1'b0;
       turn_block <= 7'd0;
+      lines_left_step <= 1'b0;
       lines_left <= 32'd0;
       lines_waiting <= 7'd0;
       carries <= 2'd0;
       carries_rank_0 <= 2'd0;
       turn <= 7'd0;
       head <= 6'd0;
-      taken <= 1'b0;
+      any_lines_left <= 1'b0;
     end else begin
       entered <= go_1 ? 2'd2 : go_0 ? 2'd1 : 2'd0;
       may_go_on <= may_enter;
@@ -139,27 +170,39 @@ module contact_afu_feeder (
       turn_phase <= round_begins ? 3'd0 : ends_block ? ((turn_phase == 3'd4) ? 3'd0 : (turn_phase + 3'd1)) : turn_phase;
       in_hand <= ~start & (take | (in_hand & ~line_done));
       place <= (start | ~in_hand) ? 1'b0 : next_place;
-      any_lines_waiting <= ~start & (line_comes | |lines_waiting[6:1] | (lines_waiting[0] & ~take));
-      any_lines_left <= start ? |lines : take ? lines_left_31_1_any : |lines_left;
+      line_waits <= line_comes_or_left_step_if_take_unless_start & step_if_take;
       one_lines_left <= one_lines_left_next;
       turn_within <= (start | ends_block) ? 1'b0 : next_within;
       block_is_last <= round_begins ? one_block : ends_block ? before_last_block : block_is_last;
       turn_block <= round_begins ? 7'd0 : ends_block ? (turn_block + 7'd1) : turn_block;
-      if (start_or_take) lines_left <= start ? lines : (lines_left - 32'd1);
-      if (start | (line_comes ^ take)) lines_waiting <=
+      lines_left_step <= take & ~start;
+      if (start | lines_left_step) lines_left <= start ? lines : (lines_left - 32'd1);
+      if (start | (line_comes ^ lines_left_step)) lines_waiting <=
           start      ? 7'd0 :
           line_comes ? (lines_waiting + 7'd1) :
           (lines_waiting - 7'd1);
       carries <= carries_rank_0;
       carries_rank_0 <= {go_1, go_0};
       turn <= start ? 7'd0 : next_turn;
-      if (start_or_take) head <= start ? 6'd0 : (head + 6'd1);
-      taken <= take & ~start;
+      if (start | take) head <= start ? 6'd0 : (head + 6'd1);
+      any_lines_left <= start ? |lines : step_if_take;
     end
   end
+  (* keep = "true" *) always @(posedge clk) begin
+    aligns_by_1_copy_3 <= first_place_soon;
+    aligns_by_1_copy_2 <= first_place_soon;
+    aligns_by_1_copy_1 <= first_place_soon;
+    aligns_by_1_copy_0 <= first_place_soon;
+    takes_line_copy_0 <= takes_line_soon;
+    takes_line_copy_1 <= takes_line_soon;
+    takes_line_copy_2 <= takes_line_soon;
+    takes_line_copy_3 <= takes_line_soon;
+  end
+
+  assign taken = lines_left_step;
 
   // Bits that nothing needs.
-  wire unused = &{1'b0, scpus_plus_1[0], turn_after_1[7], turn_after_2[7], aligned_by_1[1023:512]};
+  wire unused = &{1'b0, scpus_plus_1[0], turn_after_1[7], turn_after_2[7]};
 
 endmodule
 

@@ -35,15 +35,25 @@ module contact_afu_packer (
   reg all_seen;
   reg [31:0] emerged;
   reg [31:0] count_here;
-  reg [3:0] enters_1;
+  (* keep = "true", dont_merge *) reg enters_1_place_1_copy_1;
   reg [255:0] entering_1;
-  reg [3:0] enters_0;
+  (* keep = "true", dont_merge *) reg enters_0_place_1_copy_1;
   reg [255:0] entering_0;
-  reg [255:0] filling_0;
-  reg emptied;
-  reg empties_d1;
+  (* keep = "true", dont_merge *) reg enters_1_place_1_copy_0;
+  (* keep = "true", dont_merge *) reg enters_0_place_1_copy_0;
+  (* keep = "true", dont_merge *) reg enters_0_place_0_copy_1;
+  reg [127:0] filling_0_1;
+  (* keep = "true", dont_merge *) reg enters_0_place_0_copy_0;
+  reg [127:0] filling_0_0;
+  (* keep = "true", dont_merge *) reg enters_1_place_2_copy_0;
+  (* keep = "true", dont_merge *) reg empties_0_copy_0;
+  reg empties_soon;
   reg first_place;
   reg [1:0] carried;
+  (* keep = "true", dont_merge *) reg stores_0_copy_0;
+  (* keep = "true", dont_merge *) reg enters_1_place_2_copy_1;
+  (* keep = "true", dont_merge *) reg empties_0_copy_1;
+  (* keep = "true", dont_merge *) reg stores_0_copy_1;
   reg [31:0] contact_count;
   reg [1:0] leaves_here;
   reg [31:0] invalid_count;
@@ -65,6 +75,9 @@ module contact_afu_packer (
   wire next_place = place_in_line[0];
   wire empties = start_or_flushes | fills;
   wire [1:0] first_place_one_hot = 2'd1 << first_place;
+  wire [3:0] enters_1_soon = carried[1] ? {1'b0, first_place_one_hot, 1'b0} : 4'd0;
+  wire [3:0] enters_0_soon = carried[0] ? {2'd0, first_place_one_hot} : 4'd0;
+  wire stores_0_copy_1_next = enters_1_soon[2] | empties_soon | enters_0_soon[0];
   wire done_next = ~start & (all_seen & ~place & ~went & ~comes) & ~line_valid;
   wire contact_here_0 = contact_0 & leaves_here[0];
   wire contact_here_1 = contact_1 & leaves_here[1];
@@ -75,13 +88,23 @@ module contact_afu_packer (
   // ---- at the clock edge ----
   always @(posedge clk) begin
     count_here <= count;
-    line <= {enters_1[1] ? entering_1 : enters_0[1] ? entering_0 : 256'd0, enters_0[0] ? entering_0 : filling_0};
-    enters_1 <= carried[1] ? {1'b0, first_place_one_hot, 1'b0} : 4'd0;
+    line <= {
+      enters_1_place_1_copy_1 ? entering_1[255:128] : enters_0_place_1_copy_1 ? entering_0[255:128] : 128'd0,
+      enters_1_place_1_copy_0 ? entering_1[127:0] : enters_0_place_1_copy_0 ? entering_0[127:0] : 128'd0,
+      enters_0_place_0_copy_1 ? entering_0[255:128] : filling_0_1,
+      enters_0_place_0_copy_0 ? entering_0[127:0] : filling_0_0
+    };
     entering_1 <= record_1;
-    enters_0 <= carried[0] ? {2'd0, first_place_one_hot} : 4'd0;
     entering_0 <= record_0;
-    emptied <= empties_d1;
-    empties_d1 <= empties;
+    if (stores_0_copy_1) filling_0_1 <=
+        enters_1_place_2_copy_1 ? entering_1[255:128] :
+        empties_0_copy_1        ? 128'd0 :
+        entering_0[255:128];
+    if (stores_0_copy_0) filling_0_0 <=
+        enters_1_place_2_copy_0 ? entering_1[127:0] :
+        empties_0_copy_0        ? 128'd0 :
+        entering_0[127:0];
+    empties_soon <= empties;
     first_place <= place;
     carried <= leaves_now;
     emerged_before <= emerged;
@@ -95,7 +118,6 @@ module contact_afu_packer (
       place <= 1'b0;
       all_seen <= 1'b0;
       emerged <= 32'd0;
-      filling_0 <= 256'd0;
       done <= 1'b0;
       contact_count <= 32'd0;
       leaves_here <= 2'd0;
@@ -110,7 +132,6 @@ module contact_afu_packer (
       place <= start_or_flushes ? 1'b0 : next_place;
       all_seen <= ~start & (emerged == count_here);
       emerged <= start ? 32'd0 : (emerged + {30'd0, group});
-      if (enters_1[2] | emptied | enters_0[0]) filling_0 <= enters_1[2] ? entering_1 : emptied ? 256'd0 : entering_0;
       done <= done_next;
       contact_count <= start ? 32'd0 : (contact_count + {30'd0, {1'b0, contact_here_0} + {1'b0, contact_here_1}});
       leaves_here <= leaves_now;
@@ -122,13 +143,27 @@ module contact_afu_packer (
       none_invalid <= start | (none_invalid & ~some_invalid);
     end
   end
+  (* keep = "true" *) always @(posedge clk) begin
+    enters_1_place_1_copy_1 <= enters_1_soon[1];
+    enters_0_place_1_copy_1 <= enters_0_soon[1];
+    enters_1_place_1_copy_0 <= enters_1_soon[1];
+    enters_0_place_1_copy_0 <= enters_0_soon[1];
+    enters_0_place_0_copy_1 <= enters_0_soon[0];
+    enters_0_place_0_copy_0 <= enters_0_soon[0];
+    enters_1_place_2_copy_0 <= enters_1_soon[2];
+    empties_0_copy_0 <= empties_soon;
+    stores_0_copy_0 <= stores_0_copy_1_next;
+    enters_1_place_2_copy_1 <= enters_1_soon[2];
+    empties_0_copy_1 <= empties_soon;
+    stores_0_copy_1 <= stores_0_copy_1_next;
+  end
 
   assign contacts = contact_count;
   assign invalid = invalid_count;
   assign first_invalid = first_invalid_pair;
 
   // Bits that nothing needs.
-  wire unused = &{1'b0, place_in_line[1], enters_1[0], enters_1[3], enters_0[3:2]};
+  wire unused = &{1'b0, place_in_line[1], enters_1_soon[0], enters_1_soon[3], enters_0_soon[3:2]};
 
 endmodule
 

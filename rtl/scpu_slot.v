@@ -55,12 +55,17 @@ module scpu_slot (
   reg takes_lane_1;
   reg takes_lane_0;
   reg [255:0] record_0;
-  reg [1:0] answers;
+  (* keep = "true", dont_merge *) reg answers_lane_0_copy_1;
+  (* keep = "true", dont_merge *) reg answers_lane_0_copy_0;
   reg takes;
   reg [255:0] pair;
+  (* keep = "true", dont_merge *) reg chooses_lane_1_copy_1;
+  (* keep = "true", dont_merge *) reg chooses_lane_1_copy_0;
   reg contact_0;
   reg invalid_0;
   reg [255:0] record_1;
+  (* keep = "true", dont_merge *) reg answers_lane_1_copy_1;
+  (* keep = "true", dont_merge *) reg answers_lane_1_copy_0;
   reg contact_1;
   reg invalid_1;
 
@@ -74,8 +79,7 @@ module scpu_slot (
   wire names_this_in_0 = carries_in[0] & (targets_in[6:0] == index);
   wire uses_lane_1 = 7'd1 < scpus;
   wire names_this_in_1 = carries_in[1] & (targets_in[13:7] == index) & uses_lane_1;
-  wire answers_lane_0 = answers[0];
-  wire answers_lane_1 = answers[1] & uses_lane_1;
+  wire answers_lane_1_copy_0_next = answers_soon[1] & uses_lane_1;
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
@@ -95,14 +99,22 @@ module scpu_slot (
     takes_lanes_d32 <= takes_lanes_d32_line[29:28];
     takes_lanes_d16_line <= {takes_lanes_d16_line[27:0], takes_lanes};
     takes_lanes_d16 <= takes_lanes_d16_line[29:28];
-    record_0 <= answers_lane_0 ? unit_record : record_0_in;
-    answers <= answers_soon;
-    if (takes) pair <= takes_lane_1 ? pairs_in[511:256] : pairs_in[255:0];
-    contact_0 <= answers_lane_0 ? unit_contact : contact_0_in;
-    invalid_0 <= answers_lane_0 ? unit_invalid_pair : invalid_0_in;
-    record_1 <= answers_lane_1 ? unit_record : record_1_in;
-    contact_1 <= answers_lane_1 ? unit_contact : contact_1_in;
-    invalid_1 <= answers_lane_1 ? unit_invalid_pair : invalid_1_in;
+    record_0 <= {
+      answers_lane_0_copy_1 ? unit_record[255:128] : record_0_in[255:128],
+      answers_lane_0_copy_0 ? unit_record[127:0] : record_0_in[127:0]
+    };
+    if (takes) pair <= {
+      chooses_lane_1_copy_1 ? pairs_in[511:384] : pairs_in[255:128],
+      chooses_lane_1_copy_0 ? pairs_in[383:256] : pairs_in[127:0]
+    };
+    contact_0 <= answers_lane_0_copy_0 ? unit_contact : contact_0_in;
+    invalid_0 <= answers_lane_0_copy_0 ? unit_invalid_pair : invalid_0_in;
+    record_1 <= {
+      answers_lane_1_copy_1 ? unit_record[255:128] : record_1_in[255:128],
+      answers_lane_1_copy_0 ? unit_record[127:0] : record_1_in[127:0]
+    };
+    contact_1 <= answers_lane_1_copy_0 ? unit_contact : contact_1_in;
+    invalid_1 <= answers_lane_1_copy_0 ? unit_invalid_pair : invalid_1_in;
   end
   always @(posedge clk) begin
     if (rst) begin
@@ -118,6 +130,14 @@ module scpu_slot (
       takes_lane_0 <= names_this_in_0;
       takes <= names_this_in_0 | names_this_in_1;
     end
+  end
+  (* keep = "true" *) always @(posedge clk) begin
+    answers_lane_0_copy_1 <= answers_soon[0];
+    answers_lane_0_copy_0 <= answers_soon[0];
+    chooses_lane_1_copy_1 <= names_this_in_1;
+    chooses_lane_1_copy_0 <= names_this_in_1;
+    answers_lane_1_copy_1 <= answers_lane_1_copy_0_next;
+    answers_lane_1_copy_0 <= answers_lane_1_copy_0_next;
   end
 
   scpu unit (

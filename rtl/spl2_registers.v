@@ -21,6 +21,7 @@ module spl2_registers (
   output reg          context_valid,
   output wire         context_written,
   output wire         wr_valid,
+  output wire         wr_chosen,
   output wire [57:0]  wr_address,
   output wire [511:0] wr_line
 );
@@ -35,15 +36,17 @@ module spl2_registers (
   reg [31:0] context_high;
   reg context_base_high;
   reg context_base_low;
-  reg due;
+  (* keep = "true", dont_merge *) reg due_copy_0;
   reg identity_due;
   reg scratch_due;
   reg scratch;
   reg was_identity;
+  (* keep = "true", dont_merge *) reg due_copy_1;
   reg [31:0] scratch_value;
 
   // ---- logic ----
   wire clear = power_on | (spl_reset_heard & ~spl_reset_before);
+  wire is_due = dsm_valid & (identity_due | scratch_due) & ~wr_granted & ~power_on;
   wire scratch_granted = wr_granted & ~was_identity;
   wire identity_granted = wr_granted & was_identity;
   assign wr_address = {dsm_line[57:6], identity_due ? 6'd0 : 6'd63};
@@ -66,16 +69,20 @@ module spl2_registers (
     context_base_high <= cfg_valid & (cfg_offset == 14'h2282);
     context_base_low <= cfg_valid & (cfg_offset == 14'h2283);
     context_valid <= (context_valid | context_base_low) & ~clear;
-    due <= dsm_valid & (identity_due | scratch_due) & ~wr_granted & ~power_on;
     identity_due <= (identity_due | dsm_base_low) & ~(clear | (identity_granted & ~dsm_base_low));
     scratch_due <= (scratch_due | scratch) & ~(clear | (scratch_granted & ~scratch));
     scratch <= cfg_valid & (cfg_offset == 14'h22bf);
     was_identity <= identity_due;
     if (scratch) scratch_value <= cfg_data_heard;
   end
+  (* keep = "true" *) always @(posedge clk) begin
+    due_copy_0 <= is_due;
+    due_copy_1 <= is_due;
+  end
 
   assign context_written = context_base_low;
-  assign wr_valid = due;
+  assign wr_valid = due_copy_0;
+  assign wr_chosen = due_copy_1;
   assign wr_line = line;
 
 endmodule

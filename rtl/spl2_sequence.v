@@ -77,6 +77,7 @@ module spl2_sequence (
   reg [31:0] job_sequence;
   reg is_own;
   reg [11:0] expected;
+  reg start_job;
   reg [16:0] age;
   reg at_idle;
   reg [57:0] job_context_line;
@@ -87,8 +88,18 @@ module spl2_sequence (
   reg abort;
   reg has_abort;
   reg writes;
+  (* keep = "true", dont_merge *) reg shows_dsm_copy_0;
+  (* keep = "true", dont_merge *) reg shows_latency_copy_0;
   reg [31:0] first_write;
   reg [31:0] first_read;
+  (* keep = "true", dont_merge *) reg shows_sequence_copy_0;
+  (* keep = "true", dont_merge *) reg shows_output_copy_0;
+  (* keep = "true", dont_merge *) reg shows_input_copy_0;
+  (* keep = "true", dont_merge *) reg shows_busy_copy_0;
+  (* keep = "true", dont_merge *) reg shows_identity_copy_0;
+  (* keep = "true", dont_merge *) reg shows_status_copy_0;
+  (* keep = "true", dont_merge *) reg shows_results_copy_0;
+  (* keep = "true", dont_merge *) reg shows_refusal_copy_0;
   reg [31:0] since_start;
   reg read_now;
   reg read_seen;
@@ -107,35 +118,46 @@ module spl2_sequence (
   wire ran = ~refused;
   wire fences = at_fence & ~(gave_up & ran);
   wire written = wr_granted | (to_dsm & ~dsm_valid) | (at_fence & ~fences);
+  wire to_status = (at_fence & written) | (at_status & ~written);
   wire fits = source_fits & destination_fits;
   wire refuses = at_start & ~fits;
   wire [32:0] count_to_2 = {1'b0, job_count} + 33'd1;
   wire got_context = at_context & answered;
-  assign start = at_start & fits;
+  wire to_performance = (at_latency & written) | (at_performance & ~written);
+  wire to_latency = refuses | (at_run & core_done) | (at_latency & ~written);
   wire overdue = waiting & age[16];
   wire reads_context = (at_idle & context_valid) | switches;
   wire [57:0] address = at_context ? job_context_line : source_line;
   wire [57:0] first_pairs = source_line + 58'd1;
   wire aborts = answered & has_abort & runs;
-  wire [511:0] latency_line = {416'd0, job_sequence, first_write, first_read};
-  wire [511:0] performance_line = {
-    288'd0, job_sequence, ran ? cycles_output : 64'd0, ran ? cycles_input : 64'd0, ran ? cycles_busy : 64'd0
-  };
-  wire [511:0] status_line = {
-    128'd0,
-    128'hf885f92148fc4b0b8fd1f127a3a0b8e2,
-    capability,
-    32'd2,
-    first_invalid | {32{refused}},
-    ran ? invalid : 32'd0,
-    ran ? contacts : 32'd0,
-    job_sequence,
+  wire [511:0] shows_latency_copy_0_or_shows_busy_copy_0 =
+      {
+        416'd0,
+        shows_latency_copy_0 ? job_sequence : 32'd0,
+        shows_latency_copy_0 ? first_write : 32'd0,
+        shows_latency_copy_0 ? first_read : 32'd0
+      }
+      | {
+          288'd0,
+          shows_sequence_copy_0 ? job_sequence : 32'd0,
+          shows_output_copy_0 ? cycles_output : 64'd0,
+          shows_input_copy_0 ? cycles_input : 64'd0,
+          shows_busy_copy_0 ? cycles_busy : 64'd0
+        };
+  wire [383:0] identity_copy_0_to_shows_status_copy_0 = {
+    shows_identity_copy_0 ? 128'hf885f92148fc4b0b8fd1f127a3a0b8e2 : 128'd0,
+    shows_identity_copy_0 ? capability : 64'd0,
+    shows_status_copy_0 ? 32'd2 : 32'd0,
+    (shows_results_copy_0 ? first_invalid : 32'd0) | {32{shows_refusal_copy_0}},
+    shows_results_copy_0 ? invalid : 32'd0,
+    shows_results_copy_0 ? contacts : 32'd0,
+    shows_status_copy_0 ? job_sequence : 32'd0,
     20'd0,
-    ran ? core_error : 4'd8,
+    (shows_results_copy_0 ? core_error : 4'd0) | (shows_refusal_copy_0 ? 4'd8 : 4'd0),
     7'd0,
-    1'b1
+    shows_status_copy_0
   };
-  wire [511:0] written_line = to_dsm ? (at_latency ? latency_line : performance_line) : status_line;
+  wire shows_busy_copy_0_next = to_performance & ran;
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
@@ -160,11 +182,12 @@ module spl2_sequence (
     has_abort <= |rsp_data[159:128];
     wr_fence <= at_fence;
     wr_virtual <= ~to_dsm;
-    wr_address <= to_dsm ? (at_latency ? {dsm_line[57:6], 6'd4} : {dsm_line[57:6], 6'd5}) : (job_context_line + 58'd1);
-    wr_data <= written_line;
+    wr_address <=
+        shows_dsm_copy_0 ? (at_latency ? {dsm_line[57:6], 6'd4} : {dsm_line[57:6], 6'd5}) : (job_context_line + 58'd1);
+    wr_data <= shows_latency_copy_0_or_shows_busy_copy_0 | {128'd0, identity_copy_0_to_shows_status_copy_0};
     if (at_start | ~write_seen) first_write <= (write_now & ~at_start) ? since_start : 32'd0;
     if (at_start | ~read_seen) first_read <= (read_now & ~at_start) ? since_start : 32'd0;
-    since_start <= start ? 32'd0 : (since_start + 32'd1);
+    since_start <= start_job ? 32'd0 : (since_start + 32'd1);
     read_now <= core_read_answered;
     write_now <= core_write_asked;
   end
@@ -187,6 +210,7 @@ module spl2_sequence (
       at_start <= 1'b0;
       at_compare <= 1'b0;
       at_measure <= 1'b0;
+      start_job <= 1'b0;
       at_idle <= 1'b1;
       abort <= 1'b0;
       writes <= 1'b0;
@@ -198,7 +222,7 @@ module spl2_sequence (
       at_poll <= got_context | (at_status & written) | (at_poll & ~got_job & ~switches);
       context_due <= context_written | (context_due & ~reads_context);
       waiting <= rd_granted | (waiting & ~answered & ~overdue);
-      at_run <= start | (at_run & ~core_done);
+      at_run <= start_job | (at_run & ~core_done);
       pause <=
           at_status                ? 10'd0 :
           (answered & ~at_context) ? (runs ? 10'd512 : 10'd32) :
@@ -206,14 +230,15 @@ module spl2_sequence (
           pause;
       answered <= is_own & waiting & ~answered;
       some_job <= some_job | got_job;
-      at_status <= (at_fence & written) | (at_status & ~written);
+      at_status <= to_status;
       at_fence <= (at_performance & written) | (at_fence & ~written);
-      at_latency <= refuses | (at_run & core_done) | (at_latency & ~written);
-      at_performance <= (at_latency & written) | (at_performance & ~written);
+      at_latency <= to_latency;
+      at_performance <= to_performance;
       refused <= refuses | (refused & ~at_start);
       at_start <= at_compare;
       at_compare <= at_measure;
       at_measure <= got_job;
+      start_job <= at_start & fits;
       at_idle <= at_idle & ~context_valid;
       abort <= aborts | (abort & ~got_job);
       writes <= ((to_dsm & dsm_valid) | fences | at_status) & ~written;
@@ -221,9 +246,22 @@ module spl2_sequence (
       write_seen <= ~at_start & (write_seen | (at_run & write_now));
     end
   end
+  (* keep = "true" *) always @(posedge clk) begin
+    shows_dsm_copy_0 <= to_latency | to_performance;
+    shows_latency_copy_0 <= to_latency;
+    shows_sequence_copy_0 <= to_performance;
+    shows_output_copy_0 <= shows_busy_copy_0_next;
+    shows_input_copy_0 <= shows_busy_copy_0_next;
+    shows_busy_copy_0 <= shows_busy_copy_0_next;
+    shows_identity_copy_0 <= to_status;
+    shows_status_copy_0 <= to_status;
+    shows_results_copy_0 <= to_status & ran;
+    shows_refusal_copy_0 <= to_status & refused;
+  end
 
   assign rd_valid = asks;
   assign rd_address = address;
+  assign start = start_job;
   assign source = first_pairs;
   assign destination = destination_line;
   assign count = job_count;

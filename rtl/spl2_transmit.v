@@ -23,6 +23,7 @@ module spl2_transmit (
   input  wire [9:0]   core_wr_tag,
   input  wire [511:0] core_wr_data,
   input  wire         register_wr_valid,
+  input  wire         register_wr_chosen,
   input  wire [57:0]  register_wr_address,
   input  wire [511:0] register_wr_data,
   input  wire         end_wr_valid,
@@ -30,13 +31,14 @@ module spl2_transmit (
   input  wire         end_wr_virtual,
   input  wire [57:0]  end_wr_address,
   input  wire [511:0] end_wr_data,
-  output reg  [5:0]   epoch,
+  output wire [5:0]   read_epoch,
+  output wire [5:0]   write_epoch,
   output wire [3:0]   core_epoch,
-  output reg  [11:0]  read_number,
-  output wire         own_rd_granted,
+  output wire [11:0]  read_number,
+  output reg          own_rd_granted,
   output wire         core_rd_ready,
-  output wire         register_wr_granted,
-  output wire         end_wr_granted,
+  output reg          register_wr_granted,
+  output reg          end_wr_granted,
   output wire         core_wr_ready,
   output reg          tx_rd_valid,
   output reg  [98:0]  tx_rd_hdr,
@@ -46,6 +48,11 @@ module spl2_transmit (
 );
 
   // ---- state ----
+  (* keep = "true", dont_merge *) reg [5:0] epoch_copy_0;
+  reg [5:0] epoch;
+  (* keep = "true", dont_merge *) reg [5:0] epoch_copy_1;
+  reg [11:0] granted_number;
+  reg [11:0] read_number_2;
   reg own_rd_turn;
   reg rd_room;
   reg core_rd_turn;
@@ -54,57 +61,81 @@ module spl2_transmit (
   reg wr_room;
   reg is_register;
   reg core_wr_turn;
+  (* keep = "true", dont_merge *) reg chooses_own_wr_copy_4;
   reg [98:0] own_header;
-  reg [11:0] write_number;
   reg [511:0] own_data;
+  reg [11:0] write_number;
+  (* keep = "true", dont_merge *) reg chooses_own_wr_copy_3;
+  (* keep = "true", dont_merge *) reg chooses_own_wr_copy_2;
+  (* keep = "true", dont_merge *) reg chooses_own_wr_copy_1;
+  (* keep = "true", dont_merge *) reg chooses_own_wr_copy_0;
 
   // ---- logic ----
   wire [5:0] next_epoch = epoch + {5'd0, start};
+  wire [5:0] known_epoch = power_on ? 6'd0 : next_epoch;
   assign core_epoch = next_epoch[3:0];
   wire own_rd_goes = own_rd_turn & rd_room;
-  assign own_rd_granted = own_rd_valid & own_rd_goes;
+  wire grants_own_rd = own_rd_valid & own_rd_goes;
+  wire grants_own_rd_unless_granted = own_rd_valid & ~grants_own_rd & ~own_rd_granted;
   wire own_wr_goes = own_wr_turn & wr_room;
-  assign register_wr_granted = own_wr_goes & is_register & register_wr_valid;
-  wire own_wr_waits = register_wr_valid | end_wr_valid;
-  assign end_wr_granted = own_wr_goes & ~is_register & end_wr_valid;
-  wire reading = own_rd_granted | (core_rd_turn & core_rd_valid & ~discards);
-  wire [57:0] own_rd_address_if_granted = own_rd_granted ? own_rd_address : core_rd_address;
-  wire own_granted = register_wr_granted | end_wr_granted;
+  wire grants_register_wr = own_wr_goes & is_register & register_wr_valid;
+  wire grants_end_wr = own_wr_goes & ~is_register & end_wr_valid;
+  wire own_granted = grants_register_wr | grants_end_wr;
+  wire own_wr_waits = (register_wr_valid | end_wr_valid) & ~own_granted & ~(register_wr_granted | end_wr_granted);
+  wire chooses_own_wr_copy_0_next = own_wr_waits & ~power_on;
+  wire reading = grants_own_rd | (core_rd_turn & core_rd_valid & ~discards);
+  wire [57:0] own_rd_address_if_grants_own_rd = grants_own_rd ? own_rd_address : core_rd_address;
   wire writing = own_granted | (core_wr_turn & core_wr_valid & ~discards);
-  wire [57:0] own_wr_address = register_wr_valid ? register_wr_address : end_wr_address;
+  wire [610:0] own_header_with_data = {own_header, own_data};
+  wire [610:0] core_wr_tag_5_0_with_core_wr_data = {
+    6'd1, core_wr_address[57:32], 1'b1, 10'd0, 4'd2, 6'd0, core_wr_address[31:0], 2'd0, epoch, core_wr_tag[5:0],
+    core_wr_data
+  };
+  wire [122:0] data_610_488_if_own_wr_copy_4 =
+      chooses_own_wr_copy_4 ? own_header_with_data[610:488] : core_wr_tag_5_0_with_core_wr_data[610:488];
+  wire [57:0] own_wr_address = register_wr_chosen ? register_wr_address : end_wr_address;
   wire is_fence = end_wr_fence & ~register_wr_valid;
+  wire [610:0] own_wr_copy_4_to_own_wr_copy_0 = {
+    data_610_488_if_own_wr_copy_4,
+    chooses_own_wr_copy_3 ? own_data[487:366] : core_wr_data[487:366],
+    chooses_own_wr_copy_2 ? own_data[365:244] : core_wr_data[365:244],
+    chooses_own_wr_copy_1 ? own_data[243:122] : core_wr_data[243:122],
+    chooses_own_wr_copy_0 ? own_data[121:0] : core_wr_data[121:0]
+  };
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
-    epoch <= power_on ? 6'd0 : next_epoch;
-    if (own_rd_granted | power_on) read_number <= power_on ? 12'd0 : (read_number + 12'd1);
-    own_rd_turn <= own_rd_valid & ~power_on;
+    epoch <= known_epoch;
+    granted_number <= read_number_2;
+    if (grants_own_rd | power_on) read_number_2 <= power_on ? 12'd0 : (read_number_2 + 12'd1);
+    own_rd_turn <= grants_own_rd_unless_granted & ~power_on;
     rd_room <= ~rd_almostfull;
-    core_rd_turn <= discards | (~own_rd_valid & ~rd_almostfull);
+    own_rd_granted <= grants_own_rd;
+    core_rd_turn <= discards | (~grants_own_rd_unless_granted & ~rd_almostfull);
     discards <= discard;
-    own_wr_turn <= own_wr_waits & ~power_on;
+    register_wr_granted <= grants_register_wr;
+    own_wr_turn <= chooses_own_wr_copy_0_next;
     wr_room <= ~wr_almostfull;
     is_register <= register_wr_valid;
+    end_wr_granted <= grants_end_wr;
     core_wr_turn <= discards | (~own_wr_waits & ~wr_almostfull);
     tx_rd_valid <= reading & ~power_on;
     tx_rd_hdr <= {
       6'd1,
-      own_rd_address_if_granted[57:32],
+      own_rd_address_if_grants_own_rd[57:32],
       1'b1,
       10'd0,
       4'd4,
       6'd0,
-      own_rd_address_if_granted[31:0],
-      own_rd_granted ? {2'd1, read_number} : {2'd0, epoch, core_rd_tag[5:0]}
+      own_rd_address_if_grants_own_rd[31:0],
+      grants_own_rd ? {2'd1, read_number_2} : {2'd0, epoch, core_rd_tag[5:0]}
     };
     tx_wr_valid <= writing & ~power_on;
-    tx_wr_hdr <=
-        own_wr_turn ? own_header :
-        {6'd1, core_wr_address[57:32], 1'b1, 10'd0, 4'd2, 6'd0, core_wr_address[31:0], 2'd0, epoch, core_wr_tag[5:0]};
+    tx_wr_hdr <= data_610_488_if_own_wr_copy_4[122:24];
     own_header <= {
       6'd1,
       own_wr_address[57:32],
-      register_wr_valid ? 1'b0 : end_wr_virtual,
+      register_wr_chosen ? 1'b0 : end_wr_virtual,
       10'd0,
       is_fence ? 4'd5 : 4'd2,
       6'd0,
@@ -112,16 +143,29 @@ module spl2_transmit (
       2'd1,
       write_number
     };
+    own_data <= register_wr_chosen ? register_wr_data : end_wr_data;
     if (own_granted | power_on) write_number <= power_on ? 12'd0 : (write_number + 12'd1);
-    tx_data <= own_wr_turn ? own_data : core_wr_data;
-    own_data <= register_wr_valid ? register_wr_data : end_wr_data;
+    tx_data <= own_wr_copy_4_to_own_wr_copy_0[511:0];
+  end
+  (* keep = "true" *) always @(posedge clk) begin
+    epoch_copy_0 <= known_epoch;
+    epoch_copy_1 <= known_epoch;
+    chooses_own_wr_copy_4 <= chooses_own_wr_copy_0_next;
+    chooses_own_wr_copy_3 <= chooses_own_wr_copy_0_next;
+    chooses_own_wr_copy_2 <= chooses_own_wr_copy_0_next;
+    chooses_own_wr_copy_1 <= chooses_own_wr_copy_0_next;
+    chooses_own_wr_copy_0 <= chooses_own_wr_copy_0_next;
   end
 
+  assign read_epoch = epoch_copy_0;
+  assign write_epoch = epoch_copy_1;
+  assign read_number = granted_number;
   assign core_rd_ready = core_rd_turn;
   assign core_wr_ready = core_wr_turn;
 
   // Bits that nothing needs.
-  wire unused = &{1'b0, core_rd_tag[9:6], core_wr_tag[9:6]};
+  wire unused = &{1'b0, core_rd_tag[9:6], own_header_with_data[487:0], core_wr_tag[9:6],
+    core_wr_tag_5_0_with_core_wr_data[487:0], own_wr_copy_4_to_own_wr_copy_0[610:512]};
 
 endmodule
 

@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use crate::hdl::{BuildErrors, Graph, Module};
 
+use super::counter::cycles;
 use super::port::{JobInputs, JobOutputs};
 use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, JobError, Spec};
 
@@ -22,6 +23,9 @@ pub(super) const CYCLES_TO_RUN: u32 = 2;
 pub(super) const CYCLES_TO_DONE: u32 = 2;
 /// Cycles, a power of two, after which all parts have stopped and control has heard it.
 const CYCLES_TO_STOP: u32 = 8;
+
+/// The parts that are told with a register of their own that a job begins.
+const PARTS: [&str; 5] = ["collector", "feeder", "credits", "packer", "dispatcher"];
 
 /// Builds the module `contact_afu_control`.
 pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
@@ -39,14 +43,11 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let input = |name: &str| graph.input(name, 1);
     let heard = |name: &str| input(name).registered(&format!("{name}_heard"));
     let [packed, dispatched] = ["packer_done", "dispatched"].map(input);
-    let [read_failed, write_failed, none_inside, filled] =
-        ["read_failed", "write_failed", "none_inside", "filled"].map(heard);
-    let [read_unexpected, write_unexpected] = ["read_unexpected", "write_unexpected"].map(heard);
-    let [read_answered, write_answered] = ["read_answered", "write_answered"].map(heard);
-    let [read_idle, write_idle] = ["read_idle", "write_idle"].map(input);
-    let unexpected = read_unexpected | write_unexpected;
-    let response = read_answered | write_answered;
-    let link_idle_now = (read_idle & write_idle).named("link_idle");
+    let [none_inside, filled] = ["none_inside", "filled"].map(heard);
+    let [read_failed, write_failed] = ["read_failed", "write_failed"].map(input);
+    let unexpected = (input("read_unexpected") | input("write_unexpected")).registered("unexpected_heard");
+    let response = (input("read_answered") | input("write_answered")).registered("response_heard");
+    let link_idle_now = (input("read_idle") & input("write_idle")).named("link_idle");
     let link_idle = link_idle_now.registered("link_idle_heard");
     let [waits_for_input, waits_for_output] = ["waits_for_input", "waits_for_output"].map(input);
 
@@ -56,23 +57,24 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let error = graph.register("error", JobError::BITS, 0);
     let waits = graph.register("waits_to_begin", 1, 0);
     let run = graph.register("run", 1, 0);
-    let busy = (*running | *draining).named("busy");
-    let accept = (start & !busy).named("accept");
+    let busy = graph.register("busy", 1, 0);
+    let accept = (start & !*busy).named("accept");
 
     // The job is held from its start; everything downstream begins one cycle later. The addresses are wide, so they are
     // loaded in every cycle without a job and do not depend on `start`.
     let job_source = graph.data_register("job_source", ADDRESS_BITS);
-    job_source.next_if(!busy, source);
+    job_source.next_if(!*busy, source);
     let job_destination = graph.data_register("job_destination", ADDRESS_BITS);
-    job_destination.next_if(!busy, destination);
+    job_destination.next_if(!*busy, destination);
     let job_count = graph.register("job_count", COUNT_BITS, 0);
     job_count.next_if(accept, count);
     let job_epoch = graph.register("job_epoch", EPOCH_BITS, 0);
     job_epoch.next_if(accept, epoch);
     let job_watchdog = graph.register("job_watchdog", COUNT_BITS, 0);
-    let has_watchdog = job_watchdog.any().named("has_watchdog");
+    let has_watchdog = graph.register("has_watchdog", 1, 0);
+    has_watchdog.next(accept.select(watchdog.any(), *has_watchdog | *draining));
     let drain_cycles = watchdog.same(u128::from(DRAIN_CYCLES));
-    job_watchdog.next_if(accept | (*draining & !has_watchdog), draining.select(drain_cycles, watchdog));
+    job_watchdog.next_if(accept | (*draining & !*has_watchdog), draining.select(drain_cycles, watchdog));
     let per_line = layout.pairs_per_line();
     let shift = per_line.ilog2();
     let rounded = count.extend(COUNT_BITS + 1).plus(u128::from(per_line - 1)).named("rounded_count");
@@ -91,41 +93,45 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     // end. The register does not make a timely response late.
     let silence = graph.register("silence", COUNT_BITS, 0);
     let quiet = (response | link_idle.registered("link_idle_before")).named("link_is_alive");
-    let failing = graph.wire("failing", 1);
-    silence.next((quiet | !busy | stops).select(silence.same(0), silence.plus(1)));
-    let expired = graph.register("expired", 1, 0);
-    expired.next(busy & !quiet & has_watchdog & silence.greater_than(*job_watchdog));
+    let restarts = (quiet | !*busy | stops).named("silence_restarts");
+    silence.next(restarts.select(silence.same(0), silence.plus(1)));
+    // It is compared one cycle before it is used: it will be above the watchdog's cycles.
+    let is_over = (!restarts & silence.at_least(*job_watchdog)).registered("silence_is_over");
+    let expires = (*busy & !quiet & *has_watchdog & is_over).named("expires");
+    let expired = expires.registered("expired");
 
     // The end.
     let complete = (*run & packed & dispatched & link_idle_now).registered("complete");
     let complete = (*run & complete).named("completes");
     let has_unknown_mode = mode.any().named("has_unknown_mode");
     let refuses = (accept & has_unknown_mode).named("refuses");
-    let causes = [
-        (abort, JobError::Aborted),
-        (read_failed, JobError::Read),
-        (write_failed, JobError::Write),
-        // What arrives as a job completes is used only after the next one begins.
-        (unexpected & !*begin, JobError::Response),
-        (*expired, JobError::Watchdog),
-    ];
-    let mut cause = graph.constant(JobError::BITS, 0);
-    for (condition, code) in causes.into_iter().rev() {
-        cause = condition.select(graph.constant(JobError::BITS, code.code().into()), cause);
-    }
-    let cause = cause.named("cause");
-    failing.drive(*running & cause.any() & !complete);
+    // What ends a job early, in order of precedence. The first three are known with their code from a register.
+    let code_of = |error: JobError| graph.constant(JobError::BITS, error.code().into());
+    let none = code_of(JobError::Aborted).same(0);
+    let told_causes = [(write_failed, JobError::Write), (read_failed, JobError::Read), (abort, JobError::Aborted)];
+    let told_cause = told_causes.into_iter().fold(none, |other, (fails, error)| fails.select(code_of(error), other));
+    let told_cause = told_cause.gate(*running).registered("told_cause");
+    // What arrives as a job completes is used only after the next one begins.
+    let unexpected = (unexpected & !*begin).named("is_unexpected");
+    let watched = unexpected.select(code_of(JobError::Response), expired.select(code_of(JobError::Watchdog), none));
+    let cause = told_cause.any().select(told_cause, watched).named("cause");
+    let fails = (*running & (abort | read_failed | write_failed)) | expires;
+    let fails = fails.registered("fails");
+    let failing = (*running & (fails | unexpected) & !complete).named("failing");
     // This error takes precedence, because the host must know that late responses and late writes may still come.
-    let gives_up = (busy & *expired & !complete).named("gives_up");
+    let gives_up = (*busy & expired & !complete).named("gives_up");
     let given_up = graph.register("given_up", 1, 0);
     given_up.next(!accept & (*given_up | gives_up));
     // The parts are stopped some cycles later.
     let drained = (*draining & stopped & none_inside & (link_idle | *given_up)).named("drained");
     let takes_job = (accept & !refuses).named("takes_job");
     running.next(takes_job | (*running & !complete & !failing));
-    // A job begins once the delay lines are filled, and runs a cycle later.
+    busy.next(accept | (*busy & !complete & !drained));
+    // A job begins once the delay lines are filled, and runs a cycle later. Each part has a copy of the beginning.
     let still_waits = (*waits & !failing).named("still_waits");
-    begin.next((accept | still_waits) & filled);
+    let begins = ((accept | still_waits) & filled).named("begins");
+    begin.next(begins);
+    let parts = begins.copies("begin_job", PARTS.len() as u32);
     waits.next((takes_job | still_waits) & !filled);
     run.next((*run | *begin) & *running & !complete & !failing);
     draining.next(refuses | failing | (*draining & !drained));
@@ -149,18 +155,18 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     // The counts begin one cycle after the start, and include that cycle, in which nothing waits yet.
     let first_cycle = accept.registered("first_cycle");
     for (port, counts, first) in [
-        (told.cycles_busy, busy, 1),
-        (told.cycles_input, waits_for_input & *run, 0),
-        (told.cycles_output, waits_for_output & *run, 0),
+        (told.cycles_busy, *busy, 1),
+        (told.cycles_input, (waits_for_input & *run).registered("counts_input"), 0),
+        (told.cycles_output, (waits_for_output & *run).registered("counts_output"), 0),
     ] {
-        let counter = graph.register(port.name, port.bits, 0);
-        counter.next_if(first_cycle | counts, first_cycle.select(counter.same(first), counter.plus(1)));
-        graph.output(port.name, counter.value());
+        graph.output(port.name, cycles(&graph, port.name, port.bits, [first_cycle, counts], first));
     }
-    graph.output("busy", busy);
+    graph.output("busy", busy.value());
     graph.output("done", done.value());
     graph.output("error", error.value());
-    graph.output("begin_job", begin.value());
+    for (part, begin) in PARTS.into_iter().zip(parts) {
+        graph.output(&format!("begin_{part}"), begin);
+    }
     graph.output("run", run.value());
     graph.output("given_up", given_up.value());
     graph.output("job_source", job_source.value());

@@ -1,9 +1,9 @@
-//! Counters whose next value is known without waiting for a sum. One counts down, with flags about its value. The other
-//! counts up and down, with the slots that it counts.
+//! Counters whose next value is known without waiting for a sum. A step that decides much is counted one cycle late,
+//! and flags about the counter's value know it at once.
 
 use crate::hdl::{Graph, Register, Signal};
 
-/// A counter that counts down in steps of one.
+/// A counter that counts down in steps of one, each one cycle late.
 pub(super) struct Countdown<'g> {
     left: Register<'g>,
     /// True if anything is left.
@@ -11,6 +11,9 @@ pub(super) struct Countdown<'g> {
     /// True if exactly one is left.
     pub(super) one: Signal<'g>,
     flags: [Register<'g>; 2],
+    counts: Register<'g>,
+    /// True in the cycle in which a step is counted.
+    pub(super) counted: Signal<'g>,
 }
 
 impl<'g> Countdown<'g> {
@@ -18,22 +21,45 @@ impl<'g> Countdown<'g> {
     pub(super) fn new(graph: &'g Graph, name: &str, width: u32) -> Self {
         let flags = ["any", "one"].map(|flag| graph.register(&format!("{flag}_{name}"), 1, 0));
         let [any, one] = flags.map(Register::value);
-        Self { left: graph.register(name, width, 0), any, one, flags }
+        let counts = graph.register(&format!("{name}_step"), 1, 0);
+        Self { left: graph.register(name, width, 0), any, one, flags, counts, counted: *counts }
     }
 
     /// Starts from `from` at `start`, and counts down at `step`, which is set only while something is left. Returns
     /// whether anything will be left.
     pub(super) fn connect(self, start: Signal<'g>, from: Signal<'g>, step: Signal<'g>) -> Signal<'g> {
-        let left = self.left;
-        left.next_if(start | step, start.select(from, left.minus(1)));
-        let above = |value: Signal<'g>| value.drop_low(1).any();
-        let is_two = !left.drop_low(2).any() & left.bit(1) & !left.bit(0);
-        let next_any = step.select(above(*left), left.any());
-        let next_one = step.select(is_two, left.bit(0) & !above(*left));
+        let (left, counted) = (self.left, self.counted);
+        self.counts.next(step & !start);
+        left.next_if(start | counted, start.select(from, left.minus(1)));
+        let next_any = left_after(*left, counted, step);
+        let one_after = |steps: u32| is_small(*left, steps + 1);
+        let next_one = by_steps(counted, step, one_after);
         self.flags[0].next(start.select(from.any(), next_any));
-        self.flags[1].next(start.select(from.bit(0) & !above(from), next_one));
+        self.flags[1].next(start.select(is_small(from, 1), next_one));
         next_any
     }
+}
+
+/// True if anything is left of `count` after a cycle in which one goes at `step`, which arrives last. `count` still
+/// includes the one that went a cycle before, at `counted`.
+pub(super) fn left_after<'g>(count: Signal<'g>, counted: Signal<'g>, step: Signal<'g>) -> Signal<'g> {
+    let count = count.extend(count.width().max(3));
+    by_steps(counted, step, |steps| match steps {
+        0 => count.any(),
+        1 => count.drop_low(1).any(),
+        _ => count.drop_low(2).any() | (count.bit(1) & count.bit(0)),
+    })
+}
+
+/// `of` the number of steps that are not counted yet.
+fn by_steps<'g>(counted: Signal<'g>, step: Signal<'g>, of: impl Fn(u32) -> Signal<'g>) -> Signal<'g> {
+    step.select(counted.select(of(2), of(1)), counted.select(of(1), of(0)))
+}
+
+/// True if `value` is this number, 1 to 3.
+fn is_small(value: Signal<'_>, number: u32) -> Signal<'_> {
+    let low = value.low(2).is(number.into());
+    low & !value.drop_low(2).any()
 }
 
 /// Connects a counter that is 0 at `start`, goes up on one event and down on another. The second event arrives last.
@@ -48,21 +74,37 @@ pub(super) fn all_used<'g>(reserved: Register<'g>, takes: Signal<'g>, frees: Sig
     !frees & (reserved.msb() | (reserved.low(slots).all() & takes))
 }
 
-/// A counter like that of [`up_down`] for up to `2^(width − 1)` things, with a flag that is set while it is not 0. It
-/// goes down only while the flag is set.
+/// A counter of things that come and go, at most `2^(width − 1)` of them. They go one cycle after `goes` says so.
+/// Returns the counter, and the flag that any will be left.
 pub(super) fn waiting<'g>(
     graph: &'g Graph,
     name: &str,
     width: u32,
-    start: Signal<'g>,
-    up: Signal<'g>,
-) -> (Signal<'g>, impl FnOnce(Signal<'g>) + use<'g>) {
+    [start, comes]: [Signal<'g>; 2],
+    [goes, gone]: [Signal<'g>; 2],
+) -> Signal<'g> {
     let count = graph.register(name, width, 0);
-    let some = graph.register(&format!("any_{name}"), 1, 0);
-    let connect = move |down: Signal<'g>| {
-        up_down(count, start, up, down);
-        let more = count.drop_low(1).any();
-        some.next(!start & (up | more | (count.bit(0) & !down)));
-    };
-    (some.value(), connect)
+    up_down(count, start, comes, gone);
+    comes | left_after(*count, gone, goes)
+}
+
+/// A count of the cycles in which `counts` is set, from `first` at `restart`. Its upper half counts when the lower half
+/// is about to wrap, which is known a cycle ahead, so no carry passes the whole width.
+pub(super) fn cycles<'g>(
+    graph: &'g Graph,
+    name: &str,
+    width: u32,
+    [restart, counts]: [Signal<'g>; 2],
+    first: u32,
+) -> Signal<'g> {
+    let half = width / 2;
+    let low = graph.register(&format!("{name}_low"), half, 0);
+    let high = graph.register(&format!("{name}_high"), width - half, 0);
+    let is_full = graph.register(&format!("{name}_low_is_full"), 1, 0);
+    let moves = (restart | counts).named(&format!("{name}_moves"));
+    low.next_if(moves, restart.select(low.same(first.into()), low.plus(1)));
+    let last_but_one = low.drop_low(1).all() & !low.bit(0);
+    is_full.next_if(moves, !restart & last_but_one);
+    high.next_if(restart | (counts & *is_full), restart.select(high.same(0), high.plus(1)));
+    high.concat(low.value()).named(name)
 }

@@ -11,15 +11,14 @@ use crate::config::Results;
 use crate::hdl::{BuildErrors, Graph, Module};
 
 use super::awaited::{self, awaited};
-use super::counter::{Countdown, all_used, up_down};
+use super::counter::{Countdown, all_used, left_after, up_down};
 use super::in_order::{Arrival, goes_in_order};
 use super::lines::{Access, line_memory};
 use super::port::{WriteInputs, WriteOutputs, outputs};
-use super::slice::slice;
 use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, Spec};
 
-/// Cycles from a line to its write request: stored, at the head, in the memory's register, at the port.
-pub(super) const CYCLES_TO_REQUEST: u32 = 4;
+/// Cycles from a line to its write request: stored, at the head, in the memory's register at the port.
+pub(super) const CYCLES_TO_REQUEST: u32 = 3;
 /// Cycles from an acknowledgement until it is counted.
 pub(super) const CYCLES_TO_IDLE: u32 = 1 + awaited::CYCLES_TO_ANSWER + 2;
 
@@ -42,7 +41,7 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
     let bounded = spec.config.results == Results::Hits;
 
     // Finished lines wait in a memory; the oldest one has been read already. It cannot overflow: a pair enters an SCPU
-    // only when its result has a place here.
+    // only when its result has a place here. A line that was read is counted as stored for one more cycle.
     let tail = graph.register("tail", place_bits, 0);
     let head = graph.register("head", place_bits, 0);
     let stored = graph.register("stored", place_bits + 1, 0);
@@ -51,24 +50,22 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
     let goes = graph.wire("goes", 1);
     let read = (!*read_valid | goes).named("read");
     let take = (read & *ready).named("take");
+    let left = (take & !start).registered("line_left");
     tail.next_if(start | line_valid, start.select(tail.same(0), tail.plus(1)));
     head.next_if(start | take, start.select(head.same(0), head.plus(1)));
-    up_down(stored, start, line_valid, take);
-    let some_left = stored.drop_low(1).any() | (stored.bit(0) & !take);
-    ready.next(!start & (line_valid | some_left));
+    up_down(stored, start, line_valid, left);
+    ready.next(!start & (line_valid | left_after(*stored, left, take)));
     read_valid.next(!start & (take | (*read_valid & !goes)));
 
-    // Write requests. Whether one may be sent is decided one cycle ahead. The line is in the memory's register while
-    // its address and tag are in registers beside it; then it enters the port's slice.
+    // Write requests. Whether one may be sent is decided one cycle ahead. The line at the port is in the memory's own
+    // register, and its address and tag are in registers beside it.
     let next_address = graph.data_register("next_address", ADDRESS_BITS);
     let next_slot = graph.register("next_slot", slot_bits, 0);
     let reserved = graph.register("reserved", slot_bits + 1, 0);
     let may_send = graph.register("may_send", 1, 0);
-    let in_word = graph.register("line_in_word", 1, 0);
-    let room_at_port = graph.wire("room_at_port", 1);
-    let word_free = (!*in_word | room_at_port).named("word_free");
-    let has_line = (*may_send & *read_valid).named("has_line");
-    goes.drive(has_line & word_free);
+    let valid = graph.register("wr_req_valid", 1, 0);
+    let moves = (!*valid | link.wr_req_ready).named("wr_req_moves");
+    goes.drive(*may_send & *read_valid & moves);
     let send = if bounded {
         let lines = graph.input("lines", COUNT_BITS);
         let room = Countdown::new(&graph, "lines_of_room", COUNT_BITS);
@@ -84,18 +81,18 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
     } else {
         goes
     };
-    in_word.next(!drops & (send | (*in_word & !room_at_port)));
+    // A request that is at the port when its job is given up stays until it is taken, even during the next job.
+    valid.next((send & !drops) | !moves);
+    let of_job = graph.register("wr_req_of_job", 1, 0);
+    of_job.next(!start & (moves | *of_job));
+    let accepted = *valid & link.wr_req_ready & *of_job;
     let access =
         Access { write: line_valid, write_index: tail.value(), line, read, read_index: head.value(), advance: send };
-    let word = line_memory(&graph, spec, "finished", depth, &access)?;
-    let word_address = graph.data_register("word_address", ADDRESS_BITS);
-    word_address.next_if(send, next_address.value());
-    let word_tag = graph.data_register("word_tag", spec.tag_bits());
-    word_tag.next_if(send, epoch.concat(next_slot.value()));
-    let fields = [("address", word_address.value()), ("tag", word_tag.value()), ("data", word)];
-    let port = slice(&graph, "wr_req", [start, drops], *in_word, &fields, link.wr_req_ready);
-    let [request_address, request_tag, request_data] = [0, 1, 2].map(|field| port.fields[field]);
-    room_at_port.drive(port.has_room);
+    let request_data = line_memory(&graph, spec, "finished", depth, &access)?;
+    let request_address = graph.data_register("wr_req_address", ADDRESS_BITS);
+    request_address.next_if(send, next_address.value());
+    let request_tag = graph.data_register("wr_req_tag", spec.tag_bits());
+    request_tag.next_if(send, epoch.concat(next_slot.value()));
     next_address.next_if(start | send, start.select(destination, next_address.plus(1)));
     next_slot.next_if(start | send, start.select(next_slot.same(0), next_slot.plus(1)));
 
@@ -105,7 +102,7 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
     let response_slot = link.wr_rsp_tag.low(slot_bits).delay(1).named("response_slot");
     let arrival = Arrival { valid: response, slot: response_slot };
     let error = link.wr_rsp_error.delay(1).named("response_error");
-    let answers = awaited(&graph, slots, [start, run], [port.accepted, request_tag.low(slot_bits)], &arrival, error);
+    let answers = awaited(&graph, slots, [start, run], [accepted, request_tag.low(slot_bits)], &arrival, error);
     let freed = goes_in_order(&graph, slots, start, arrival.slot, answers.answered);
     up_down(reserved, start, send, freed);
     may_send.next(run & !all_used(reserved, send, freed));
@@ -113,21 +110,20 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
     up_down(outstanding, start, send, answers.answered);
 
     let requests = WriteOutputs {
-        wr_req_valid: port.valid,
-        wr_req_address: request_address,
-        wr_req_tag: request_tag,
+        wr_req_valid: valid.value(),
+        wr_req_address: request_address.value(),
+        wr_req_tag: request_tag.value(),
         wr_req_data: request_data,
     };
     outputs(&graph, requests.named());
     if !bounded {
-        graph.output("line_left", (take & !start).registered("line_left"));
+        graph.output("line_left", left);
     }
     graph.output("answered", answers.answered);
     graph.output("failed", answers.failed);
     graph.output("unexpected", answers.unexpected);
-    // A line that has not reached the word's register is stored, so it is not empty.
-    let idle = (!outstanding.any() & !*in_word & port.is_empty).named("is_idle");
-    graph.output("idle", idle.registered("idle"));
+    // It is busy in the cycle in which a request reaches the port.
+    graph.output("idle", (!outstanding.any() & !*valid & !send).registered("idle"));
     graph.output("empty", (!start & !stored.any() & !*read_valid).registered("empty"));
     graph.finish()
 }

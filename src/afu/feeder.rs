@@ -11,7 +11,7 @@ use crate::hdl::{BuildErrors, Graph, Module, Signal};
 use super::counter::{Countdown, waiting};
 use super::lines::CYCLES_TO_WORD;
 use super::rounds::Rounds;
-use super::{COUNT_BITS, SCPU_BITS, Spec};
+use super::{COUNT_BITS, SCPU_BITS, Spec, wide};
 
 /// Register ranks from the decision which pairs leave to the pairs themselves. Their data arrive as late as lines do,
 /// and are registered.
@@ -55,10 +55,9 @@ pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let place = graph.register("place", place_bits, 0);
     let last = graph.data_register("last", place_bits);
     let lines_left = Countdown::new(&graph, "lines_left", COUNT_BITS);
-    let (some_left, last_is_next) = (lines_left.any, lines_left.one);
-    let (announced, took) = waiting(&graph, "lines_waiting", spec.max_outstanding.ilog2() + 1, start, comes);
+    let (some_left, last_is_next, taken) = (lines_left.any, lines_left.one, lines_left.counted);
     // Even if the link brings data that was not requested, no more than the job's lines are taken.
-    let line_waits = (announced & some_left).named("line_waits");
+    let line_waits = graph.register("line_waits", 1, 0);
     let of_full = graph.constant(place_bits, u128::from(per_line - 1));
     let next_last = last_is_next.select(last_place, of_full).named("next_last");
 
@@ -76,7 +75,7 @@ pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let mut go = Vec::new();
     for lane in 0..lanes {
         let reach = after(lane);
-        let is_next = reach.drop_low(place_bits).any() & line_waits & reach.low(place_bits).at_most(next_last);
+        let is_next = reach.drop_low(place_bits).any() & *line_waits & reach.low(place_bits).at_most(next_last);
         // A line may have been used up by a group that began in the line before it.
         let present = if lane == 0 { !beyond(0) } else { !beyond(lane) | is_next };
         let present = present.named(&format!("present_{lane}"));
@@ -86,15 +85,16 @@ pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
         go.push(going);
     }
     let line_done = by_group(&go, beyond).named("line_done");
-    let take = (line_waits & (line_done | !*in_hand)).named("take");
-    took(take);
+    let take = (*line_waits & (line_done | !*in_hand)).named("take");
     in_hand.next(!start & (take | (*in_hand & !line_done)));
     last.next_if(take, next_last);
     // In the next line, if the present one is finished; after the last line there is none, and the value is not used.
     let place_after = |pairs: u32| if per_line == 1 { place.same(0) } else { after(pairs).low(place_bits) };
     let next_place = by_group(&go, place_after).named("next_place");
     place.next((start | !*in_hand).select(place.same(0), next_place));
-    lines_left.connect(start, lines, take);
+    let waiting_bits = spec.max_outstanding.ilog2() + 1;
+    let any_waiting = waiting(&graph, "lines_waiting", waiting_bits, [start, comes], [take, taken]);
+    line_waits.next(!start & any_waiting & lines_left.connect(start, lines, take));
     // The place in the collector's memory of the line after the one in hand.
     let head = graph.register("head", spec.max_outstanding.ilog2(), 0);
     head.next_if(start | take, start.select(head.same(0), head.plus(1)));
@@ -104,15 +104,18 @@ pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     }
 
     // The window itself, as late as lines arrive, and its pairs from the decided place on.
-    let held = graph.data_register("held", spec.line_bits);
-    held.next_if(take.delay(CYCLES_TO_WORD).named("takes_line"), line);
-    let first_place = place.delay(CYCLES_TO_WORD).named("first_place");
-    let mut aligned = line.concat(held.value()).named("window");
+    let takes_line =
+        wide::steering(take.delay(CYCLES_TO_WORD - 1).named("takes_line_soon"), "takes_line", spec.line_bits);
+    let held = wide::register_if(&takes_line, "held", line);
+    let first_place = place.delay(CYCLES_TO_WORD - 1).named("first_place_soon");
+    let mut aligned = line.concat(held).named("window");
     for bit in (0..place_bits).rev() {
         let step = pair_bits << bit;
         if step < aligned.width() {
-            let shifted = aligned.drop_low(step).extend(aligned.width());
-            aligned = first_place.bit(bit).select(shifted, aligned).named(&format!("aligned_by_{}", 1 << bit));
+            let used = (lanes * pair_bits + step - pair_bits).min(aligned.width());
+            let shifted = aligned.drop_low(step).extend(aligned.width()).low(used);
+            let shifts = wide::steering(first_place.bit(bit), &format!("aligns_by_{}", 1 << bit), used);
+            aligned = wide::select(&shifts, shifted, aligned.low(used)).named(&format!("aligned_by_{}", 1 << bit));
         }
     }
     let aligned = aligned.low(lanes * pair_bits).named("aligned");
@@ -130,7 +133,7 @@ pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     graph.output("targets", targets.delay(RANKS_TO_GROUP - 1).named("targets"));
     graph.output("pairs", aligned.delay(1).named("pairs"));
     graph.output("head", head.value());
-    graph.output("taken", (take & !start).registered("taken"));
+    graph.output("taken", taken);
     let waits = (run & (*in_hand | some_left)).named("waits");
     graph.output("waits_for_input", (waits & !*in_hand).delay(1));
     graph.output("waits_for_output", (waits & *in_hand & !may_enter).delay(1));

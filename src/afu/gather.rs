@@ -1,6 +1,7 @@
 //! Gathers records, in order, into lines (or into words, which are gathered into lines in turn). Each place of a line
 //! has an enable, decoded a cycle ahead, so no record is shifted.
 
+use super::wide;
 use crate::hdl::{Graph, Signal};
 
 /// Cycles from records to the line that they fill: registered beside their enables, in the line.
@@ -46,17 +47,17 @@ pub(super) fn gather<'g>(
     place.next((start | flushes).select(place.same(0), wrapped));
     let went = (!start & (fills | flushes)).registered(&name("went"));
     let comes = (!start & went).registered(&name("comes"));
-    let empties = (start | flushes | fills).named(&name("empties"));
-    let emptied = empties.delay(2).named(&name("emptied"));
+    let empties = (start | flushes | fills).named(&name("empties")).delay(1).named(&name("empties_soon"));
 
-    // Which lane's record enters which place: of the line in hand, or of the next line if its place is behind this one.
+    // Which lane's record enters which place, a cycle before it does: of the line in hand, or of the next line if its
+    // place is behind this one.
     let first = place.delay(1).named(&name("first_place"));
     let hot = if per_line == 1 { graph.constant(1, 1) } else { first.one_hot() };
     let carried = carries.delay(1).named(&name("carried"));
-    let enters: Vec<_> = (0..lanes)
+    let soon: Vec<_> = (0..lanes)
         .map(|lane| {
             let reached = hot.extend(per_line + lanes - lane).append_zeros(lane);
-            reached.gate(carried.bit(lane)).delay(1).named(&name(&format!("enters_{lane}")))
+            reached.gate(carried.bit(lane)).named(&name(&format!("enters_{lane}_soon")))
         })
         .collect();
     let records: Vec<_> = records
@@ -64,16 +65,19 @@ pub(super) fn gather<'g>(
         .zip(0..)
         .map(|(record, lane)| record.delay(1).named(&name(&format!("entering_{lane}"))))
         .collect();
+    let record_bits = records[0].width();
+    let steering = |bit: Signal<'g>, text: String| wide::steering(bit, &name(&text), record_bits);
+    let enters =
+        |lane: u32, place: u32| steering(soon[lane as usize].bit(place), format!("enters_{lane}_place_{place}"));
     // The lanes from `first` on whose record can enter a place (of the next line from `per_line` on).
-    let possible = |place: u32, first: u32| {
-        let lanes = enters.iter().zip(&records).zip(0..).skip(first as usize);
-        lanes.filter(move |(_, lane)| place >= *lane && place - lane < per_line).map(|(lane, _)| lane)
-    };
+    let possible =
+        |place: u32, first: u32| (first..lanes).filter(move |lane| place >= *lane && place - lane < per_line);
     let entering = |place: u32, first: u32, otherwise: Signal<'g>| {
-        possible(place, first).fold(otherwise, |other, (enters, record)| enters.bit(place).select(*record, other))
+        possible(place, first)
+            .fold(otherwise, |other, lane| wide::select(&enters(lane, place), records[lane as usize], other))
     };
-    let any_enters =
-        |place: u32| possible(place, 0).fold(graph.constant(1, 0), |any, (enters, _)| any | enters.bit(place));
+    let any_soon =
+        |place: u32| possible(place, 0).fold(graph.constant(1, 0), |any, lane| any | soon[lane as usize].bit(place));
     let mut line = Vec::new();
     for place in 0..per_line {
         let none = records[0].same(0);
@@ -81,14 +85,17 @@ pub(super) fn gather<'g>(
         let waits = if place + 1 == per_line {
             none
         } else {
-            let filling = graph.register(&name(&format!("filling_{place}")), records[0].width(), 0);
             let overtaken = place + 1 < lanes;
-            let next_line = if overtaken { any_enters(per_line + place) } else { graph.constant(1, 0) };
             // Lane 0's record if no other enters: without an enable nothing is stored.
-            let new = emptied.select(none, entering(place, 1, records[0]));
-            let new = if overtaken { entering(per_line + place, 0, new) } else { new };
-            filling.next_if(next_line | emptied | any_enters(place), new);
-            filling.value()
+            let emptied = steering(empties, format!("empties_{place}"));
+            let new = wide::select(&emptied, none, entering(place, 1, records[0]));
+            let (new, next_line) = if overtaken {
+                (entering(per_line + place, 0, new), any_soon(per_line + place))
+            } else {
+                (new, graph.constant(1, 0))
+            };
+            let stores = steering(next_line | empties | any_soon(place), format!("stores_{place}"));
+            wide::register_if(&stores, &name(&format!("filling_{place}")), new)
         };
         // Only the last places are still being filled when a line leaves.
         line.push(if place + lanes >= per_line { entering(place, 0, waits) } else { waits });

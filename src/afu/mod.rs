@@ -33,6 +33,7 @@ mod spec;
 mod status;
 mod timing;
 mod top;
+mod wide;
 
 pub use crate::record::{COUNT_BITS, JobError};
 pub use control::DRAIN_CYCLES;

@@ -29,28 +29,31 @@ pub(super) fn slice<'g>(
     ready: Signal<'g>,
 ) -> Slice<'g> {
     let at_port = graph.register(&format!("{port}_valid"), 1, 0);
-    let spare = graph.register(&format!("{port}_spare_valid"), 1, 0);
+    // One copy says whether there is room, the other steers the wide fields.
+    let waits = graph.wire(&format!("{port}_waits"), 1);
+    let copies = waits.copies(&format!("{port}_spare_valid"), 2);
+    let (spare, steers) = (copies[0], copies[1]);
     let moves = (!*at_port | ready).named(&format!("{port}_moves"));
-    let behind = (!drops & (*spare | valid)).named(&format!("{port}_next_valid"));
+    let behind = (!drops & (spare | valid)).named(&format!("{port}_next_valid"));
     at_port.next(behind | !moves);
-    spare.next(behind & !moves);
+    waits.drive(behind & !moves);
     let fields = fields
         .iter()
         .map(|(name, value)| {
             let kept = graph.data_register(&format!("{port}_spare_{name}"), value.width());
-            kept.next_if(!*spare, *value);
+            kept.next_if(!steers, *value);
             let shown = graph.data_register(&format!("{port}_{name}"), value.width());
-            shown.next_if(moves, spare.select(*kept, *value));
+            shown.next_if(moves, steers.select(*kept, *value));
             shown.value()
         })
         .collect();
     let of_job = graph.register(&format!("{port}_of_job"), 1, 0);
     of_job.next(!start & (moves | *of_job));
     Slice {
-        has_room: !*spare,
+        has_room: !spare,
         valid: at_port.value(),
         fields,
         accepted: *at_port & ready & *of_job,
-        is_empty: !*at_port & !*spare,
+        is_empty: !*at_port & !spare,
     }
 }

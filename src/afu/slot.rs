@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
-use super::{SCPU_BITS, Spec};
+use super::{SCPU_BITS, Spec, wide};
 
 /// Register ranks before the SCPU: the chosen pair is registered.
 const RANKS_BEFORE: u32 = 1;
@@ -46,7 +46,8 @@ pub(super) fn slot(spec: &Spec, scpu: &Arc<Module>) -> Result<Arc<Module>, Build
     let taken: Vec<_> =
         mine.iter().zip(0..).map(|(mine, lane)| mine.registered(&format!("takes_lane_{lane}"))).collect();
     let chosen = (1..lanes).fold(pairs.low(pair_bits), |chosen, lane| {
-        taken[lane as usize].select(pairs.slice(lane * pair_bits, pair_bits), chosen)
+        let takes = wide::steering(mine[lane as usize], &format!("chooses_lane_{lane}"), pair_bits);
+        wide::select(&takes, pairs.slice(lane * pair_bits, pair_bits), chosen)
     });
     let unit = if spec.config.interval > 1 {
         // The pair stays until the next one. The SCPU gets its valid bit one cycle ahead.
@@ -68,13 +69,14 @@ pub(super) fn slot(spec: &Spec, scpu: &Arc<Module>) -> Result<Arc<Module>, Build
     let answers_next = taken.delay(latency(scpu.latency) - 1).named("answers_soon");
     let leaves = graph.input("leaves_in", lanes);
     graph.output("leaves_out", (leaves | answers_next).registered("leaves"));
-    let answers = answers_next.delay(1).named("answers");
     for lane in 0..lanes {
-        let answers = (answers.bit(lane) & is_used(lane)).named(&format!("answers_lane_{lane}"));
+        let answers = answers_next.bit(lane) & is_used(lane);
+        let answers = wide::steering(answers, &format!("answers_lane_{lane}"), layout.result_bits().max(1));
         let pass = |what: &str, own: Signal<'_>| {
             let name = format!("{what}_{lane}");
             let passing = graph.input(&format!("{name}_in"), own.width());
-            graph.output(&format!("{name}_out"), answers.select(own, passing).delay(1).named(&name));
+            let answers = &answers[..answers.len().min(own.width() as usize)];
+            graph.output(&format!("{name}_out"), wide::select(answers, own, passing).delay(1).named(&name));
         };
         if layout.result_bits() > 0 {
             pass("record", unit.output("record"));

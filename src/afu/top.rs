@@ -59,19 +59,19 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, B
 
     let control_inputs = [job.named(), told_to_control.clone()].concat();
     let control = graph.instance("control", &control, &control_inputs);
-    let begin = control.output("begin_job");
+    let begin = |part: &str| control.output(&format!("begin_{part}"));
     let run = control.output("run");
     let given_up = control.output("given_up");
     let job_epoch = control.output("job_epoch");
 
     let mut credits_inputs = told_to_credits.clone();
-    credits_inputs.extend([("start", begin), ("run", run), ("scpus", in_turn)]);
+    credits_inputs.extend([("start", begin("credits")), ("run", run), ("scpus", in_turn)]);
     let credits = graph.instance("credits", &credits, &credits_inputs);
     may_enter.drive(credits.output("may_enter"));
 
     let mut collector_inputs = reads.named();
     collector_inputs.extend([
-        ("start", begin),
+        ("start", begin("collector")),
         ("run", run),
         ("given_up", given_up),
         ("source", control.output("job_source")),
@@ -85,7 +85,7 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, B
         "feeder",
         &feeder,
         &[
-            ("start", begin),
+            ("start", begin("feeder")),
             ("run", run),
             ("scpus", in_turn),
             ("lines", control.output("lines")),
@@ -118,12 +118,12 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, B
     let leaves = slots.output("leaves_out");
     let lane_outputs: Vec<(String, Signal<'_>)> =
         passing.iter().map(|name| (name.clone(), slots.output(&format!("{name}_out")))).collect();
-    let status = [begin, control.output("job_count"), credits.output("filled"), leaves];
+    let status = [begin("packer"), control.output("job_count"), credits.output("filled"), leaves];
     let packed_results = results.instances(&graph, status, &lane_outputs, accepts);
     let packer = packed_results.packer;
     let mut dispatcher_inputs = writes.named();
     dispatcher_inputs.extend([
-        ("start", begin),
+        ("start", begin("dispatcher")),
         ("run", run),
         ("given_up", given_up),
         ("destination", control.output("job_destination")),

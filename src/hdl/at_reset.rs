@@ -33,9 +33,9 @@ impl Scope<'_> {
             mask & match &node.op {
                 Op::Constant(value) => *value,
                 Op::Parameter(index) => self.module.parameters.get(*index)?.default.into(),
-                Op::Register { reset: Some(value) } => *value,
+                Op::Register { reset: Some(value), .. } => *value,
                 // Reset by what it takes.
-                Op::Register { reset: None } | Op::Delay { .. } | Op::Wire if node.operands.len() == 1 => of(0)?,
+                Op::Register { reset: None, .. } | Op::Delay { .. } | Op::Wire if node.operands.len() == 1 => of(0)?,
                 Op::Not => !of(0)?,
                 Op::And if values().any(|value| value == Some(0)) => 0,
                 Op::And => values().try_fold(mask, |all, value| Some(all & value?))?,

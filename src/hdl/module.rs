@@ -75,6 +75,8 @@ pub enum Op {
     Register {
         /// The value on reset; `None` for a register that is not reset.
         reset: Option<u128>,
+        /// True for one of several equal registers that synthesis must keep.
+        is_copy: bool,
     },
     /// The word read from a memory at the last clock edge, or the last at which the enable was set. Operands: address,
     /// then an enable (1 bit) if it has one.
@@ -350,7 +352,7 @@ impl Module {
     pub(crate) fn is_reset(&self) -> bool {
         self.nodes.iter().any(|n| match n.op {
             Op::Delay { cycles } => is_memory_delay(cycles, n.width),
-            Op::Register { reset } => reset.is_some(),
+            Op::Register { reset, .. } => reset.is_some(),
             _ => false,
         }) || self.instances.iter().any(|i| i.module.is_reset())
     }

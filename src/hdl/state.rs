@@ -71,6 +71,33 @@ impl<'g> Signal<'g> {
         register.next(self);
         register.value()
     }
+
+    #[track_caller]
+    fn copied(self, name: &str, count: u32, reset: Option<u128>) -> Vec<Signal<'g>> {
+        let (graph, place) = (self.graph(), Location::caller());
+        let copy = |index: u32| {
+            let op = Op::Register { reset, is_copy: true };
+            let register =
+                Register(graph.fresh(op, self.width(), vec![], place).named(&format!("{name}_copy_{index}")));
+            register.next(self);
+            register.value()
+        };
+        (0..count).map(copy).collect()
+    }
+
+    /// Equal registers, zero after reset, which take this value at every clock edge. Synthesis neither merges nor
+    /// removes them, so each can be placed beside its loads, where one register would drive too many. An equal register
+    /// that is no copy may become one of them.
+    #[track_caller]
+    pub fn copies(self, name: &str, count: u32) -> Vec<Signal<'g>> {
+        self.copied(name, count, Some(0))
+    }
+
+    /// As [`Signal::copies`], without reset.
+    #[track_caller]
+    pub fn data_copies(self, name: &str, count: u32) -> Vec<Signal<'g>> {
+        self.copied(name, count, None)
+    }
 }
 
 /// A memory under construction.
@@ -171,13 +198,14 @@ impl Graph {
         if width < 128 && reset >> width != 0 {
             self.error(format!("register `{name}`: reset value {reset} does not fit {width} bits"), place);
         }
-        Register(self.fresh(Op::Register { reset: Some(reset) }, width, vec![], place).named(name))
+        Register(self.fresh(Op::Register { reset: Some(reset), is_copy: false }, width, vec![], place).named(name))
     }
 
     /// A register for data, which is not reset.
     #[track_caller]
     pub fn data_register(&self, name: &str, width: u32) -> Register<'_> {
-        Register(self.fresh(Op::Register { reset: None }, width, vec![], Location::caller()).named(name))
+        let op = Op::Register { reset: None, is_copy: false };
+        Register(self.fresh(op, width, vec![], Location::caller()).named(name))
     }
 
     /// A memory of `depth` ≥ 2 words of `width` bits; its addresses have ⌈log2 depth⌉ bits. It is never reset.

@@ -42,7 +42,9 @@ module collector (
     .rd_req_valid(rd_req_valid), .rd_req_address(rd_req_address), .rd_req_tag(rd_req_tag),
     .line_comes(line_comes), .line(line), .answered(), .failed(), .unexpected(unexpected), .idle(idle)
   );
-  (* hierconn *) wire        \dut.rd_req_spare_valid ;
+  (* hierconn *) wire        \dut.rd_req_spare_valid_copy_0 ;
+  (* hierconn *) wire        \dut.rd_req_spare_valid_copy_1 ;
+  (* hierconn *) wire        \dut.lines_to_request_step ;
   (* hierconn *) wire [57:0] \dut.rd_req_spare_address ;
   (* hierconn *) wire [5:0]  \dut.rd_req_spare_tag ;
   (* hierconn *) wire        \dut.rd_req_of_job ;
@@ -88,7 +90,7 @@ module collector (
   // A request that an earlier job abandoned while it was on the port may still be there.
   reg        left;
   wire       asked = rd_req_valid & ~left;
-  wire       spare = \dut.rd_req_spare_valid ;
+  wire       spare = \dut.rd_req_spare_valid_copy_0 ;
   wire [3:0] asks = asked & rd_req_ready ? 4'd1 << rd_req_tag[1:0] : 4'd0;
   wire [3:0] answers = mine ? 4'd1 << rd_rsp_tag[1:0] : 4'd0;
   wire [3:0] on_port = (asked ? 4'd1 << rd_req_tag[1:0] : 4'd0) | (spare ? 4'd1 << \dut.rd_req_spare_tag [1:0] : 4'd0);
@@ -135,6 +137,8 @@ module collector (
     if (begun & ~start) assume (epoch == job_epoch);
   end
 
+  // A request that was made is counted one cycle later.
+  wire [31:0] to_request = \dut.lines_to_request - {31'd0, \dut.lines_to_request_step };
   `include "slots.svh"
 
   // Filled slots: announced, known to be filled, about to be known, and heard in this cycle.
@@ -155,7 +159,7 @@ module collector (
     come_once: assert ((offered & come) == 4'd0 & (offered & coming) == 4'd0 & (come & coming) == 4'd0);
     none_lost: assert ((on_port | waiting | arriving | filled) == slots(head, \dut.reserved - {2'd0, \dut.freed }));
     taken_is_reserved: assert (~\dut.freed | \dut.reserved != 3'd0);
-    asks_while_any: assert (~\dut.may_ask | (\dut.lines_to_request != 32'd0 & \dut.reserved != 3'd4));
+    asks_while_any: assert (~\dut.may_ask | (to_request != 32'd0 & \dut.reserved != 3'd4));
     counted: assert (\dut.outstanding == ones(on_port | waiting | arriving) + {2'd0, \dut.answered });
     leftover_is_right: assert (~rd_req_valid | \dut.rd_req_of_job == ~left);
     awaited_is_right: assert (\dut.awaited == marked & \dut.asked == asks_marked & \dut.answers == answers_marked
@@ -169,7 +173,7 @@ module collector (
     in_order: assert (\dut.next_address == job_source + accepted + {57'd0, asked} + {57'd0, spare});
     address: assert ((~asked | rd_req_address == job_source + accepted)
       & (~spare | \dut.rd_req_spare_address == \dut.next_address - 58'd1));
-    each_once: assert (accepted + {57'd0, asked} + {57'd0, spare} + {26'd0, \dut.lines_to_request } == {26'd0, job_lines});
+    each_once: assert (accepted + {57'd0, asked} + {57'd0, spare} + {26'd0, to_request} == {26'd0, job_lines});
   end
 
   reg        held = 1'b0;
@@ -177,6 +181,9 @@ module collector (
   always @(posedge clk) begin
     held <= rd_req_valid & ~rd_req_ready & ~rst;
     was <= {rd_req_address, rd_req_tag};
+  end
+  always @* if (after_reset & ~rst) begin
+    copy_is_right: assert (\dut.rd_req_spare_valid_copy_1 == spare);
   end
   // Once the job is given up, only the request that stands on the port is left.
   always @* if (over & ~start & ~rst) begin

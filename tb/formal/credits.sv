@@ -31,6 +31,11 @@ module credits (
 
   `include "dut.svh"
   (* hierconn *) wire                       \dut.control.begin_job ;
+  (* hierconn *) wire                       \dut.control.begin_collector ;
+  (* hierconn *) wire                       \dut.control.begin_feeder ;
+  (* hierconn *) wire                       \dut.control.begin_credits ;
+  (* hierconn *) wire                       \dut.control.begin_packer ;
+  (* hierconn *) wire                       \dut.control.begin_dispatcher ;
   (* hierconn *) wire                       \dut.control.given_up ;
   (* hierconn *) wire                       \dut.control.run ;
   (* hierconn *) wire                       \dut.control.running ;
@@ -48,10 +53,10 @@ module credits (
   (* hierconn *) wire [ROOM_BITS-1:0]       \dut.credits.pairs_inside ;
   (* hierconn *) wire [1:0]                 \dut.feeder.entered ;
   (* hierconn *) wire [1:0]                 \dut.slots_leaves_out ;
-  (* hierconn *) wire                       \dut.feeder.take ;
+  (* hierconn *) wire                       \dut.feeder.taken ;
   (* hierconn *) wire                       \dut.collector.line_comes ;
   (* hierconn *) wire [2:0]                 \dut.feeder.lines_waiting ;
-  (* hierconn *) wire                       \dut.feeder.any_lines_waiting ;
+  (* hierconn *) wire                       \dut.feeder.line_waits ;
   (* hierconn *) wire [31:0]                \dut.feeder.lines_left ;
   (* hierconn *) wire                       \dut.feeder.any_lines_left ;
   (* hierconn *) wire                       \dut.feeder.one_lines_left ;
@@ -61,6 +66,7 @@ module credits (
   (* hierconn *) wire [6:0]                 \dut.feeder.turn ;
   (* hierconn *) wire [$clog2(`LINES):0]    \dut.dispatcher.stored ;
   (* hierconn *) wire                       \dut.dispatcher.take ;
+  (* hierconn *) wire                       \dut.dispatcher.line_left ;
 `ifdef PER_LINE
   (* hierconn *) wire [1:0]                 \dut.sieve.group_here ;
   (* hierconn *) wire [1:0]                 \dut.sieve.hits_rank_0 ;
@@ -92,7 +98,6 @@ module credits (
   (* hierconn *) wire                       \dut.packer.went ;
   (* hierconn *) wire                       \dut.packer.comes ;
   (* hierconn *) wire [31:0]                \dut.packer.emerged ;
-  (* hierconn *) wire                       \dut.dispatcher.line_left ;
   wire [2:0]  gathered = 3'd0;
   wire [1:0]  uncounted = 2'd0;
   wire [31:0] emerged = \dut.packer.emerged ;
@@ -124,8 +129,10 @@ module credits (
 
   // Pairs that the feeder has not issued yet.
   wire [ROOM_BITS-1:0] next_room = \dut.credits.room + \dut.credits.room_change ;
-  wire [33:0] in_lines = \dut.feeder.lines_left == 32'd0 ? 34'd0
-    : {1'b0, \dut.feeder.lines_left , 1'b0} - {33'd0, ~\dut.control.last_place };
+  // A line that was taken is counted one cycle later.
+  wire [31:0] lines_left = \dut.feeder.lines_left - {31'd0, \dut.feeder.taken };
+  wire [33:0] in_lines = lines_left == 32'd0 ? 34'd0
+    : {1'b0, lines_left, 1'b0} - {33'd0, ~\dut.control.last_place };
   wire [33:0] to_give = in_lines
     + (\dut.feeder.in_hand ? 34'd1 + {33'd0, \dut.feeder.last } - {33'd0, \dut.feeder.place } : 34'd0);
 
@@ -140,6 +147,7 @@ module credits (
     waits_or_runs: assert (~(\dut.control.run & \dut.control.waits_to_begin )
       & (\dut.control.running | ~(\dut.control.run | \dut.control.waits_to_begin )));
     one_or_other: assert (~(\dut.control.running & \dut.control.draining ));
+    busy_is_right: assert (busy == (\dut.control.running | \dut.control.draining ));
     nothing_runs: assert (~\dut.control.given_up
       | ~(\dut.control.running | \dut.control.run | \dut.control.begin_job ));
     only_in_a_job: assert (\dut.feeder.entered == 2'd0 | (ran[2] & begun));
@@ -153,15 +161,19 @@ module credits (
       | (\dut.control.job_lines == {1'b0, \dut.control.job_count [31:1]} + {31'd0, \dut.control.job_count [0]}
         & \dut.control.last_place == ~\dut.control.job_count [0]));
     takes_a_line: assert (\dut.feeder.lines_waiting <= 3'd4
-      & \dut.feeder.any_lines_waiting == (\dut.feeder.lines_waiting != 3'd0)
-      & (~\dut.feeder.take | \dut.feeder.any_lines_waiting ));
-    sends_a_line: assert (~\dut.dispatcher.take | \dut.dispatcher.stored != 0);
+      & \dut.feeder.line_waits == (\dut.feeder.lines_waiting != {2'd0, \dut.feeder.taken } & lines_left != 32'd0)
+      & (~\dut.feeder.taken | (\dut.feeder.lines_waiting != 3'd0 & \dut.feeder.lines_left != 32'd0)));
+    begins_everywhere: assert ({5{\dut.control.begin_job }} == {\dut.control.begin_collector ,
+      \dut.control.begin_feeder , \dut.control.begin_credits , \dut.control.begin_packer ,
+      \dut.control.begin_dispatcher });
+    sends_a_line: assert ((~\dut.dispatcher.line_left | \dut.dispatcher.stored != 0)
+      & (~\dut.dispatcher.take | \dut.dispatcher.stored != \dut.dispatcher.line_left ));
   end
   always @* if (begun & ~\dut.control.begin_job & ~rst) begin
     turn_is_an_scpu: assert (\dut.feeder.turn < `SCPUS);
-    flags_are_right: assert (\dut.feeder.any_lines_left == (\dut.feeder.lines_left != 32'd0)
-      & \dut.feeder.one_lines_left == (\dut.feeder.lines_left == 32'd1));
-    only_last_is_short: assert (~\dut.feeder.in_hand | \dut.feeder.last | \dut.feeder.lines_left == 32'd0);
+    flags_are_right: assert (\dut.feeder.any_lines_left == (lines_left != 32'd0)
+      & \dut.feeder.one_lines_left == (lines_left == 32'd1));
+    only_last_is_short: assert (~\dut.feeder.in_hand | \dut.feeder.last | lines_left == 32'd0);
     each_once: assert (to_give + {26'd0, inside} + {32'd0, \dut.feeder.entered } + {32'd0, uncounted} + {2'd0, emerged}
       == {2'd0, \dut.control.job_count });
     room_is_seen: assert (~\dut.credits.may_enter | \dut.credits.room >= 8);
@@ -193,7 +205,7 @@ module credits (
   reg flushed;
   always @(posedge clk) flushed <= ~\dut.control.begin_job & (flushed | \dut.packer.flushes );
   wire [ROOM_BITS-1:0] leaving = {1'b0, \dut.dispatcher.stored } + \dut.packer.went + \dut.packer.comes
-    + \dut.packer.line_valid + \dut.dispatcher.line_left ;
+    + \dut.packer.line_valid ;
   always @* if (begun & ~\dut.control.begin_job & ~rst) begin
     last_line_once: assert (~flushed | (emerged == \dut.control.job_count & ~\dut.packer.place ));
     places_add_up: assert ({4'd0, next_room} + inside + {7'd0, \dut.packer.place } + {3'd0, leaving, 1'b0}

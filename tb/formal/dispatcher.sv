@@ -44,7 +44,8 @@ module dispatcher (
   (* hierconn *) wire [$clog2(`LINES)-1:0] \dut.head ;
   (* hierconn *) wire [$clog2(`LINES)-1:0] \dut.tail ;
   (* hierconn *) wire        \dut.ready ;
-  (* hierconn *) wire        \dut.take ;
+  (* hierconn *) wire        \dut.line_left ;
+  (* hierconn *) wire        \dut.goes ;
   (* hierconn *) wire        \dut.may_send ;
   (* hierconn *) wire        \dut.read_valid ;
   (* hierconn *) wire [2:0]  \dut.reserved ;
@@ -59,12 +60,6 @@ module dispatcher (
   (* hierconn *) wire        \dut.accepted ;
   (* hierconn *) wire [1:0]  \dut.accepted_slot ;
   (* hierconn *) wire [3:0]  \dut.asked ;
-  (* hierconn *) wire        \dut.line_in_word ;
-  (* hierconn *) wire [57:0] \dut.word_address ;
-  (* hierconn *) wire [5:0]  \dut.word_tag ;
-  (* hierconn *) wire        \dut.wr_req_spare_valid ;
-  (* hierconn *) wire [57:0] \dut.wr_req_spare_address ;
-  (* hierconn *) wire [5:0]  \dut.wr_req_spare_tag ;
   (* hierconn *) wire        \dut.wr_req_of_job ;
   (* hierconn *) wire [1:0]  \dut.arrived_age ;
   (* hierconn *) wire [1:0]  \dut.next_slot ;
@@ -92,16 +87,13 @@ module dispatcher (
   // A request that an earlier job abandoned while it was on the port may still be there.
   reg        left;
   wire       asked = wr_req_valid & ~left;
-  wire       spare = \dut.wr_req_spare_valid ;
-  wire       word = \dut.line_in_word ;
   wire [3:0] asks = asked & wr_req_ready ? 4'd1 << wr_req_tag[1:0] : 4'd0;
   wire [3:0] answers = mine ? 4'd1 << wr_rsp_tag[1:0] : 4'd0;
-  wire [3:0] on_port = (asked ? 4'd1 << wr_req_tag[1:0] : 4'd0) | (spare ? 4'd1 << \dut.wr_req_spare_tag [1:0] : 4'd0)
-    | (word ? 4'd1 << \dut.word_tag [1:0] : 4'd0);
+  wire [3:0] on_port = asked ? 4'd1 << wr_req_tag[1:0] : 4'd0;
   wire [3:0] arriving = (waited & answers_heard) | (marked & answers_marked);
   wire [3:0] heard = \dut.is_current ? 4'd1 << \dut.response_slot : 4'd0;
   reg        surprised;
-  wire       nothing = (on_port | waiting | arriving) == 4'd0 & ~wr_req_valid & ~\dut.answered ;
+  wire       nothing = (on_port | waiting | arriving) == 4'd0 & ~wr_req_valid & ~\dut.answered & ~\dut.goes ;
   reg        was_nothing;
   reg        started = 1'b0;
   always @(posedge clk) begin
@@ -133,22 +125,22 @@ module dispatcher (
     assume (~start | ~given_up);
     assume (~start | ~ran);
     if (begun & ~start) assume (epoch == job_epoch);
-    assume (~line_valid | (begun & ~start & (\dut.stored != LINES | \dut.take )));
+    assume (~line_valid | (begun & ~start & (\dut.stored != LINES | \dut.line_left )));
   end
 
+  // A line that has left the memory is still counted for one cycle.
+  wire [$clog2(`LINES):0] stored = \dut.stored - \dut.line_left ;
   `include "slots.svh"
   wire [3:0] come = aged(\dut.came , \dut.oldest );
   wire [3:0] coming = aged(\dut.answered ? 4'd1 << \dut.arrived_age : 4'd0, \dut.oldest );
   wire [3:0] busy = on_port | waiting | arriving | come | coming;
   always @* if (begun & ~start & ~given_up & ~over & ~rst & after_reset) begin
-    fifo_fits: assert (\dut.stored <= LINES);
-    fifo_counts: assert (\dut.tail - \dut.head == \dut.stored [$clog2(`LINES)-1:0]);
-    ready_is_right: assert (\dut.ready == (\dut.stored != 0));
+    fifo_fits: assert (\dut.stored <= LINES & (~\dut.line_left | \dut.stored != 0));
+    fifo_counts: assert (\dut.tail - \dut.head == stored[$clog2(`LINES)-1:0]);
+    ready_is_right: assert (\dut.ready == (stored != 0));
     tag_free: assert ((on_port & (waiting | arriving)) == 4'd0 & (waiting & arriving) == 4'd0
       & (~asked | wr_req_tag[5:2] == job_epoch));
-    tags_in_order: assert ((~word | \dut.word_tag == {job_epoch, \dut.next_slot - 2'd1})
-      & (~spare | (wr_req_valid & \dut.wr_req_spare_tag == {job_epoch, \dut.next_slot - 2'd1 - {1'b0, word}}))
-      & (~asked | wr_req_tag[1:0] == \dut.next_slot - 2'd1 - {1'b0, word} - {1'b0, spare}));
+    tags_in_order: assert (~asked | wr_req_tag == {job_epoch, \dut.next_slot - 2'd1});
     never_more: assert (\dut.reserved <= 3'd4);
     slots_in_order: assert (\dut.next_slot - \dut.oldest == \dut.reserved [1:0]);
     slots_are_right: assert (busy == slots(\dut.oldest , \dut.reserved ));
@@ -162,10 +154,8 @@ module dispatcher (
     surprise_is_told: assert (unexpected == surprised);
     idle_is_right: assert (started | idle == was_nothing);
     sends_a_free_slot: assert (~\dut.may_send | \dut.reserved != 3'd4);
-    in_order: assert (\dut.next_address == job_destination + accepted + {57'd0, asked} + {57'd0, spare} + {57'd0, word});
-    address: assert ((~asked | wr_req_address == job_destination + accepted)
-      & (~spare | \dut.wr_req_spare_address == job_destination + accepted + {57'd0, asked})
-      & (~word | \dut.word_address == \dut.next_address - 58'd1));
+    in_order: assert (\dut.next_address == job_destination + accepted + {57'd0, asked});
+    address: assert (~asked | wr_req_address == job_destination + accepted);
   end
 
   reg        held = 1'b0;
@@ -176,7 +166,7 @@ module dispatcher (
   end
   // Once the job is given up, only the request that stands on the port is left.
   always @* if (over & ~start & ~rst) begin
-    nothing_follows: assert (~spare & ~word & ~\dut.may_send & (~wr_req_valid | held));
+    nothing_follows: assert (~\dut.may_send & (~wr_req_valid | held));
   end
   always @* if (held & ~rst) begin
     stable: assert (wr_req_valid & {wr_req_address, wr_req_tag, wr_req_data} == was);

@@ -110,7 +110,7 @@ const FAULTS: [Planted; 8] = [
     ),
     ("contact_afu_packer.v", "entering_0 <= ", Controller::LanesSwapped as u32, "record_1"),
     ("contact_afu_packer.v", "entering_1 <= ", Controller::LanesSwapped as u32, "record_0"),
-    ("contact_afu_dispatcher.v", "wire is_idle = ", Controller::DoneEarly as u32, "~wr_req_valid"),
+    ("contact_afu_dispatcher.v", "idle <= ~|outstanding", Controller::DoneEarly as u32, "~wr_req_valid"),
     ("contact_afu_collector.v", "is_current <= rd_rsp_valid", Controller::EpochIgnored as u32, "rd_rsp_valid"),
     ("contact_afu_credits.v", "may_enter <= run", Controller::CreditsIgnored as u32, "run"),
     ("contact_afu_packer.v", "wire invalid_here_1 = ", Controller::HalfCounted as u32, "1'b0"),

@@ -13,7 +13,7 @@ use contact_afu::query::Query;
 use std::sync::Arc;
 
 use contact_afu::config::{Config, Profile, Shell};
-use contact_afu::hdl::{DelayModel, Module};
+use contact_afu::hdl::{DelayModel, Graph, Module, Signal};
 use contact_afu::operator::{Operator, Values};
 use contact_afu::pairs::{self, Set};
 use contact_afu::query::PairRecord;
@@ -104,6 +104,30 @@ fn every_profile_in_four_states() {
     for profile in ["paper", "wide", "exact"] {
         scpu(profile, "hit,depth,normal,position", &[As::Printed], &mixed(100));
     }
+}
+
+/// Copies of a register survive synthesis, and equal registers that are no copies become one.
+#[test]
+fn copies_of_a_register_are_kept() {
+    let registers = |copies: bool| {
+        let graph = Graph::new("steered");
+        let (value, enable) = (graph.input("value", 8), graph.input("enable", 1));
+        let steering = match copies {
+            true => enable.copies("enable", 2),
+            false => vec![enable.registered("enable_0"), enable.registered("enable_1")],
+        };
+        let halves = steering.iter().zip([0, 4]).map(|(enable, low)| {
+            let half = graph.data_register(&format!("half_{low}"), 4);
+            half.next_if(*enable, value.slice(low, 4));
+            half.value()
+        });
+        graph.output("halves", Signal::join(&halves.collect::<Vec<_>>()));
+        let module = graph.finish().expect("a sound module");
+        let netlist = std::fs::read_to_string(&verilog(&module, As::Ecp5).files[0]).expect("the netlist");
+        netlist.matches("TRELLIS_FF #(").count()
+    };
+    assert_eq!(registers(true), 8 + 2);
+    assert_eq!(registers(false), 8 + 1);
 }
 
 /// The comparison can fail: an inverted bit and an undriven one are detected.

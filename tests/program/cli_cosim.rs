@@ -249,7 +249,11 @@ fn a_job_that_does_not_finish_is_exit_1_and_says_what_it_waits_for() {
     let file = room.path().join("rtl/contact_afu_dispatcher.v");
     let text = fs::read_to_string(&file).expect("written");
     // Lines pile up, because no write is ever requested.
-    let faulty = text.replacen("wr_req_valid <= wr_req_next_valid |", "wr_req_valid <= 1'b0 & wr_req_next_valid |", 1);
+    let faulty = text.replacen(
+        "wr_req_valid <= (goes & ~drops_requests) |",
+        "wr_req_valid <= 1'b0 & (goes & ~drops_requests) |",
+        1,
+    );
     assert_ne!(text, faulty, "the place to break is there:\n{text}");
     fs::write(&file, faulty).expect("written");
 

@@ -333,8 +333,8 @@ fn a_spoilt_shell_is_found_out() {
         ("afu_top.v", "wire power_on = ~reset_n;", "wire power_on = 1'b0;", "a valid is unknown"),
         (
             "spl2_transmit.v",
-            "epoch <= power_on ? 6'd0 : next_epoch;",
-            "epoch <= next_epoch;",
+            "wire [5:0] known_epoch = power_on ? 6'd0 : next_epoch;",
+            "wire [5:0] known_epoch = next_epoch;",
             "a read's header is unknown",
         ),
         ("contact_afu_packer.v", " line <= {", " line <= 512'dx ^ {", "a write's data is unknown"),

@@ -143,7 +143,7 @@ impl Elements {
 
         let mut resets = Vec::new();
         for &id in self.always.iter().chain(&self.enabled) {
-            if let (Op::Register { reset: Some(value) }, Link::Own) = (&flat.node(id).op, &flat.links[id]) {
+            if let (Op::Register { reset: Some(value), .. }, Link::Own) = (&flat.node(id).op, &flat.links[id]) {
                 let part = |index: usize| if index < 2 { (value >> (64 * index)) as u64 } else { 0 };
                 resets.extend(at(id).into_iter().enumerate().map(|(index, place)| (place, part(index))));
             }

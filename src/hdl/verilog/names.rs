@@ -114,7 +114,7 @@ impl Uses {
             uses.count[id.index()] += 1;
         }
         for node in &module.nodes {
-            if let (Op::Register { reset: None }, [next]) = (&node.op, &node.operands[..]) {
+            if let (Op::Register { reset: None, is_copy: false }, [next]) = (&node.op, &node.operands[..]) {
                 uses.taken[next.index()] += 1;
             }
             let mut seen = HashSet::new();

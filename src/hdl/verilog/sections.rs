@@ -27,6 +27,14 @@ pub(super) const fn block_style(memories: Memories) -> &'static str {
     }
 }
 
+/// What keeps a copy of a register: in Yosys (on the clocked block too) and Vivado, and in Quartus.
+const COPY_ATTRIBUTES: &str = "(* keep = \"true\", dont_merge *) ";
+const KEEP: &str = "(* keep = \"true\" *) ";
+
+fn is_copy(module: &Module, id: NodeId) -> bool {
+    matches!(module.node(id).op, Op::Register { is_copy: true, .. })
+}
+
 pub(super) struct Sections<'a> {
     pub(super) module: &'a Module,
     pub(super) style: &'a Style,
@@ -143,7 +151,8 @@ impl<'a> Sections<'a> {
             Some(DelayKind::Register) | None => {}
         }
         if !self.text.names.is_port[id.index()] {
-            out += &format!("  reg {}{name};\n", range(node.width));
+            let kept = if is_copy(self.module, id) { COPY_ATTRIBUTES } else { "" };
+            out += &format!("  {kept}reg {}{name};\n", range(node.width));
         }
         out
     }
@@ -171,8 +180,14 @@ impl<'a> Sections<'a> {
         out
     }
 
-    /// Clocked blocks: one for data, one for what is reset.
+    /// Clocked blocks: one for data, one for what is reset; and the same for copies, which synthesis is to keep.
     fn clocked(&self, ids: &[NodeId]) -> String {
+        let (copies, others): (Vec<_>, Vec<_>) = ids.iter().copied().partition(|id| is_copy(self.module, *id));
+        let copies = self.clocked_alike(&copies, false).replace("  always ", &format!("  {KEEP}always "));
+        self.clocked_alike(&others, true) + &copies
+    }
+
+    fn clocked_alike(&self, ids: &[NodeId], with_memories: bool) -> String {
         let (mut data, mut cases) = (String::new(), Cases::new(self.module, self.text));
         let (mut reset, mut running) = (String::new(), String::new());
         for id in ids {
@@ -189,8 +204,8 @@ impl<'a> Sections<'a> {
                     let memory = &self.module.memories[*memory].name;
                     data += &format!("    {}{name} <= {memory}[{}];\n", enable(), operand(0));
                 }
-                Op::Register { reset: None } if cases.take(name, node) => {}
-                Op::Register { reset: value } => {
+                Op::Register { reset: None, is_copy: false } if cases.take(name, node) => {}
+                Op::Register { reset: value, .. } => {
                     let line = format!("{}{name} <= {};\n", enable(), operand(0));
                     match value {
                         Some(value) => {
@@ -203,7 +218,7 @@ impl<'a> Sections<'a> {
                 _ => {}
             }
         }
-        for memory in &self.module.memories {
+        for memory in self.module.memories.iter().filter(|_| with_memories) {
             if let Some([enable, address, word]) = memory.write {
                 data += &format!(
                     "    if ({}) {}[{}] <= {};\n",

@@ -7,7 +7,7 @@ const CONTROL: Rows = &[(
     "a job begins with the last one's error",
     "error <= accept ? (has_unknown_mode ? 4'd5 : 4'd0) : ended;",
     "error <= ended;",
-    12,
+    13,
     "runs_without_error",
 )];
 
@@ -76,8 +76,8 @@ const JOB_PACKER: Rows = &[
     ("a last line without hits", "wire flushes = all_out & place & ", "wire flushes = all_out & ", 38, "only_hits"),
     (
         "the last line keeps the one before",
-        "entering_1 : enters_0[1] ? entering_0 : 32'd0,",
-        "entering_1 : enters_0[1] ? entering_0 : filling_0,",
+        "entering_1 : enters_0_place_1 ? entering_0 : 32'd0,",
+        "entering_1 : enters_0_place_1 ? entering_0 : filling_0,",
         38,
         "rest_is_zero",
     ),

@@ -4,13 +4,13 @@ use super::Rows;
 
 const CONTROL: Rows = &[
     ("gives up as it completes", "busy & expired & ~completes;", "busy & expired;", 24, "complete_is_good"),
-    ("goes on while it drains", "(running & ~completes & ~failing)", "(running & ~completes)", 3, "one_or_other"),
+    ("goes on while it drains", "(running & ~completes & ~failing)", "(running & ~completes)", 4, "one_or_other"),
     ("begins while it runs", "wire accept = start & ~busy;", "wire accept = start & ~draining;", 10, "begins_rested"),
     ("runs before it begins", "run <= (run | begin_job)", "run <= (run | accept | waits_to_begin)", 3, "begins_first"),
     (
         "a job begins again",
-        "begin_job <= (accept | ",
-        "begin_job <= ((start & running) | accept | ",
+        "wire begins = (accept | ",
+        "wire begins = ((start & running) | accept | ",
         13,
         "begins_empty",
     ),
@@ -28,8 +28,28 @@ const CONTROL: Rows = &[
         9,
         "waits_or_runs",
     ),
+    (
+        "a part is not told of the beginning",
+        "begin_job_copy_1 <= begins;",
+        "begin_job_copy_1 <= 1'b0;",
+        9,
+        "begins_everywhere",
+    ),
+    (
+        "is not busy with a job that it refuses",
+        "busy <= accept | (busy",
+        "busy <= takes_job | (busy",
+        2,
+        "busy_is_right",
+    ),
     ("ends with pairs inside", "draining & stopped & none_inside_heard & ", "draining & ", 20, "idle_is_empty"),
-    ("runs on when the watchdog expires", "expired ? 4'd4", "1'b0 ? 4'd4", 17, "nothing_runs"),
+    (
+        "runs on when the watchdog expires",
+        "fails <= (running & (abort_job | read_failed | write_failed)) | expires;",
+        "fails <= running & (abort_job | read_failed | write_failed);",
+        17,
+        "nothing_runs",
+    ),
     (
         "half a line is none",
         "rounded_count = {1'b0, count} + 33'd1;",
@@ -41,16 +61,16 @@ const CONTROL: Rows = &[
 
 const FEEDER: Rows = &[
     ("pairs enter after an abort", "wire go_0 = may_go_on & ", "wire go_0 = ", 20, "only_in_a_job"),
-    (
-        "takes a line that is not there",
-        "wire line_waits = any_lines_waiting & ",
-        "wire line_waits = ",
-        9,
-        "takes_a_line",
-    ),
+    ("takes a line that is not there", "wire take = line_waits & ", "wire take = ", 9, "takes_a_line"),
     ("a turn too many", "(turn_plus_2 >= {1'b0, scpus})", "(turn_plus_2 > {1'b0, scpus})", 21, "turn_is_an_scpu"),
     ("two pairs count as one", "entered <= go_1 ? 2'd2 : ", "entered <= go_1 ? 2'd1 : ", 20, "each_once"),
-    ("counts no line that it takes", "if (start_or_take) lines_left", "if (start) lines_left", 19, "flags_are_right"),
+    (
+        "counts no line that it takes",
+        "if (start | lines_left_step) lines_left",
+        "if (start) lines_left",
+        20,
+        "flags_are_right",
+    ),
     ("every line is short", "one_lines_left ? last_place : 1'b1", "last_place", 19, "only_last_is_short"),
 ];
 
@@ -101,7 +121,7 @@ const STORE: Rows = &[
         29,
         "fits",
     ),
-    ("sends a line that has left", "(stored[0] & ~take)", "stored[0]", 30, "sends_a_line"),
+    ("sends a line that has left", "| (take      ?", "| (1'b0 ?", 30, "sends_a_line"),
 ];
 
 const SLOT: Rows = &[(
@@ -127,11 +147,11 @@ const PORT_CONTROL: Rows = &[
         34,
         "wr_in_job",
     ),
-    ("done and still running", "(running & ~completes & ~failing)", "(running & ~failing)", 13, "done_known"),
+    ("done and still busy", "(busy & ~completes & ~drained)", "(busy & ~drained)", 13, "done_known"),
     (
         "a response that nobody waits for is no error",
-        "((read_unexpected_heard | write_unexpected_heard) & ~begin_job) ? 4'd7",
-        "1'b0 ? 4'd7",
+        "wire is_unexpected = unexpected_heard & ~begin_job;",
+        "wire is_unexpected = 1'b0;",
         40,
         "surprise_is_told",
     ),
@@ -153,11 +173,11 @@ const PORT_COLLECTOR: Rows = &[
 
 const PORT_DISPATCHER: Rows = &[
     ("every other line is written", "(next_address + 58'd1)", "(next_address + 58'd2)", 35, "wr_in_order"),
-    ("all writes have one tag", "word_tag <= {epoch, next_slot};", "word_tag <= {epoch, 2'd0};", 35, "wr_tag_free"),
+    ("all writes have one tag", "wr_req_tag <= {epoch, next_slot};", "wr_req_tag <= {epoch, 2'd0};", 35, "wr_tag_free"),
     (
         "write requests do not wait",
-        "wr_req_valid <= wr_req_next_valid | ~wr_req_moves;",
-        "wr_req_valid <= wr_req_next_valid;",
+        "wr_req_valid <= (goes & ~drops_requests) | ~wr_req_moves;",
+        "wr_req_valid <= goes & ~drops_requests;",
         33,
         "wr_stable",
     ),

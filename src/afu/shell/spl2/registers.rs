@@ -54,8 +54,9 @@ pub(super) fn registers(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let take_scratch = graph.wire("scratch_granted", 1);
     let identity_due = flag(&graph, "identity_due", dsm_commit, clear | (take_identity & !dsm_commit));
     let scratch_due = flag(&graph, "scratch_due", scratch_written, clear | (take_scratch & !scratch_written));
-    let due = graph.data_register("due", 1);
-    due.next(dsm_valid & (identity_due | scratch_due) & !granted & !power_on);
+    let is_due = (dsm_valid & (identity_due | scratch_due) & !granted & !power_on).named("is_due");
+    // One copy asks for a turn, the other chooses the line among those of the shell.
+    let due = is_due.data_copies("due", 2);
     // The granted line was chosen one cycle before.
     let was_identity = identity_due.delay(1).named("was_identity");
     take_identity.drive(granted & was_identity);
@@ -78,7 +79,8 @@ pub(super) fn registers(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     graph.output("context_line", context_line);
     graph.output("context_valid", context_valid);
     graph.output("context_written", context_commit);
-    graph.output("wr_valid", due.value());
+    graph.output("wr_valid", due[0]);
+    graph.output("wr_chosen", due[1]);
     graph.output("wr_address", dsm_page_line(dsm_line, number));
     graph.output("wr_line", identity_due.select(identity, scratch).named("line"));
     graph.finish()

@@ -46,8 +46,8 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
 
     // The states of the sequence, in order. No context is known. The context is being read. The control memory is
     // polled for a job. The job's lines are counted, and then compared with those of the buffers. The job is started if
-    // there are enough lines. The core works, while the control memory is polled for an abort. DSM line 4, DSM line 5,
-    // the fence and the status are written.
+    // there are enough lines: a cycle later the core is told to. The core works, while the control memory is polled for
+    // an abort. DSM line 4, DSM line 5, the fence and the status are written.
     let state = |name: &str| graph.register(name, 1, 0);
     let idle = graph.register("at_idle", 1, 1);
     let [context, poll, measure, compare, begin, run] =
@@ -139,7 +139,7 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     // The number of lines of hits is not known in advance; the core keeps to the available room.
     let only_hits = spec.config.results == Results::Hits;
     let fits = if only_hits { source_fits } else { (source_fits & destination_fits).named("fits") };
-    let start = (at_start & fits).named("start");
+    let start = (at_start & fits).registered("start_job");
     let refused = graph.register("refused", 1, 0);
     let refuses = (at_start & !fits).named("refuses");
     refused.next(refuses | (*refused & !at_start));
@@ -157,55 +157,64 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     };
     let (first_read, first_write) = (first(core_read, "read"), first(core_write, "write"));
 
-    // The lines written at the end.
+    // The lines written at the end: each field has registers that show it in the state in which its line is written.
+    let [to_latency, to_performance, to_status] =
+        ["to_latency", "to_performance", "to_status"].map(|name| graph.wire(name, 1));
+    let ran = (!*refused).named("ran");
+    let shows_latency = shows("latency", to_latency);
+    let shows_sequence = shows("sequence", to_performance);
     let latency_line = map::line(
         &graph,
         spec.line_bits,
         &[
-            (latency::FIRST_READ, first_read),
-            (latency::FIRST_WRITE, first_write),
-            (latency::SEQUENCE, job_sequence.value()),
+            (latency::FIRST_READ, first_read.gate(shows_latency)),
+            (latency::FIRST_WRITE, first_write.gate(shows_latency)),
+            (latency::SEQUENCE, job_sequence.gate(shows_latency)),
         ],
-    )
-    .named("latency_line");
-    let ran = (!*refused).named("ran");
+    );
+    let cycles = |index: usize, name: &str| core_cycles[index].gate(shows(name, to_performance & ran));
     let performance_line = map::line(
         &graph,
         spec.line_bits,
         &[
-            (performance::BUSY, core_cycles[0].gate(ran)),
-            (performance::INPUT, core_cycles[1].gate(ran)),
-            (performance::OUTPUT, core_cycles[2].gate(ran)),
-            (performance::SEQUENCE, job_sequence.value()),
+            (performance::BUSY, cycles(0, "busy")),
+            (performance::INPUT, cycles(1, "input")),
+            (performance::OUTPUT, cycles(2, "output")),
+            (performance::SEQUENCE, job_sequence.gate(shows_sequence)),
         ],
-    )
-    .named("performance_line");
+    );
+    let (shows_status, shows_identity) = (shows("status", to_status), shows("identity", to_status));
+    let shows_results = shows("results", to_status & ran);
+    let shows_refusal = shows("refusal", to_status & *refused);
     let no_room = constant(JobError::BITS, JobError::Room.code().into());
+    let first_invalid = core_words[2].gate(shows_results) | shows_refusal.repeat(COUNT_BITS);
     let status_line = map::line(
         &graph,
         spec.line_bits,
         &[
-            (status::DONE, constant(1, 1)),
-            (status::ERROR, ran.select(core_error, no_room)),
-            (status::SEQUENCE, job_sequence.value()),
-            (status::CONTACTS, core_words[0].gate(ran)),
-            (status::INVALID, core_words[1].gate(ran)),
-            (status::FIRST_INVALID, core_words[2] | (*refused).repeat(COUNT_BITS)),
-            (status::VERSION, constant(32, map::VERSION.into())),
-            (status::CAPABILITY, capability),
-            (status::AFU_ID, constant(128, map::AFU_ID)),
+            (status::DONE, shows_status),
+            (status::ERROR, core_error.gate(shows_results) | no_room.gate(shows_refusal)),
+            (status::SEQUENCE, job_sequence.gate(shows_status)),
+            (status::CONTACTS, core_words[0].gate(shows_results)),
+            (status::INVALID, core_words[1].gate(shows_results)),
+            (status::FIRST_INVALID, first_invalid),
+            (status::VERSION, constant(32, map::VERSION.into()).gate(shows_status)),
+            (status::CAPABILITY, capability.gate(shows_identity)),
+            (status::AFU_ID, constant(128, map::AFU_ID).gate(shows_identity)),
         ],
-    )
-    .named("status_line");
+    );
     let dsm = |line: u32| dsm_page_line(dsm_line, constant(6, line.into()));
     let status_address = context_line.plus(map::STATUS_LINE.into());
     let to_dsm = (at_latency | at_performance).named("to_dsm");
+    let shows_dsm = shows("dsm", to_latency | to_performance);
     let dsm_address = at_latency.select(dsm(map::LATENCY_LINE), dsm(map::PERFORMANCE_LINE));
-    let dsm_data = at_latency.select(latency_line, performance_line);
     // Without a DSM there are no counters. A fence might never complete if the core gave up on a write's response.
     let gave_up = core_error.is(JobError::Watchdog.code().into()).named("gave_up");
     let fences = (at_fence & !(gave_up & ran)).named("fences");
     let written = (write_granted | (to_dsm & !dsm_valid) | (at_fence & !fences)).named("written");
+    to_latency.drive(refuses | (at_run & core_done) | (at_latency & !written));
+    to_performance.drive((at_latency & written) | (at_performance & !written));
+    to_status.drive((at_fence & written) | (at_status & !written));
 
     // The transitions between states.
     idle.next(*idle & !context_valid);
@@ -215,10 +224,10 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     compare.next(*measure);
     begin.next(*compare);
     run.next(start | (at_run & !core_done));
-    latencies.next(refuses | (at_run & core_done) | (at_latency & !written));
-    counters.next((at_latency & written) | (at_performance & !written));
+    latencies.next(to_latency);
+    counters.next(to_performance);
     fence.next((at_performance & written) | (at_fence & !written));
-    report.next((at_fence & written) | (at_status & !written));
+    report.next(to_status);
 
     // The write of a state is at the port one cycle after the state begins.
     let writes = graph.register("writes", 1, 0);
@@ -239,9 +248,14 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     graph.output("wr_valid", writes.value());
     graph.output("wr_fence", at_fence.delay(1));
     graph.output("wr_virtual", (!to_dsm).delay(1));
-    graph.output("wr_address", to_dsm.select(dsm_address, status_address).delay(1));
-    graph.output("wr_data", to_dsm.select(dsm_data, status_line).named("written_line").delay(1));
+    graph.output("wr_address", shows_dsm.select(dsm_address, status_address).delay(1));
+    graph.output("wr_data", (latency_line | performance_line | status_line).delay(1));
     graph.finish()
+}
+
+/// A register that shows fields of a line from the next cycle on.
+fn shows<'g>(name: &str, state: Signal<'g>) -> Signal<'g> {
+    state.data_copies(&format!("shows_{name}"), 1)[0]
 }
 
 #[cfg(test)]

@@ -74,14 +74,14 @@ pub(super) fn afu_top(spec: &Spec, core: &Arc<Module>) -> Result<Arc<Module>, Bu
     let sequence = graph.instance("sequencer", &sequence::sequence(spec)?, &sequence_inputs);
     start.drive(sequence.output("start"));
 
-    let epoch = wire("epoch", words::SHELL_EPOCH_BITS);
+    let [read_epoch, write_epoch] = ["read_epoch", "write_epoch"].map(|name| wire(name, words::SHELL_EPOCH_BITS));
     let core_epoch = wire("core_epoch", EPOCH_BITS);
     let acknowledge = graph.instance(
         "acknowledge",
         &acknowledge::acknowledge(spec)?,
         &[
             ("start", start),
-            ("epoch", epoch),
+            ("epoch", write_epoch),
             ("valid_0", spl.spl_rx_wr_valid0),
             ("mdata_0", mdata0),
             ("valid_1", spl.spl_rx_wr_valid1),
@@ -89,7 +89,7 @@ pub(super) fn afu_top(spec: &Spec, core: &Arc<Module>) -> Result<Arc<Module>, Bu
         ],
     );
     // A response is compared with the epoch before it is passed to the core.
-    let core_answered = (rd_valid & is_core_s(mdata0, epoch, slot_bits)).delay(1).named("core_answered");
+    let core_answered = (rd_valid & is_core_s(mdata0, read_epoch, slot_bits)).delay(1).named("core_answered");
     let (rd_ready, wr_ready) = (wire("core_rd_ready", 1), wire("core_wr_ready", 1));
     let never = graph.constant(1, 0);
     let job = JobInputs::of(spec).map(|port| match port.name {
@@ -140,6 +140,7 @@ pub(super) fn afu_top(spec: &Spec, core: &Arc<Module>) -> Result<Arc<Module>, Bu
             ("core_wr_tag", writes.wr_req_tag),
             ("core_wr_data", writes.wr_req_data),
             ("register_wr_valid", registers.output("wr_valid")),
+            ("register_wr_chosen", registers.output("wr_chosen")),
             ("register_wr_address", registers.output("wr_address")),
             ("register_wr_data", registers.output("wr_line")),
             ("end_wr_valid", sequence.output("wr_valid")),
@@ -153,7 +154,8 @@ pub(super) fn afu_top(spec: &Spec, core: &Arc<Module>) -> Result<Arc<Module>, Bu
     end_granted.drive(transmit.output("end_wr_granted"));
     own_read_granted.drive(transmit.output("own_rd_granted"));
     read_number.drive(transmit.output("read_number"));
-    epoch.drive(transmit.output("epoch"));
+    read_epoch.drive(transmit.output("read_epoch"));
+    write_epoch.drive(transmit.output("write_epoch"));
     core_epoch.drive(transmit.output("core_epoch"));
     rd_ready.drive(transmit.output("core_rd_ready"));
     wr_ready.drive(transmit.output("core_wr_ready"));

@@ -10,7 +10,7 @@ use std::sync::Arc;
 use crate::hdl::{BuildErrors, Graph, Module, Register, Signal};
 
 use super::words::{self, NUMBER_BITS, Request, SHELL_EPOCH_BITS, TX_HEADER_BITS};
-use crate::afu::{ADDRESS_BITS, EPOCH_BITS, Spec};
+use crate::afu::{ADDRESS_BITS, EPOCH_BITS, Spec, wide};
 
 /// Builds the module `spl2_transmit`.
 pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
@@ -26,7 +26,10 @@ pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
 
     let epoch = graph.data_register("epoch", SHELL_EPOCH_BITS);
     let next_epoch = (epoch.value() + start.extend(SHELL_EPOCH_BITS)).named("next_epoch");
-    epoch.next(next_epoch.gate(!power_on));
+    let known_epoch = next_epoch.gate(!power_on).named("known_epoch");
+    epoch.next(known_epoch);
+    // Responses are compared with copies beside them.
+    let epochs = known_epoch.data_copies("epoch", 2);
 
     // Reads. The shell's few reads come first.
     let core_read = graph.input("core_rd_valid", 1);
@@ -35,10 +38,14 @@ pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let own_read = graph.input("own_rd_valid", 1);
     let own_read_address = graph.input("own_rd_address", ADDRESS_BITS);
     let reads = Turns::new(&graph, "rd", rd_almostfull);
-    let own_read_granted = (own_read & reads.own).named("own_rd_granted");
-    reads.connect(own_read, discard, power_on);
+    // The shell is told of a grant one cycle later. Until then its request is still there, and has no turn.
+    let told_of_read = graph.data_register("own_rd_granted", 1);
+    let own_read_granted = (own_read & reads.own).named("grants_own_rd");
+    told_of_read.next(own_read_granted);
+    reads.connect(own_read & !own_read_granted & !*told_of_read, discard, power_on);
     let core_read_ready = reads.core;
     let read_number = number(&graph, "read_number", own_read_granted, power_on);
+    let granted_number = read_number.delay(1).named("granted_number");
     let constant = |width: u32, value: u128| graph.constant(width, value);
     let read_header = words::header(
         &graph,
@@ -62,6 +69,7 @@ pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let core_write_tag = graph.input("core_wr_tag", EPOCH_BITS + slot_bits);
     let core_write_data = graph.input("core_wr_data", spec.line_bits);
     let register_write = graph.input("register_wr_valid", 1);
+    let register_chosen = graph.input("register_wr_chosen", 1);
     let register_write_address = graph.input("register_wr_address", ADDRESS_BITS);
     let register_write_data = graph.input("register_wr_data", spec.line_bits);
     let end_write = graph.input("end_wr_valid", 1);
@@ -72,23 +80,30 @@ pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     // A write of the shell is chosen one cycle before its turn.
     let writes = Turns::new(&graph, "wr", wr_almostfull);
     let is_register = register_write.delay(1).named("is_register");
-    let register_granted = (writes.own & is_register & register_write).named("register_wr_granted");
-    let end_granted = (writes.own & !is_register & end_write).named("end_wr_granted");
+    let told_of_register = graph.data_register("register_wr_granted", 1);
+    let told_of_end = graph.data_register("end_wr_granted", 1);
+    let register_granted = (writes.own & is_register & register_write).named("grants_register_wr");
+    let end_granted = (writes.own & !is_register & end_write).named("grants_end_wr");
     let own_granted = (register_granted | end_granted).named("own_granted");
-    writes.connect((register_write | end_write).named("own_wr_waits"), discard, power_on);
+    told_of_register.next(register_granted);
+    told_of_end.next(end_granted);
+    let told = *told_of_register | *told_of_end;
+    let own_waits = ((register_write | end_write) & !own_granted & !told).named("own_wr_waits");
+    writes.connect(own_waits, discard, power_on);
+    let chooses_own = wide::steering(own_waits & !power_on, "chooses_own_wr", TX_HEADER_BITS + spec.line_bits);
     let write_number = number(&graph, "write_number", own_granted, power_on);
     let is_fence = (end_write_fence & !register_write).named("is_fence");
     let write_line = words::kind(&graph, Request::WriteLine);
-    let own_address = register_write.select(register_write_address, end_write_address).named("own_wr_address");
+    let own_address = register_chosen.select(register_write_address, end_write_address).named("own_wr_address");
     let own_header = words::header(
         &graph,
         is_fence.select(words::kind(&graph, Request::WriteFence), write_line),
-        register_write.select(constant(1, 0), end_write_virtual),
+        register_chosen.select(constant(1, 0), end_write_virtual),
         own_address,
         words::own_mdata(&graph, write_number),
     );
     let own_header = own_header.delay(1).named("own_header");
-    let own_data = register_write.select(register_write_data, end_write_data).delay(1).named("own_data");
+    let own_data = register_chosen.select(register_write_data, end_write_data).delay(1).named("own_data");
 
     let core_write_ready = writes.core;
     let core_mdata = words::core_mdata(epoch.value(), core_write_tag.low(slot_bits));
@@ -96,18 +111,21 @@ pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let write_valid = graph.data_register("tx_wr_valid", 1);
     let writing = (own_granted | (core_write_ready & core_write & !discard)).named("writing");
     write_valid.next(writing & !power_on);
+    let (own_request, core_request) = (own_header.concat(own_data), core_header.concat(core_write_data));
+    let request = wide::select(&chooses_own, own_request, core_request);
     let write_register = graph.data_register("tx_wr_hdr", TX_HEADER_BITS);
-    write_register.next(writes.own_turn.select(own_header, core_header));
+    write_register.next(request.high(TX_HEADER_BITS));
     let data_register = graph.data_register("tx_data", spec.line_bits);
-    data_register.next(writes.own_turn.select(own_data, core_write_data));
+    data_register.next(request.low(spec.line_bits));
 
-    graph.output("epoch", epoch.value());
+    graph.output("read_epoch", epochs[0]);
+    graph.output("write_epoch", epochs[1]);
     graph.output("core_epoch", next_epoch.low(EPOCH_BITS));
-    graph.output("read_number", read_number);
-    graph.output("own_rd_granted", own_read_granted);
+    graph.output("read_number", granted_number);
+    graph.output("own_rd_granted", told_of_read.value());
     graph.output("core_rd_ready", core_read_ready);
-    graph.output("register_wr_granted", register_granted);
-    graph.output("end_wr_granted", end_granted);
+    graph.output("register_wr_granted", told_of_register.value());
+    graph.output("end_wr_granted", told_of_end.value());
     graph.output("core_wr_ready", core_write_ready);
     graph.output("tx_rd_valid", read_valid.value());
     graph.output("tx_rd_hdr", read_register.value());
@@ -124,8 +142,6 @@ struct Turns<'g> {
     turn: Register<'g>,
     open: Register<'g>,
     almost_full: Signal<'g>,
-    /// The shell's turn, whether or not SPL has room.
-    own_turn: Signal<'g>,
     /// The shell's turn.
     own: Signal<'g>,
     /// The core's turn.
@@ -137,18 +153,12 @@ impl<'g> Turns<'g> {
         let turn = graph.data_register(&format!("own_{port}_turn"), 1);
         let open = graph.data_register(&format!("core_{port}_turn"), 1);
         let room = (!almost_full).delay(1).named(&format!("{port}_room"));
-        Self {
-            turn,
-            open,
-            almost_full,
-            own_turn: *turn,
-            own: (*turn & room).named(&format!("own_{port}_goes")),
-            core: *open,
-        }
+        let own = (*turn & room).named(&format!("own_{port}_goes"));
+        Self { turn, open, almost_full, own, core: *open }
     }
 
-    /// The next turn is the shell's if it `wants` it, even if its present request may be granted in this turn, because
-    /// its requests are rare. While the core's requests are discarded, it gets its turn without room.
+    /// The next turn is the shell's if it `wants` it. While the core's requests are discarded, it gets its turn without
+    /// room.
     fn connect(self, wants: Signal<'g>, discard: Signal<'g>, power_on: Signal<'g>) {
         self.turn.next(wants & !power_on);
         self.open.next(discard | (!wants & !self.almost_full));
