@@ -46,6 +46,8 @@ pub struct Outcome {
     pub failure: Option<Failure>,
     /// Contacts, as the AFU counted them.
     pub contacts: u32,
+    /// Pairs of spheres whose boxes meet, as the AFU counted them, if spheres came in.
+    pub candidates: Option<u32>,
     /// Invalid pairs, as the AFU counted them.
     pub invalid: u32,
     /// The first invalid pair's number.

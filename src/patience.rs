@@ -58,6 +58,8 @@ pub struct Work {
     pub writes: u64,
     /// Cycles without a response after which the AFU itself gives up, if it does.
     pub watchdog: u32,
+    /// Cycles that a search among spheres takes at most, without a sign.
+    pub search: u64,
 }
 
 /// When a host gives up.
@@ -107,7 +109,8 @@ fn both(afu: &Capability, work: &Work, cycles: impl Fn(&Work) -> f64) -> Patienc
         writes: work.writes.min(HELD_LINES),
         ..*work
     };
-    let bound = |work: &Work| (cycles(work).ceil() as u64).saturating_add(work.watchdog.into());
+    let bound =
+        |work: &Work| (cycles(work).ceil() as u64).saturating_add(work.watchdog.into()).saturating_add(work.search);
     Patience { whole: bound(work), quiet: bound(&held) }
 }
 
@@ -151,7 +154,7 @@ mod tests {
     }
 
     fn work(pairs: u64) -> Work {
-        Work { pairs, reads: pairs.div_ceil(2), writes: pairs.div_ceil(2), watchdog: 0 }
+        Work { pairs, reads: pairs.div_ceil(2), writes: pairs.div_ceil(2), watchdog: 0, search: 0 }
     }
 
     #[test]

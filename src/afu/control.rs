@@ -1,12 +1,13 @@
-//! Control: takes a job, watches it, ends it. A job is done when its last write is acknowledged. On an abort, an error
-//! response or an unexpected response, control stops requests, waits for outstanding responses, and ends the job with
-//! an error. It waits as long as the watchdog allows, or [`DRAIN_CYCLES`] without a watchdog. Then it gives up the
-//! outstanding requests. A request that is on the port by then stays there until the link accepts it, even during later
-//! jobs; no other request follows it.
+//! Control: takes a job, watches it, ends it. A job is done when its last write is acknowledged. On an abort, an
+//! error response or an unexpected response, control stops requests, waits for outstanding responses, and ends the
+//! job with an error. It waits as long as the watchdog allows, or [`DRAIN_CYCLES`] without a watchdog. Then it gives
+//! up the outstanding requests. A request that is on the port by then stays there until the link accepts it, even
+//! during later jobs; no other request follows it.
 
 use std::sync::Arc;
 
-use crate::hdl::{BuildErrors, Graph, Module};
+use crate::config::Input;
+use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
 use super::counter::cycles;
 use super::port::{JobInputs, JobOutputs};
@@ -24,14 +25,18 @@ pub(super) const CYCLES_TO_DONE: u32 = 2;
 /// Cycles, a power of two, after which all parts have stopped and control has heard it.
 const CYCLES_TO_STOP: u32 = 8;
 
+/// Spheres of the second set, at most: a hit numbers them with 16 bits.
+const MOST_OTHERS: u32 = 1 << 16;
+
 /// The parts that are told with a register of their own that a job begins.
 const PARTS: [&str; 5] = ["collector", "feeder", "credits", "packer", "dispatcher"];
+/// The same if spheres come in.
+const PARTS_OF_SPHERES: [&str; 6] = ["collector", "loader", "deciders", "hits", "packer", "dispatcher"];
 
 /// Builds the module `contact_afu_control`.
 pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new("contact_afu_control");
     graph.about("takes a job, watches it, ends it");
-    let layout = spec.layout();
 
     let job = JobInputs::of(spec);
     let [start, source, destination, count, mode, epoch, watchdog, abort] =
@@ -60,8 +65,8 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let busy = graph.register("busy", 1, 0);
     let accept = (start & !*busy).named("accept");
 
-    // The job is held from its start; everything downstream begins one cycle later. The addresses are wide, so they are
-    // loaded in every cycle without a job and do not depend on `start`.
+    // The job is held from its start; everything downstream begins one cycle later. The addresses are wide, so they
+    // are loaded in every cycle without a job and do not depend on `start`.
     let job_source = graph.data_register("job_source", ADDRESS_BITS);
     job_source.next_if(!*busy, source);
     let job_destination = graph.data_register("job_destination", ADDRESS_BITS);
@@ -75,14 +80,13 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     has_watchdog.next(accept.select(watchdog.any(), *has_watchdog | *draining));
     let drain_cycles = watchdog.same(u128::from(DRAIN_CYCLES));
     job_watchdog.next_if(accept | (*draining & !*has_watchdog), draining.select(drain_cycles, watchdog));
-    let per_line = layout.pairs_per_line();
-    let shift = per_line.ilog2();
-    let rounded = count.extend(COUNT_BITS + 1).plus(u128::from(per_line - 1)).named("rounded_count");
+    let takes_spheres = spec.config.input == Input::Spheres;
+    let (lines, has_unknown_mode, is_too_large) = match &job.others {
+        Some(port) => spheres(&graph, spec, [accept, count, mode], port.input(&graph)),
+        None => (pairs(spec, count), mode.any(), graph.constant(1, 0)),
+    };
     let job_lines = graph.register("job_lines", COUNT_BITS, 0);
-    job_lines.next_if(accept, rounded.drop_low(shift).extend(COUNT_BITS + 1).low(COUNT_BITS));
-    let last_place = graph.data_register("last_place", shift.max(1));
-    let fewer = count.low(shift.max(1)).minus(1);
-    last_place.next_if(accept, if shift == 0 { fewer.same(0) } else { fewer });
+    job_lines.next_if(accept, lines);
 
     let stopping = graph.register("cycles_draining", CYCLES_TO_STOP.ilog2(), 0);
     let stopped = stopping.all().named("stopped");
@@ -103,8 +107,8 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     // The end.
     let complete = (*run & packed & dispatched & link_idle_now).registered("complete");
     let complete = (*run & complete).named("completes");
-    let has_unknown_mode = mode.any().named("has_unknown_mode");
-    let refuses = (accept & has_unknown_mode).named("refuses");
+    let has_unknown_mode = has_unknown_mode.named("has_unknown_mode");
+    let refuses = (accept & (has_unknown_mode | is_too_large)).named("refuses");
     // What ends a job early, in order of precedence. The first three are known with their code from a register.
     let code_of = |error: JobError| graph.constant(JobError::BITS, error.code().into());
     let none = code_of(JobError::Aborted).same(0);
@@ -131,7 +135,8 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let still_waits = (*waits & !failing).named("still_waits");
     let begins = ((accept | still_waits) & filled).named("begins");
     begin.next(begins);
-    let parts = begins.copies("begin_job", PARTS.len() as u32);
+    let names = if takes_spheres { &PARTS_OF_SPHERES[..] } else { &PARTS };
+    let parts = begins.copies("begin_job", names.len() as u32);
     waits.next((takes_job | still_waits) & !filled);
     run.next((*run | *begin) & *running & !complete & !failing);
     draining.next(refuses | failing | (*draining & !drained));
@@ -148,8 +153,10 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
         graph.output("job_destination_lines", job_lines.value());
     }
     let ended = gives_up.select(error.same(JobError::Watchdog.code().into()), ended).named("ended");
-    // A job is accepted if no running job could end. This condition is last in the expression because it is known last.
-    let begun = has_unknown_mode.select(error.same(JobError::Mode.code().into()), error.same(0));
+    // A job is accepted if no running job could end. This condition is last in the expression because it is known
+    // last.
+    let too_large = is_too_large.select(error.same(JobError::Table.code().into()), error.same(0));
+    let begun = has_unknown_mode.select(error.same(JobError::Mode.code().into()), too_large);
     error.next(accept.select(begun, ended));
 
     // The counts begin one cycle after the start, and include that cycle, in which nothing waits yet.
@@ -164,7 +171,7 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     graph.output("busy", busy.value());
     graph.output("done", done.value());
     graph.output("error", error.value());
-    for (part, begin) in PARTS.into_iter().zip(parts) {
+    for (part, begin) in names.iter().zip(parts) {
         graph.output(&format!("begin_{part}"), begin);
     }
     graph.output("run", run.value());
@@ -174,6 +181,50 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     graph.output("job_count", job_count.value());
     graph.output("job_epoch", job_epoch.value());
     graph.output("lines", job_lines.value());
-    graph.output("last_place", last_place.value());
+    if spec.config.input == Input::Direct {
+        // The last pair's place in its line.
+        let bits = spec.layout().pairs_per_line().ilog2();
+        let last_place = graph.data_register("last_place", bits.max(1));
+        let fewer = count.low(bits.max(1)).minus(1);
+        last_place.next_if(accept, if bits == 0 { fewer.same(0) } else { fewer });
+        graph.output("last_place", last_place.value());
+    }
     graph.finish()
+}
+
+/// The source lines of a job of pairs.
+fn pairs<'g>(spec: &Spec, count: Signal<'g>) -> Signal<'g> {
+    let per_line = spec.layout().pairs_per_line();
+    let rounded = count.extend(COUNT_BITS + 1).plus(u128::from(per_line - 1)).named("rounded_count");
+    rounded.drop_low(per_line.ilog2()).extend(COUNT_BITS + 1).low(COUNT_BITS)
+}
+
+/// The source lines of a job of spheres, whether its mode is unknown, and whether a set is too large. Mode 0 is one
+/// set, 1 are two sets, 2 is a second set against the table as it is. Both sets begin at a row, which is four lines.
+fn spheres<'g>(
+    graph: &'g Graph,
+    spec: &Spec,
+    [accept, count, mode]: [Signal<'g>; 3],
+    others: Signal<'g>,
+) -> (Signal<'g>, Signal<'g>, Signal<'g>) {
+    let keeps = mode.is(2).named("mode_keeps_table");
+    let has_others = (mode.is(1) | keeps).named("mode_has_others");
+    let lines = |spheres: Signal<'g>| {
+        let rows = spheres.extend(COUNT_BITS + 1).plus(15).drop_low(4);
+        rows.append_zeros(2).extend(COUNT_BITS + 1).low(COUNT_BITS)
+    };
+    let own = lines(count).gate(!keeps).named("lines_of_table");
+    let of_others = lines(others).gate(has_others).named("lines_of_others");
+    for (name, value) in [("has_others", has_others), ("keeps_table", keeps)] {
+        let register = graph.register(name, 1, 0);
+        register.next_if(accept, value);
+        graph.output(name, register.value());
+    }
+    let job_others = graph.register("job_others", COUNT_BITS, 0);
+    job_others.next_if(accept, others);
+    graph.output("job_others", job_others.value());
+    let exceeds = |spheres: Signal<'g>, most: u32| spheres.greater_than(spheres.same(most.into()));
+    let is_too_large =
+        (!keeps & exceeds(count, spec.config.search.table)) | (has_others & exceeds(others, MOST_OTHERS));
+    (own + of_others, mode.drop_low(2).any() | mode.low(2).all(), is_too_large.named("is_too_large"))
 }

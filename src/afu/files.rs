@@ -5,12 +5,14 @@ use std::collections::BTreeSet;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
-use crate::config::{Config, MANIFEST_SCHEMA};
+use crate::config::{Config, Input, MANIFEST_SCHEMA};
 use crate::hdl::Primitive;
 use crate::pipeline::KernelReport;
 
 use super::port::connections;
+use super::spheres::SPHERE_BITS;
 use super::{Afu, Package};
+use crate::spheres::ROW;
 
 /// The folder of the test bench, separate from the files to synthesise.
 pub(super) const BENCH_FOLDER: &str = "sim";
@@ -92,17 +94,39 @@ impl Afu {
     fn template(&self) -> String {
         let ports = self.ports();
         let ports: Vec<_> = ports.inputs.iter().chain(&ports.outputs).map(|port| (port.name, port.name)).collect();
-        let scpus = self.spec().config.scpus;
+        let config = &self.spec().config;
+        let parameters = match config.input {
+            Input::Direct => format!(" #(\n  .SCPUS(32'd{})\n)", config.scpus),
+            Input::Spheres => String::new(),
+        };
         format!(
-            "// Instantiation template.\n{top} #(\n  .SCPUS(32'd{scpus})\n) u_{top} (\n{}\n);\n",
+            "// Instantiation template.\n{top}{parameters} u_{top} (\n{}\n);\n",
             connections("  ", &ports),
             top = self.top_name()
         )
     }
 
+    fn record_sizes(&self) -> Value {
+        let layout = self.layout();
+        match self.spec().config.input {
+            Input::Direct => json!({
+                "pair_bits": layout.pair_bits(),
+                "pairs_per_line": layout.pairs_per_line(),
+                "contact_bits": layout.contact_bits(),
+                "contacts_per_line": layout.contacts_per_line(),
+            }),
+            Input::Spheres => json!({
+                "sphere_bits": SPHERE_BITS,
+                "spheres_per_line": layout.line_bits() / SPHERE_BITS,
+                "spheres_per_row": ROW,
+                "contact_bits": layout.contact_bits(),
+                "contacts_per_line": layout.contacts_per_line(),
+            }),
+        }
+    }
+
     fn manifest(&self, files: &[(String, String)]) -> String {
         let spec = self.spec();
-        let layout = self.layout();
         let hashes: serde_json::Map<String, Value> =
             files.iter().map(|(name, text)| (name.clone(), Value::String(sha256(text.as_bytes())))).collect();
         let mut kernel = KernelReport::of(self.kernel());
@@ -118,12 +142,7 @@ impl Afu {
             "reset": { "asynchronous": spec.reset.asynchronous, "active_low": spec.reset.active_low },
             "line_bits": spec.line_bits,
             "max_outstanding": spec.max_outstanding,
-            "records": {
-                "pair_bits": layout.pair_bits(),
-                "pairs_per_line": layout.pairs_per_line(),
-                "contact_bits": layout.contact_bits(),
-                "contacts_per_line": layout.contacts_per_line(),
-            },
+            "records": self.record_sizes(),
             "latency_cycles": self.kernel().latency,
             "kernel": kernel,
             "rtl_sha256": self.rtl_sha256(),

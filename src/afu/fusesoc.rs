@@ -2,6 +2,16 @@
 
 use super::Afu;
 use super::files::BENCH_FOLDER;
+use crate::config::Input;
+
+/// The declaration of the parameter.
+const SCPUS: &str = "
+parameters:
+  SCPUS:
+    datatype: int
+    paramtype: vlogparam
+    description: Sphere Collision Processing Units, 1 to 64
+";
 
 impl Afu {
     /// The name of the core: vendor, library, name and version, the name from the options that made the AFU.
@@ -21,6 +31,11 @@ impl Afu {
         let (top, bench) = (self.top_name(), self.bench_name());
         let [sdc, xdc] = ["contact_afu.sdc", "contact_afu.xdc"].map(|name| self.spec().config.prefixed(name));
         let files: String = verilog.iter().map(|name| format!("      - {name}\n")).collect();
+        // An AFU that takes spheres has no SCPUs.
+        let (uses, parameters) = match self.spec().config.input {
+            Input::Direct => ("    parameters: [SCPUS]\n", SCPUS),
+            Input::Spheres => ("", ""),
+        };
         format!(
             "CAPI=2:
 name: {vlnv}
@@ -43,8 +58,7 @@ targets:
   default: &default
     filesets: [rtl, constraints]
     toplevel: {top}
-    parameters: [SCPUS]
-  lint:
+{uses}  lint:
     <<: *default
     default_tool: verilator
     tools:
@@ -54,8 +68,7 @@ targets:
   sim:
     filesets: [rtl, bench]
     toplevel: {bench}
-    parameters: [SCPUS]
-    default_tool: icarus
+{uses}    default_tool: icarus
     tools:
       icarus:
         iverilog_options: [-g2005]
@@ -65,13 +78,7 @@ targets:
     tools:
       yosys:
         arch: ecp5
-
-parameters:
-  SCPUS:
-    datatype: int
-    paramtype: vlogparam
-    description: Sphere Collision Processing Units, 1 to 64
-",
+{parameters}",
             vlnv = self.vlnv()
         )
     }

@@ -9,9 +9,13 @@ use crate::record::Layout;
 
 use super::scpu::scpu;
 use super::shell::{self, ShellDesign};
+use super::spheres::spheres_top;
 use super::top::line_top;
 use super::{Spec, SpecError};
-use crate::config::{Config, Shell};
+use crate::config::{Config, Input, Shell};
+
+/// Columns of a line of a header, at most.
+const HEADER_COLUMNS: usize = 110;
 
 /// The name of the top module of a configuration's accelerator.
 pub fn top_name(config: &Config) -> String {
@@ -55,7 +59,7 @@ impl Afu {
             radius: spec.config.radius.map(|radius| spec.config.record.round(radius)),
             clock_mhz: spec.config.cut_mhz(),
             interval: spec.config.interval,
-            valid_is_late: spec.config.interval <= 1,
+            valid_is_late: spec.config.interval <= 1 && spec.config.input == Input::Direct,
             model: spec.model(),
         })?;
         Self::around(spec, kernel)
@@ -73,7 +77,10 @@ impl Afu {
         if spec.word_bits != record_bits {
             return Err(SpecError::Word(spec.word_bits, record_bits).into());
         }
-        let core = line_top(&spec, &scpu(&spec, &kernel)?)?;
+        let core = match spec.config.input {
+            Input::Direct => line_top(&spec, &scpu(&spec, &kernel)?)?,
+            Input::Spheres => spheres_top(&spec, &kernel)?,
+        };
         let shell = shell::of(spec.config.shell);
         let top = shell.top(&spec, &core)?;
         Ok(Self { spec, shell, top, core, kernel })
@@ -149,16 +156,28 @@ impl Afu {
     /// The header of every file. It has no date, host or path, so the same specification gives the same bytes.
     fn header(&self) -> Vec<String> {
         let config = &self.spec.config;
-        vec![
-            self.origin(),
-            format!(
-                "arithmetic {} ({}), interval {}, contact {}, stages cut for {} MHz",
-                config.profile,
-                config.profile.format(),
-                config.interval,
-                config.contact,
-                config.cut_mhz()
-            ),
-        ]
+        let mut header = wrapped(&self.origin());
+        header.push(format!(
+            "arithmetic {} ({}), interval {}, contact {}, stages cut for {} MHz",
+            config.profile,
+            config.profile.format(),
+            config.interval,
+            config.contact,
+            config.cut_mhz()
+        ));
+        header
     }
+}
+
+/// A line of a header, broken before an option where it would be too long.
+fn wrapped(text: &str) -> Vec<String> {
+    let mut parts = text.split(" --");
+    let mut lines = vec![parts.next().unwrap_or_default().to_owned()];
+    for part in parts {
+        match lines.last_mut() {
+            Some(last) if last.len() + part.len() < HEADER_COLUMNS => *last += &format!(" --{part}"),
+            _ => lines.push(format!("  --{part}")),
+        }
+    }
+    lines
 }

@@ -32,12 +32,13 @@ pub(super) fn line_memory<'g>(
     depth: u32,
     access: &Access<'g>,
 ) -> Result<Signal<'g>, BuildErrors> {
+    let bits = access.line.width();
     let primitive = spec.delays.memory_primitive.filter(|_| depth <= PRIMITIVE_DEPTH);
-    let widest = primitive.map_or(spec.line_bits, |_| PRIMITIVE_WIDTH);
+    let widest = primitive.map_or(bits, |_| PRIMITIVE_WIDTH);
     let mut words = Vec::new();
-    for first in (0..spec.line_bits).step_by(widest as usize) {
-        let width = widest.min(spec.line_bits - first);
-        let name = if width == spec.line_bits { name.to_owned() } else { format!("{name}_{first}") };
+    for first in (0..bits).step_by(widest as usize) {
+        let width = widest.min(bits - first);
+        let name = if width == bits { name.to_owned() } else { format!("{name}_{first}") };
         let inputs = [
             ("write", access.write),
             ("write_index", access.write_index),

@@ -31,6 +31,7 @@ mod sieve;
 mod slice;
 mod slot;
 mod spec;
+mod spheres;
 mod status;
 mod timing;
 mod top;

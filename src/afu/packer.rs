@@ -1,5 +1,5 @@
-//! The packer: takes records in order and packs them into lines. If a record comes back for every pair, it also counts
-//! contacts and invalid pairs; with `--results hits`, the [sieve](super::sieve) counts them.
+//! The packer: takes records in order and packs them into lines. If a record comes back for every pair, it also
+//! counts contacts and invalid pairs; with `--results hits`, the [sieve](super::sieve) counts them.
 
 use std::sync::Arc;
 
@@ -87,6 +87,20 @@ fn of_hits(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
         let carries = carries.reduce(Signal::concat).unwrap_or(group).named("carries");
         fill(&graph, spec, start, carries, records, all_out);
     }
+    graph.finish()
+}
+
+/// Pairs of numbers in order, at most `lanes` in a cycle, each a record. The lanes that carry one are known one cycle
+/// before it arrives. `all_out` is set when no more will arrive.
+pub(super) fn of_pairs(spec: &Spec, lanes: u32) -> Result<Arc<Module>, BuildErrors> {
+    let graph = Graph::new("contact_afu_packer");
+    graph.about("packs hits into destination lines");
+    let record_bits = spec.layout().contact_bits();
+    let start = graph.input("start", 1);
+    let carries = graph.input("carries", lanes);
+    let records = (0..lanes).map(|lane| graph.input(&format!("record_{lane}"), record_bits)).collect();
+    let all_out = graph.input("all_out", 1);
+    fill(&graph, spec, start, carries, records, all_out);
     graph.finish()
 }
 

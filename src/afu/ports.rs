@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use super::port::{Declaration, Ports};
 use super::{Afu, MAX_SCPUS};
+use crate::config::Input;
 
 impl Afu {
     /// All ports, the clock first.
@@ -42,6 +43,9 @@ impl Afu {
     /// The possible numbers of SCPUs, in words.
     fn scpus(&self) -> String {
         let spec = self.spec();
+        if spec.config.input == Input::Spheres {
+            return String::new();
+        }
         let mut out = format!("`SCPUS` (1 to {MAX_SCPUS}) is a Verilog parameter. ");
         if let Some(multiple) = spec.full_rate().filter(|multiple| *multiple < MAX_SCPUS) {
             let _ = write!(

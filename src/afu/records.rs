@@ -2,14 +2,19 @@
 
 use std::fmt::Write as _;
 
-use crate::config::{RecordFormat, Results};
+use crate::config::{Input, RecordFormat, Results};
 use crate::query::{ContactRecord, Flow, GROUPS, Rule};
 
-use super::Afu;
+use super::spheres::SPHERE_BITS;
+use super::{Afu, JobError};
+use crate::spheres::ROW;
 
 impl Afu {
     /// The section `Records` of PORTS.md.
     pub(super) fn records(&self) -> String {
+        if self.spec().config.input == Input::Spheres {
+            return self.spheres();
+        }
         let (config, layout) = (&self.spec().config, self.layout());
         let (line, word) = (layout.line_bits(), layout.word_bits());
         let numbers = match config.record {
@@ -76,6 +81,35 @@ impl Afu {
             if has_lengths { " (−0 is a valid radius)" } else { "" },
         );
         out
+    }
+
+    /// The same for an AFU that takes spheres.
+    fn spheres(&self) -> String {
+        let search = self.spec().config.search;
+        format!(
+            "## Records\n\nNumbers are IEEE 754 binary32. Bits of a record are counted from its lowest bit.\n\n\
+             **Spheres.** A sphere is {SPHERE_BITS} bits; a source line holds four. Sphere s of a set is in line s / 4 of the \
+             set, from bit {SPHERE_BITS} · (s mod 4) on. A set takes a whole number of rows of {ROW} spheres, which are {} \
+             lines: the first set begins at `source`, and the second behind the last row of the first. With mode 2 the \
+             second set is at `source`. What a row holds after the last sphere of its set is ignored. The first set has \
+             at most {} spheres and the second at most 65 536; otherwise the job ends with error {}.\n\n\
+             | bits of a sphere | word | meaning |\n|---|---|---|\n\
+             | 31:0 | `x` | x of the centre |\n| 63:32 | `y` | y of the centre |\n| 95:64 | `z` | z of the centre |\n\
+             | 127:96 | `r` | radius, at least 0 |\n\n\
+             A sphere with a NaN, an infinity or a negative radius is invalid (−0 is a valid radius): it is counted, and \
+             touches none.\n\n\
+             **Contacts.** Every two spheres that touch have a record: within one set each pair once, of two sets each \
+             sphere of the first with each of the second. A record is 32 bits; a destination line holds 16. Record i is in \
+             line i / 16 of the destination, from bit 32 · (i mod 16) on. The job writes ⌈`contacts` / 16⌉ lines and \
+             nothing after them. What the last line holds after the last record is zero. The order is: row of the second \
+             sphere, row of the first, second sphere, first sphere.\n\n\
+             | bits of a record | word | meaning |\n|---|---|---|\n\
+             | 15:0 | `first` | number of the first sphere in its set, from 0; within one set the lower of both |\n\
+             | 31:16 | `second` | number of the second sphere in its set |\n",
+            ROW / 4,
+            search.table,
+            JobError::Table.code()
+        )
     }
 
     /// The possible values of the word `flags`.

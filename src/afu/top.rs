@@ -157,6 +157,7 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, B
         done: control.output("done"),
         error: control.output("error"),
         contacts: packed_results.status.output("contacts"),
+        candidates: None,
         invalid: packed_results.status.output("invalid"),
         first_invalid: packed_results.status.output("first_invalid"),
         cycles_busy: control.output("cycles_busy"),

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::Args;
-use contact_afu::config::{self, Config, Results};
+use contact_afu::config::{self, Config, Input, Results};
 use contact_afu::cosim::Trace;
 use contact_afu::link::LinkModel;
 use contact_afu::query::{PairRecord, Query};
@@ -31,52 +31,76 @@ const CORPUS: &str = "afu-corpus.csv";
 /// with the reference kernel and prints one table of all jobs.
 #[derive(Args, Debug)]
 pub struct Cosim {
-    /// Pairs: diamond:H, random:N, dense:N, hard:N (see `afu help pairs`), or a .csv or .npy file [default: diamond:10;
-    /// for sphere-plane random:10000]
+    /// Pairs: diamond:H, random:N, dense:N, hard:N (see `afu help pairs`), or a .csv or .npy file [default:
+    /// diamond:10; for sphere-plane random:10000]
     ///
     /// Repeat the option to run several jobs.
     #[arg(long, value_name = "SET|FILE")]
-    pairs: Vec<String>,
+    pub(super) pairs: Vec<String>,
+    /// Spheres, with --input spheres: diamond:H, gas:N:FILL, probes:Q:M (see `afu help spheres`), or a .csv or .npy
+    /// file [default: diamond:10]
+    ///
+    /// Repeat the option to run several jobs. What the AFU finds, and the order in which it does, is compared with
+    /// the search in software.
+    #[arg(long, value_name = "SET|FILE")]
+    pub(super) spheres: Vec<String>,
+    /// File of a second set of spheres: the AFU finds which of them touch which of --spheres
+    #[arg(long, value_name = "FILE")]
+    pub(super) against: Option<PathBuf>,
+    /// Put the spheres in the order of a Hilbert curve first, which makes the search faster
+    #[arg(long)]
+    pub(super) sort: bool,
     /// Write the contacts to a .csv or .npy file, as they lie in memory; only for a single job
     ///
     /// With --results hits the file holds only the contacts of pairs that touch, each with the index of its pair.
     #[arg(long, value_name = "FILE")]
-    contacts: Option<PathBuf>,
+    pub(super) contacts: Option<PathBuf>,
     /// Link between AFU and memory: ideal, late, shuffled, hostile, harp1, harp2, pcie3x8, zynqmp, ddr4, or a .toml
     /// file
     ///
-    /// `ideal` shows what the AFU alone can do. `late`, `shuffled` and `hostile` are made to find faults: high latency,
-    /// responses out of order, stalls. `harp1` and `harp2` are Intel's Xeons with an FPGA, `pcie3x8` is a card on PCI
-    /// Express, `zynqmp` a port of a Zynq UltraScale+, `ddr4` a channel of memory on a card. docs/link.md describes the
-    /// models and the file.
+    /// `ideal` shows what the AFU alone can do. `late`, `shuffled` and `hostile` are made to find faults: high
+    /// latency, responses out of order, stalls. `harp1` and `harp2` are Intel's Xeons with an FPGA, `pcie3x8` is a
+    /// card on PCI Express, `zynqmp` a port of a Zynq UltraScale+, `ddr4` a channel of memory on a card. docs/link.md
+    /// describes the models and the file.
     #[arg(long, value_name = "NAME|FILE", default_value = "ideal")]
-    link: String,
+    pub(super) link: String,
     /// Seed of random pairs, of the link, and of the initial values of registers without reset
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = super::usage::seed)]
-    seed: u64,
+    pub(super) seed: u64,
     /// Write a waveform to a .vcd or .fst file; only for a single job
     #[arg(long, value_name = "FILE")]
-    trace: Option<PathBuf>,
+    pub(super) trace: Option<PathBuf>,
     /// Write the results as JSON (schema contact-afu/cosim/1) to a file, or to standard output for -
     #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    pub(super) json: Option<PathBuf>,
     /// Write a JUnit report with one test case per job to a file, or to standard output for -
     #[arg(long, value_name = "FILE")]
-    junit: Option<PathBuf>,
+    pub(super) junit: Option<PathBuf>,
     /// Simulate the Verilog in this folder, which `afu rtl` wrote; only --scpus may change the AFU
     #[arg(long, value_name = "DIR")]
-    rtl: Option<PathBuf>,
+    pub(super) rtl: Option<PathBuf>,
     /// Corpus of pairs that mismatched before, a .csv file: run it as the first job and add new mismatches
     ///
     /// If the file does not exist, the first mismatch creates it. Without this option, mismatching pairs are added to
     /// afu-corpus.csv in the current folder.
     #[arg(long, value_name = "FILE")]
-    replay: Option<PathBuf>,
+    pub(super) replay: Option<PathBuf>,
     #[command(flatten)]
     one: One,
 }
 
 pub fn run(options: &Cosim) -> Result<(), Failure> {
+    if options.input()? == Input::Spheres {
+        return super::cosim_spheres::run(options);
+    }
+    let of_spheres = [
+        ("--spheres", !options.spheres.is_empty()),
+        ("--against", options.against.is_some()),
+        ("--sort", options.sort),
+    ];
+    if let Some((option, _)) = of_spheres.into_iter().find(|(_, given)| *given) {
+        return Err(Failure::new(Kind::Usage, format!("{option} needs an AFU that takes spheres: --input spheres")));
+    }
     let link = link::describe(&options.link)?;
     let trace = options.trace()?;
     let query = options.query()?;
@@ -164,6 +188,17 @@ impl Cosim {
         Ok(jobs)
     }
 
+    /// What the AFU gets, from the folder of `--rtl` or from the options.
+    fn input(&self) -> Result<Input, Failure> {
+        match &self.rtl {
+            Some(folder) => {
+                self.one.only_scpus()?;
+                Ok(config::read(folder).ends(Kind::Usage)?.input)
+            }
+            None => Ok(self.one.machine.config()?.input),
+        }
+    }
+
     /// The query of the AFU, from the folder of `--rtl` or from the options.
     fn query(&self) -> Result<Query, Failure> {
         match &self.rtl {
@@ -181,7 +216,7 @@ impl Cosim {
         if self.pairs.is_empty() { vec![default.to_owned()] } else { self.pairs.clone() }
     }
 
-    fn trace(&self) -> Result<Trace, Failure> {
+    pub(super) fn trace(&self) -> Result<Trace, Failure> {
         let Some(path) = &self.trace else { return Ok(Trace::Off) };
         match path.extension().and_then(|extension| extension.to_str()) {
             Some("vcd") => Ok(Trace::Vcd),
@@ -193,7 +228,7 @@ impl Cosim {
         }
     }
 
-    fn bench(&self, trace: Trace) -> Result<Bench, Failure> {
+    pub(super) fn bench(&self, trace: Trace) -> Result<Bench, Failure> {
         let begun = Instant::now();
         let spinner = progress::spinner("building the AFU's model with Verilator and the C++ compiler");
         let bench = match &self.rtl {

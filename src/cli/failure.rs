@@ -92,9 +92,14 @@ impl From<contact_afu::verify::VerifyError> for Failure {
         use contact_afu::verify::VerifyError;
         let kind = match error {
             VerifyError::Generate(error) => return error.into(),
-            VerifyError::Manifest(_) | VerifyError::Link(_) | VerifyError::Pairs(_) | VerifyError::Radius(_) => {
-                Kind::Usage
-            }
+            VerifyError::Reference(_) => Kind::Other,
+            VerifyError::Manifest(_)
+            | VerifyError::Link(_)
+            | VerifyError::Pairs(_)
+            | VerifyError::Radius(_)
+            | VerifyError::Table { .. }
+            | VerifyError::Second(_)
+            | VerifyError::Search(_) => Kind::Usage,
             VerifyError::Model(CosimError::MissingTool { .. }) => Kind::Tool,
             VerifyError::Model(CosimError::Source(_)) => Kind::Usage,
             VerifyError::Drive(_) | VerifyError::Host(_) if error.is_job_failure() => Kind::Failed,

@@ -42,10 +42,30 @@ pub struct Machine {
     /// Hardware for the other fields is not generated.
     #[arg(long, value_name = "FIELDS")]
     pub contact: Option<Fields>,
-    /// Form of the input: direct (each pair holds both bodies) is the only one [default: direct]
+    /// What the AFU gets: direct (pairs, each with both bodies) or spheres, among which it finds those that touch
+    /// [default: direct]
+    ///
+    /// With `spheres` only the numbers of spheres that touch come back (--results hits, --contact hit), and the only
+    /// shell so far is line. These are then the defaults.
     #[arg(long, value_name = "KIND")]
     pub input: Option<Input>,
-    /// Pairs that the AFU returns: all, or hits (pairs that touch, each with its index) [default: all]
+    /// Spheres that the table of the first set holds, for --input spheres: a power of two, 512 to 65536 [default:
+    /// 4096]
+    #[arg(long, value_name = "N")]
+    pub table: Option<u32>,
+    /// Bits of each number of a box, for --input spheres: 10 to 32 [default: 24]
+    ///
+    /// Fewer bits make a smaller AFU and more candidates, and the same contacts.
+    #[arg(long, value_name = "N")]
+    pub box_bits: Option<u32>,
+    /// Boxes of spheres that are compared in a cycle, for --input spheres: a power of two, 16 to 256 [default: 16]
+    #[arg(long, value_name = "N")]
+    pub lanes: Option<u32>,
+    /// Kernels that decide candidates, for --input spheres: a power of two, 1 to 16 [default: 4]
+    #[arg(long, value_name = "N")]
+    pub deciders: Option<u32>,
+    /// Pairs that the AFU returns: all, or hits (pairs that touch, each with its index) [default: all; for input
+    /// spheres hits]
     #[arg(long, value_name = "WHICH")]
     pub results: Option<Results>,
     /// One radius for all spheres, finite and at least 0 [default: each sphere has its own]
@@ -66,9 +86,9 @@ pub struct Machine {
     pub multipliers: Option<Multipliers>,
     /// Logic around the AFU's line port: spl2, axi or line [default: spl2]
     ///
-    /// `spl2` connects the AFU to SPL2, the interface of Intel's HARP v1 (a Xeon with an FPGA), as in the paper. `axi`
-    /// has an AXI4 master for memory and an AXI4-Lite slave for registers, as boards of today have them. `line` adds
-    /// nothing: the AFU's own port reads and writes memory in lines of 64 bytes.
+    /// `spl2` connects the AFU to SPL2, the interface of Intel's HARP v1 (a Xeon with an FPGA), as in the paper.
+    /// `axi` has an AXI4 master for memory and an AXI4-Lite slave for registers, as boards of today have them. `line`
+    /// adds nothing: the AFU's own port reads and writes memory in lines of 64 bytes.
     #[arg(long, value_name = "SHELL")]
     pub shell: Option<Shell>,
     /// Reads, and writes, that the AFU keeps in flight: 16, 32, 64, 128 or 256 [default: 64]
@@ -91,8 +111,8 @@ pub struct Machine {
     /// Place and route may reach a lower clock than the stages were cut for: then --clock is what it reached.
     #[arg(long, value_name = "MHZ")]
     pub cut_for: Option<f64>,
-    /// FPGA family, only for rtl and synth: ecp5 or ice40, for synth also cyclonev or xilinx [default: any family; for
-    /// synth ecp5]
+    /// FPGA family, only for rtl and synth: ecp5 or ice40, for synth also cyclonev or xilinx [default: any family;
+    /// for synth ecp5]
     #[arg(long, value_name = "FAMILY")]
     pub target: Option<String>,
     /// Read the AFU's configuration from a manifest.json or the folder of one; other options override it
@@ -142,6 +162,14 @@ impl Machine {
         config.profile = self.with_options(config.profile).ends(Kind::Usage)?;
         set(&mut config.contact, &self.contact);
         set(&mut config.input, &self.input);
+        if self.input == Some(Input::Spheres) && self.config.is_none() {
+            (config.results, config.contact, config.shell) = (Results::Hits, Fields::HIT, Shell::Line);
+            set(&mut config.contact, &self.contact);
+        }
+        set(&mut config.search.table, &self.table);
+        set(&mut config.search.box_bits, &self.box_bits);
+        set(&mut config.search.lanes, &self.lanes);
+        set(&mut config.search.deciders, &self.deciders);
         set(&mut config.results, &self.results);
         config.radius = self.radius.or(config.radius);
         set(&mut config.record, &self.record);
@@ -164,11 +192,11 @@ pub struct One {
     /// Number of SCPUs (sphere collision processing units), 1 to 64 [default: 10]
     #[arg(long, value_name = "N", help_heading = "The AFU")]
     pub scpus: Option<u32>,
-    /// Initiation interval: an SCPU takes one pair per II cycles, 1 to 64, or auto [default: auto; for synth and paper
-    /// 1]
+    /// Initiation interval: an SCPU takes one pair per II cycles, 1 to 64, or auto [default: auto; for synth and
+    /// paper 1]
     ///
-    /// With a longer interval operations share operators: an SCPU is smaller, but its latency increases. `auto` is the
-    /// longest interval that keeps the AFU link-bound.
+    /// With a longer interval operations share operators: an SCPU is smaller, but its latency increases. `auto` is
+    /// the longest interval that keeps the AFU link-bound.
     #[arg(long, value_name = "II", help_heading = "The AFU")]
     pub interval: Option<String>,
     #[command(flatten)]
@@ -195,6 +223,12 @@ impl One {
     }
 
     fn with(&self, mut config: Config, link: &str, unsaid: &str) -> Result<Config, Failure> {
+        if config.input == Input::Spheres
+            && let Some(scpus) = self.scpus
+        {
+            let message = format!("--scpus {scpus} with --input spheres: it has deciders; use --deciders");
+            return Err(Failure::new(Kind::Usage, message));
+        }
         set(&mut config.scpus, &self.scpus);
         let unsaid = if self.machine.config.is_none() { Some(unsaid) } else { None };
         match self.interval.as_deref().or(unsaid) {
@@ -202,6 +236,9 @@ impl One {
             Some(AUTO) => {
                 config.interval = 1;
                 config.check()?;
+                if config.input == Input::Spheres {
+                    return Ok(config);
+                }
                 config.interval = longest_interval(&config, link)?;
             }
             Some(interval) => config.interval = interval_of(interval)?,
@@ -225,6 +262,10 @@ impl One {
             ("--roots", m.roots.is_some()),
             ("--contact", m.contact.is_some()),
             ("--input", m.input.is_some()),
+            ("--table", m.table.is_some()),
+            ("--box-bits", m.box_bits.is_some()),
+            ("--lanes", m.lanes.is_some()),
+            ("--deciders", m.deciders.is_some()),
             ("--results", m.results.is_some()),
             ("--radius", m.radius.is_some()),
             ("--record", m.record.is_some()),

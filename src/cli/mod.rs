@@ -7,6 +7,8 @@ mod choose;
 mod completions;
 #[cfg(feature = "cosim")]
 mod cosim;
+#[cfg(feature = "cosim")]
+mod cosim_spheres;
 mod doctor;
 #[cfg(all(test, feature = "cosim", feature = "ode"))]
 mod documentation;

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use contact_afu::afu::{Afu, BuildError, Package, PackageError, Spec};
+use contact_afu::config::Input;
 use contact_afu::hdl::Reset;
 use contact_afu::report::folder::{self, Folder};
 use contact_afu::report::table::counted;
@@ -114,11 +115,16 @@ pub fn run(options: &Rtl) -> Result<(), Failure> {
     folder.commit()?;
     let config = &afu.spec().config;
     warn_of_unused_scpus(config);
+    let (unit, number) = match config.input {
+        Input::Direct => ("SCPU", config.scpus),
+        Input::Spheres => ("decider", config.search.deciders),
+    };
+    let article = if unit == "SCPU" { "an" } else { "a" };
     let text = format!(
-        "{}: {}; {}, {}, latency of an SCPU {} cycles at {} MHz",
+        "{}: {}; {}, {}, latency of {article} {unit} {} cycles at {} MHz",
         options.out.display(),
         counted(files.len() as u64, "file"),
-        counted(config.scpus.into(), "SCPU"),
+        counted(number.into(), unit),
         config.profile,
         afu.kernel().latency,
         config.clock_mhz

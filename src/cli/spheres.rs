@@ -102,7 +102,7 @@ pub fn run(options: &Spheres) -> Result<(), Failure> {
 }
 
 /// The spheres of a set or a file. A note on standard error counts numbers that had to be rounded.
-fn load(source: &str, seed: u64) -> Result<Sets, Failure> {
+pub(super) fn load(source: &str, seed: u64) -> Result<Sets, Failure> {
     let (sets, rounded) = spheres::load(source, seed)?;
     if let Some(rounded) = rounded {
         eprintln!("afu: {source}: {rounded}");
@@ -110,7 +110,7 @@ fn load(source: &str, seed: u64) -> Result<Sets, Failure> {
     Ok(sets)
 }
 
-fn sorted(spheres: &[Sphere]) -> Vec<Sphere> {
+pub(super) fn sorted(spheres: &[Sphere]) -> Vec<Sphere> {
     reorder(spheres, &hilbert_order(spheres))
 }
 

@@ -38,9 +38,9 @@ pub struct Synth {
     fit: Option<PathBuf>,
     /// Print docs/operators.md, operators beside the best public cores, from files that --json wrote
     #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with_all = ["operator", "kernel", "json", "check", "store", "fit"])]
-    table: Vec<PathBuf>,
+    page: Vec<PathBuf>,
     /// Print docs/interval.md, an SCPU's area by initiation interval, from files that --json wrote
-    #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with_all = ["operator", "kernel", "json", "check", "store", "fit", "table"])]
+    #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with_all = ["operator", "kernel", "json", "check", "store", "fit", "page"])]
     intervals: Vec<PathBuf>,
     /// Also write the picture of --intervals to an SVG file
     #[arg(long, value_name = "FILE", requires = "intervals")]
@@ -54,7 +54,7 @@ pub struct Synth {
     /// Compare the architectures of an operator: roots and reciprocals by table and digit by digit
     ///
     /// Without --operator, only sqrt and recip are measured.
-    #[arg(long, conflicts_with_all = ["kernel", "fit", "table", "intervals"])]
+    #[arg(long, conflicts_with_all = ["kernel", "fit", "page", "intervals"])]
     compare: bool,
     /// Exit with status 1 if a clock is below --clock
     #[arg(long)]
@@ -63,7 +63,7 @@ pub struct Synth {
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
     /// Folder to write: report.html, figures.csv, manifest.json with all figures, and measurements/ to resume from
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["fit", "table", "intervals"])]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["fit", "page", "intervals"])]
     out: Option<PathBuf>,
     /// Write into a folder that afu did not make, or replace another study; other files stay
     #[arg(long, requires = "out")]
@@ -75,8 +75,8 @@ pub struct Synth {
 }
 
 pub fn run(options: &Synth) -> Result<(), Failure> {
-    if !options.table.is_empty() {
-        return page(&options.table);
+    if !options.page.is_empty() {
+        return self::page(&options.page);
     }
     if !options.intervals.is_empty() {
         return by_interval(&options.intervals, options.picture.as_deref());

@@ -52,10 +52,12 @@ macro_rules! choice {
 }
 
 choice!(
-    /// The form in which the AFU gets pairs.
+    /// What the AFU gets.
     Input, "input", default Direct,
-    /// Both spheres of every pair, in full.
-    Direct = "direct"
+    /// Both bodies of every pair, in full.
+    Direct = "direct",
+    /// Spheres, among which the AFU finds the pairs that touch.
+    Spheres = "spheres"
 );
 
 choice!(

@@ -3,10 +3,12 @@
 mod choices;
 mod file;
 mod profile;
+mod search;
 
 pub use choices::{Input, Multipliers, RecordFormat, Results, Shell};
 pub use file::{MANIFEST_SCHEMA, ReadError, read};
 pub use profile::Profile;
+pub use search::{DECIDERS, LANES, Search, SearchError, TABLES};
 
 use serde::{Deserialize, Serialize};
 
@@ -51,8 +53,11 @@ pub struct Config {
     /// The fields of a contact that are computed.
     #[serde(with = "text")]
     pub contact: Fields,
-    /// The form in which the AFU gets pairs.
+    /// What the AFU gets: pairs, or spheres among which it finds them.
     pub input: Input,
+    /// The sizes of the search, if spheres come in.
+    #[serde(skip_serializing_if = "Search::is_default")]
+    pub search: Search,
     /// The pairs for which the AFU returns a record.
     pub results: Results,
     /// The radius of all spheres, a length, as a constant of the hardware; records then have no radii. `None`: each
@@ -92,6 +97,7 @@ impl Default for Config {
             profile: Profile::WIDE,
             contact: Fields::ALL,
             input: Input::Direct,
+            search: Search::default(),
             results: Results::All,
             radius: None,
             record: RecordFormat::F32,
@@ -152,6 +158,9 @@ pub enum Error {
     /// Not one of [`BUSES`].
     #[error("bus of {0} bits: expected 128, 256 or 512")]
     Bus(u32),
+    /// Spheres come in, and the search is not possible.
+    #[error(transparent)]
+    Search(#[from] SearchError),
     /// A width for a bus that the shell does not have.
     #[error("bus of {0} bits below shell {1}: only shell axi has a bus of another width; leave it out")]
     NoBus(u32, Shell),
@@ -211,6 +220,7 @@ impl Config {
         if let Some(radius) = self.radius.filter(|&radius| self.record.round(radius).is_infinite()) {
             return Err(Error::RecordRadius(radius, self.record));
         }
+        self.search.check(self)?;
         Ok(())
     }
 
@@ -253,6 +263,10 @@ impl Config {
             ("--profile", self.profile.to_string(), default.profile.to_string()),
             ("--contact", self.contact.to_string(), default.contact.to_string()),
             ("--input", self.input.to_string(), default.input.to_string()),
+            ("--table", self.search.table.to_string(), default.search.table.to_string()),
+            ("--box-bits", self.search.box_bits.to_string(), default.search.box_bits.to_string()),
+            ("--lanes", self.search.lanes.to_string(), default.search.lanes.to_string()),
+            ("--deciders", self.search.deciders.to_string(), default.search.deciders.to_string()),
             ("--results", self.results.to_string(), default.results.to_string()),
             ("--radius", radius(self), radius(&default)),
             ("--record", self.record.to_string(), default.record.to_string()),

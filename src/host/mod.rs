@@ -2,8 +2,9 @@
 //!
 //! A [`Session`] has a device, by its [`Transport`], and a [`Workspace`]. It gives [`Transaction`]s, whose types are
 //! the paper's seven steps. A device is the Verilated AFU ([`Machine`](crate::cosim::spl2::Machine)) or a model of it
-//! in software ([`Software`]), which answer alike, byte for byte; or it is on a board, behind a [`Device`]. A session is also an
-//! [`Engine`](crate::kernel::Engine): a batch is one transaction, or several where the buffers hold fewer pairs.
+//! in software ([`Software`]), which answer alike, byte for byte; or it is on a board, behind a [`Device`]. A session
+//! is also an [`Engine`](crate::kernel::Engine): a batch is one transaction, or several where the buffers hold fewer
+//! pairs.
 
 #[cfg(feature = "cosim")]
 mod behind_axi;

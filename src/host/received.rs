@@ -23,6 +23,8 @@ pub(super) struct Status {
     pub(super) error: u8,
     pub(super) failure: Option<Failure>,
     pub(super) contacts: u32,
+    /// Pairs of spheres whose boxes meet, if spheres came in.
+    pub(super) candidates: Option<u32>,
     pub(super) invalid: u32,
     /// All ones if there is none.
     pub(super) first_invalid: u32,
@@ -51,6 +53,7 @@ pub(super) fn outcome<T: Transport>(session: &Session<T>, begin: &Begin, pairs: 
         error: end.error,
         failure: end.failure,
         contacts: end.contacts,
+        candidates: end.candidates,
         invalid: end.invalid,
         first_invalid: Some(end.first_invalid).filter(|&pair| pair != u32::MAX),
         cycles_busy: end.cycles_busy,

@@ -117,7 +117,7 @@ impl<T: Transport> Session<T> {
     pub(super) fn patience(&self, pairs: u64) -> Patience {
         let layout = self.workspace.layout();
         let (reads, writes) = (layout.source_lines(pairs), layout.destination_lines(pairs));
-        let work = Work { pairs, reads, writes, watchdog: self.watchdog };
+        let work = Work { pairs, reads, writes, watchdog: self.watchdog, search: 0 };
         self.transport.patience(&self.afu, &work)
     }
 
@@ -231,7 +231,9 @@ impl<T: Transport> Session<T> {
                 return Ok(status);
             }
             let now = self.transport.cycle();
-            let (cycles, quiet) = (now - begin.cycle, now - self.transport.last_work().max(begin.cycle));
+            // The cycles of a board are read from a clock, which goes on between two readings.
+            let since = |cycle: u64| now.saturating_sub(cycle);
+            let (cycles, quiet) = (since(begin.cycle), since(self.transport.last_work().max(begin.cycle)));
             if cycles > whole || quiet > patience.quiet {
                 let (before, now) = (begin.traffic, self.transport.traffic());
                 let owed = |asked: u64, answered: u64| asked.saturating_sub(answered);

@@ -29,7 +29,7 @@ pub(crate) use widening::is_direct;
 
 use std::sync::Arc;
 
-use crate::hdl::{BuildErrors, DelayModel, Graph, Module, cut};
+use crate::hdl::{BuildErrors, DelayModel, Graph, Module, Signal, cut};
 use crate::number::{self, Format, Roots};
 use parts::Rounding;
 
@@ -230,6 +230,12 @@ pub fn build_as(
     };
     graph.output("result", result);
     graph.finish()
+}
+
+/// a + b, or a − b, of two signals in `format`, as part of a module of the caller's.
+pub(crate) fn sum<'g>(a: Signal<'g>, b: Signal<'g>, format: Format, subtract: bool) -> Signal<'g> {
+    let domain = Domain::from(format);
+    add::add(a, b, domain, subtract, domain.rounding())
 }
 
 /// The operator in the architecture for the model's target ([`Architecture::of`]), cut into stages for `clock_mhz`. The

@@ -1,6 +1,6 @@
 //! The capability word, in which an AFU describes itself; declared once.
 
-use crate::config::{Config, RecordFormat, Results};
+use crate::config::{Config, Input, RecordFormat, Results, Search};
 use crate::query::{Fields, GROUPS, Query};
 
 use super::Layout;
@@ -29,6 +29,10 @@ const ONE_RADIUS: Part = part(25, 1, "one radius for all spheres", false);
 const RECORD: Part = part(26, 2, "words of records (0: f32, 1: f16, 2: bf16)", false);
 const QUERY: Part = part(28, 4, "query", false);
 const LATENCY: Part = part(32, 12, "SCPU latency (of profile and clock), in cycles", true);
+const TABLE: Part = part(44, 5, "spheres come in: log2 of the spheres that the table holds", false);
+const LANES: Part = part(49, 4, "log2 of the boxes compared in a cycle", false);
+const DECIDERS: Part = part(53, 3, "log2 of the deciders", false);
+const BOX_BITS: Part = part(56, 6, "bits of a box's numbers", false);
 
 /// A bound on the cycles that a pair spends outside its SCPU, far above those of any configuration.
 pub(crate) const AROUND_CYCLES: u64 = 128;
@@ -37,7 +41,8 @@ impl Part {
     /// The number of SCPUs.
     pub const SCPUS: Self = part(0, 8, "SCPUs", true);
     /// All parts, from the lowest bit up. The bits between them are zero.
-    pub const ALL: [Self; 8] = [Self::SCPUS, INTERVAL, FIELDS, HITS, ONE_RADIUS, RECORD, QUERY, LATENCY];
+    pub const ALL: [Self; 12] =
+        [Self::SCPUS, INTERVAL, FIELDS, HITS, ONE_RADIUS, RECORD, QUERY, LATENCY, TABLE, LANES, DECIDERS, BOX_BITS];
 
     /// The value of this part in a word.
     pub const fn of(self, word: u64) -> u64 {
@@ -78,6 +83,8 @@ pub struct Capability {
     pub query: Option<Query>,
     /// The latency of an SCPU, in cycles.
     pub scpu_cycles: u32,
+    /// The sizes of the search, if spheres come in.
+    pub search: Option<Search>,
 }
 
 impl Capability {
@@ -92,6 +99,7 @@ impl Capability {
             record: config.record,
             query: Some(config.query),
             scpu_cycles,
+            search: (config.input == Input::Spheres).then_some(config.search),
         }
     }
 
@@ -113,6 +121,13 @@ impl Capability {
             | RECORD.word(self.record as u32)
             | QUERY.word(query)
             | LATENCY.word(self.scpu_cycles)
+            | self.search.map_or(0, |Search { table, box_bits, lanes, deciders }| {
+                let log2 = |value: u32| value.checked_ilog2().unwrap_or(0);
+                TABLE.word(log2(table))
+                    | LANES.word(log2(lanes))
+                    | DECIDERS.word(log2(deciders))
+                    | BOX_BITS.word(box_bits)
+            })
     }
 
     /// Decodes a word.
@@ -132,6 +147,12 @@ impl Capability {
             },
             query: Query::ALL.into_iter().find(|query| query.shape().code == part(QUERY)),
             scpu_cycles: part(LATENCY),
+            search: (part(TABLE) > 0).then(|| Search {
+                table: 1 << part(TABLE),
+                lanes: 1 << part(LANES),
+                deciders: 1 << part(DECIDERS),
+                box_bits: part(BOX_BITS),
+            }),
         }
     }
 
@@ -150,6 +171,9 @@ impl Capability {
                 _ if value == 0 => None,
                 low if low == HITS.low => Some(format!("{place} set: only contacts come back")),
                 low if low == RECORD.low => Some(format!("{place} are {value}: words of records are {}", said.record)),
+                low if [TABLE.low, LANES.low, DECIDERS.low, BOX_BITS.low].contains(&low) => {
+                    Some(format!("{place} are {value}: {}", part.meaning))
+                }
                 low if low == QUERY.low => Some(format!("{place} are {value}: pairs are {query}")),
                 _ => Some(format!("{place} set: {}", part.meaning)),
             }
@@ -195,6 +219,7 @@ mod tests {
             base.clone(),
             Config { results: Results::Hits, ..base.clone() },
             Config { radius: Some(0.5), record: RecordFormat::Bf16, ..base.clone() },
+            Config { input: Input::Spheres, results: Results::Hits, ..base.clone() },
             Config { query: Query::SpherePlane, record: RecordFormat::F16, ..base },
         ] {
             let said = Capability::new(&config, 99);
@@ -208,7 +233,7 @@ mod tests {
             assert_eq!(all & part.mask(), 0, "{part:?}");
             all | part.mask()
         });
-        assert_eq!(all, 0x0000_0FFF_FF0F_FFFF);
+        assert_eq!(all, 0x3FFF_FFFF_FF0F_FFFF);
         assert_eq!(Capability::from_bits(u64::MAX).query, None);
     }
 

@@ -22,11 +22,13 @@ pub enum JobError {
     Response = 7,
     /// The job has more pairs than the host's buffers have lines; reported by a shell that knows their length.
     Room = 8,
+    /// The first set has more spheres than the table holds, or the second more than a hit's number counts.
+    Table = 9,
 }
 
 impl JobError {
     /// All errors in the order of their codes.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Aborted,
         Self::Read,
         Self::Write,
@@ -35,6 +37,7 @@ impl JobError {
         Self::Overflow,
         Self::Response,
         Self::Room,
+        Self::Table,
     ];
     /// The number of bits of a code. Code 0 means no error.
     pub const BITS: u32 = 4;
@@ -76,8 +79,12 @@ impl JobError {
 
     /// The errors that an AFU with this shell can give, in the order of their codes.
     pub fn of_shell(shell: Shell) -> impl Iterator<Item = Self> {
-        // Only SPL2's context tells the AFU how long its buffers are.
-        Self::ALL.into_iter().filter(move |&error| error != Self::Room || shell == Shell::Spl2)
+        // Only SPL2's context tells the AFU how long its buffers are, and only the line port carries spheres.
+        Self::ALL.into_iter().filter(move |&error| match error {
+            Self::Room => shell == Shell::Spl2,
+            Self::Table => shell == Shell::Line,
+            _ => true,
+        })
     }
 
     const fn texts(self) -> (&'static str, &'static str) {
@@ -101,6 +108,10 @@ impl JobError {
             Self::Room => (
                 "more pairs than the buffers have lines for",
                 "send fewer pairs, or set up the buffers for the AFU's own record layout",
+            ),
+            Self::Table => (
+                "more spheres than the table holds, or than a hit's number counts",
+                "send fewer spheres, or generate the AFU with a larger --table",
             ),
         }
     }
@@ -126,7 +137,8 @@ mod tests {
             assert!(JobError::of_shell(shell).all(|error| !error.advice(shell).contains("page table")), "{shell}");
             assert!(JobError::of_shell(shell).all(|error| error != JobError::Room), "{shell}");
         }
-        assert!(JobError::of_shell(Shell::Spl2).eq(JobError::ALL));
+        let but_spheres = JobError::ALL.into_iter().filter(|error| *error != JobError::Table);
+        assert!(JobError::of_shell(Shell::Spl2).eq(but_spheres));
         assert!(JobError::Read.advice(Shell::Spl2).contains("page table"));
     }
 }

@@ -6,6 +6,7 @@ mod contacts;
 mod job_error;
 mod layout;
 mod pack;
+mod spheres;
 
 #[cfg(test)]
 pub(crate) use capability::AROUND_CYCLES;
@@ -14,6 +15,7 @@ pub(crate) use contacts::Contacts;
 pub use job_error::JobError;
 pub use layout::{Layout, OtherRadius};
 pub(crate) use pack::{Line, pack, pack_contacts, unpack_pairs};
+pub(crate) use spheres::{pack_numbers, pack_spheres};
 
 /// Bits of a line of memory.
 pub(crate) const LINE_BITS: u32 = 512;

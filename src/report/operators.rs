@@ -42,7 +42,7 @@ const HEADING: &str =
 pub fn page(all: &[Figures]) -> Result<String, serde_json::Error> {
     let public: PublicCores = serde_json::from_str(include_str!("public_cores.json"))?;
     let mut out = String::from("# Operators, placed and routed\n\n");
-    out += "`scripts/operators` makes this page: it runs `afu synth` and passes the JSON to `afu synth --table`.\n\n\
+    out += "`scripts/operators` makes this page: it runs `afu synth` and passes the JSON to `afu synth --page`.\n\n\
             - Our operators: LFE5U-85F, speed grade 8, median clock over the seeds. The wrapper's cells are subtracted.\n\
             - Public cores: ";
     out += &public.flow;

@@ -110,8 +110,18 @@ impl BoundsRule {
         Ok(Self { rounded_to, radius_units, cut })
     }
 
+    /// Binary32 units by which the radius is increased.
+    pub(crate) const fn radius_units(&self) -> u32 {
+        self.radius_units as u32
+    }
+
+    /// The bits of each number of a box.
+    pub(crate) const fn bits(&self) -> u32 {
+        i32::BITS - self.cut
+    }
+
     /// True if the kernel computes with at least the precision of binary32.
-    pub(super) const fn contains_binary32(&self) -> bool {
+    pub(crate) const fn contains_binary32(&self) -> bool {
         self.rounded_to.is_none()
     }
 

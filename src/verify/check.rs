@@ -242,6 +242,7 @@ mod tests {
             cycles: 10,
             error: 0,
             failure: None,
+            candidates: None,
             contacts: records.len() as u32,
             invalid: 0,
             first_invalid: None,

@@ -5,8 +5,10 @@ use crate::config::ReadError;
 use crate::cosim::CosimError;
 use crate::cosim::drive::DriveError;
 use crate::host::{HostError, TransportError};
+use crate::kernel::EngineError;
 use crate::link::LinkError;
 use crate::record::OtherRadius;
+use crate::spheres::RefusedArithmetic;
 
 /// Why there is no verdict. (A mismatch is a verdict.)
 #[derive(Debug, thiserror::Error)]
@@ -35,6 +37,25 @@ pub enum VerifyError {
     /// There are more pairs than a job's count can represent.
     #[error("{0} pairs: expected at most 4294967295 in a job")]
     Pairs(usize),
+    /// There are more spheres than the AFU's table holds.
+    #[error(
+        "{spheres} spheres: the AFU's table holds {table}; use a larger --table, or fewer spheres in the first set"
+    )]
+    Table {
+        /// Spheres of the first set.
+        spheres: usize,
+        /// Spheres that the table holds.
+        table: u32,
+    },
+    /// There are more spheres in the second set than a hit's number can represent.
+    #[error("{0} spheres in the second set: expected at most 65536 in a job")]
+    Second(usize),
+    /// The arithmetic has no boxes.
+    #[error(transparent)]
+    Search(#[from] RefusedArithmetic),
+    /// The reference could not decide.
+    #[error("the reference: {0}")]
+    Reference(EngineError),
 }
 
 impl VerifyError {
@@ -52,7 +73,11 @@ impl VerifyError {
             | Self::Manifest(_)
             | Self::Link(_)
             | Self::Radius(_)
-            | Self::Pairs(_) => false,
+            | Self::Pairs(_)
+            | Self::Table { .. }
+            | Self::Second(_)
+            | Self::Search(_)
+            | Self::Reference(_) => false,
         }
     }
 

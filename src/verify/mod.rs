@@ -8,6 +8,7 @@ mod engine;
 mod error;
 mod mismatch;
 mod replay;
+mod spheres;
 
 pub use account::{Part, account};
 pub use bench::{Bench, Origin, Progress, rtl_sha256};
@@ -16,3 +17,4 @@ pub use engine::{BenchEngine, Disagreement, Totals};
 pub use error::VerifyError;
 pub use mismatch::Mismatch;
 pub use replay::{Command, Setup};
+pub use spheres::SpheresVerdict;

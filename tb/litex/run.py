@@ -22,7 +22,9 @@ def main() -> int:
     # The simulator's Python has this path too.
     sys.path.append(str(here.parent / "cocotb"))
     with tempfile.TemporaryDirectory() as build:
-        made = subprocess.run([sys.executable, str(here / "soc.py"), str(folder), build], capture_output=True, text=True)
+        # LiteX leaves files where it runs.
+        command = [sys.executable, str(here / "soc.py"), str(folder), build]
+        made = subprocess.run(command, capture_output=True, text=True, cwd=build)
         if made.returncode:
             sys.exit(made.stdout + made.stderr)
         facts = Path(build) / "soc.json"

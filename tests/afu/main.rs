@@ -17,5 +17,6 @@ mod primitives;
 mod records;
 mod recovery;
 mod speed;
+mod spheres;
 mod traces;
 mod verilators;

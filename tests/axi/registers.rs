@@ -59,6 +59,8 @@ fn an_access_takes_three_cycles() {
     let afu = model.instance(6).unwrap();
     let mut machine = machine(&afu, "ideal", Handshake::Free, 6);
     machine.hesitates = false;
+    // The first one after the reset waits for the slave.
+    machine.write_register(map::SCRATCH.offset, 0).unwrap();
     for _ in 0..3 {
         let before = machine.cycle();
         machine.write_register(map::SCRATCH.offset, 1).unwrap();

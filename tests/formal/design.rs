@@ -4,8 +4,9 @@
 use std::sync::Arc;
 
 use contact_afu::afu::{Afu, Spec};
-use contact_afu::config::{Config, Results, Shell};
+use contact_afu::config::{Config, Input, Results, Shell};
 use contact_afu::hdl::{Graph, Module};
+use contact_afu::query::Fields;
 
 const TAGS: u32 = 4;
 
@@ -22,11 +23,13 @@ pub enum Design {
     Hits,
     /// Only pairs that touch come back, one per line: the number and two words.
     Records,
+    /// A queue of the AFU that takes spheres, 16 words deep.
+    Queue,
     /// The shell `axi` with a bus of 256 bits and 16 lines outstanding; its core does not matter.
     Axi,
 }
 
-use Design::{Axi, EachCycle, EveryOther, Hits, Records, ThreeEveryOther};
+use Design::{Axi, EachCycle, EveryOther, Hits, Queue, Records, ThreeEveryOther};
 
 impl Design {
     /// The suffix in reports that distinguishes it from [`EachCycle`].
@@ -38,6 +41,7 @@ impl Design {
             Hits => ", hits",
             Records => ", hits with records",
             Axi => ", axi",
+            Queue => ", spheres",
         }
     }
 
@@ -47,7 +51,8 @@ impl Design {
 
     /// Macros that describe it to a harness, with SCPUs of this delay.
     pub fn defines(self, latency: u32) -> Vec<String> {
-        // The lines that the dispatcher stores and the results there is room for, as computed by `afu::results::Room`.
+        // The lines that the dispatcher stores and the results there is room for, as computed by
+        // `afu::results::Room`.
         let lines = 16;
         let capacity = 32;
         let own: &[&str] = match self {
@@ -57,6 +62,7 @@ impl Design {
             Hits => &["SCPUS=32'd2", "PER_LINE=2", "GATHERS"],
             Records => &["SCPUS=32'd2", "PER_LINE=1"],
             Axi => &[],
+            Queue => &["QUEUE=queue_16x29_slack_8", "QUEUE_BITS=29"],
         };
         let own = own.iter().map(|define| (*define).to_owned());
         own.chain([format!("LATENCY={latency}"), format!("LINES={lines}"), format!("CAPACITY={capacity}")]).collect()
@@ -65,7 +71,7 @@ impl Design {
     /// The number of a pair's words that come back.
     fn record_bits(self) -> u32 {
         match self {
-            EachCycle | EveryOther | ThreeEveryOther | Axi => 16,
+            EachCycle | EveryOther | ThreeEveryOther | Axi | Queue => 16,
             Hits => 0,
             Records => 8,
         }
@@ -79,7 +85,7 @@ impl Design {
             ..base.clone()
         };
         let config = match self {
-            EachCycle | Axi => base,
+            EachCycle | Axi | Queue => base,
             EveryOther => Config { interval: 2, ..base },
             ThreeEveryOther => Config { scpus: 3, interval: 2, ..base },
             Hits => of_hits("hit"),
@@ -100,8 +106,10 @@ impl Design {
 
     /// Verilog files (name and text) of the accelerator with SCPUs of this delay, and of what harnesses include.
     pub fn files(self, latency: u32) -> Vec<(String, String)> {
-        if self == Axi {
-            return axi();
+        match self {
+            Axi => return axi(),
+            Queue => return queue(),
+            _ => {}
         }
         let spec = self.spec();
         let scpu = scpu(&spec, latency, self.record_bits());
@@ -133,6 +141,19 @@ fn axi() -> Vec<(String, String)> {
     verilog.chain(includes).collect()
 }
 
+/// The queue in front of the level of groups' rows.
+fn queue() -> Vec<(String, String)> {
+    let config = Config {
+        input: Input::Spheres,
+        results: Results::Hits,
+        contact: Fields::HIT,
+        shell: Shell::Line,
+        ..Config::default()
+    };
+    let afu = Afu::generate(Spec::from(config)).expect("a sound accelerator");
+    afu.verilog().into_iter().filter(|(name, _)| name == "queue_16x29_slack_8.v").collect()
+}
+
 /// The accelerator's inputs, declared as inputs of a harness.
 fn inputs(module: &Module, system: &str) -> String {
     let inputs = module.ports.iter().filter(|port| !port.output);
@@ -151,8 +172,8 @@ fn instance(module: &Module, name: &str) -> String {
     format!("{wires}  {name} dut (\n{}\n  );\n", connections.join(",\n"))
 }
 
-/// An SCPU that returns as many bits of its pair as a record holds: a contact if bit 0 is set, invalid if bit 1 is set
-/// and bit 0 is not. At an interval of 2 it reads the upper half one cycle later.
+/// An SCPU that returns as many bits of its pair as a record holds: a contact if bit 0 is set, invalid if bit 1 is
+/// set and bit 0 is not. At an interval of 2 it reads the upper half one cycle later.
 fn scpu(spec: &Spec, latency: u32, record_bits: u32) -> Arc<Module> {
     let graph = Graph::new("scpu");
     graph.about(format!("in place of an SCPU: the pair itself, {latency} cycles later"));

@@ -139,7 +139,13 @@ pub fn proofs() -> Vec<Proof> {
         others.map(|proof| Proof { is_short: proof.latency == 1 && short_others.contains(&proof.name), ..proof });
     let axi = ["axi_reads", "axi_writes", "axi_lite"]
         .map(|name| Proof::new(name, name, 1, Inductive(2)).of(Design::Axi).short());
-    alone.into_iter().chain(axi).chain(around).chain(others).collect()
+    let queue = [
+        Proof::new("queue", "queue", 1, Inductive(2)),
+        Proof::new("order in a queue", "queue", 1, Bounded(24)).with(&["ORDER"]),
+        Proof::new("a queue is full", "queue", 1, Reached(30)),
+    ];
+    let queue = queue.map(|proof| proof.of(Design::Queue).short());
+    alone.into_iter().chain(queue).chain(axi).chain(around).chain(others).collect()
 }
 
 /// The proof with this name, at the smallest latency.

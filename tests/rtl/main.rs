@@ -6,14 +6,14 @@ mod adopt;
 mod cocotb;
 mod text;
 
-use contact_afu::query::Query;
+use contact_afu::query::{Fields, Query};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use contact_afu::afu::shell::spl2::map;
 use contact_afu::afu::{Afu, Spec, top_name};
-use contact_afu::config::{Config, Multipliers, Results, Shell};
+use contact_afu::config::{Config, Input, Multipliers, Results, Search, Shell};
 use contact_afu::kernel::Reference;
 use contact_afu::pairs;
 use contact_afu::query::PairRecord;
@@ -34,6 +34,18 @@ fn write(afu: &Afu) -> (tempfile::TempDir, Vec<PathBuf>) {
         }
     }
     (folder, verilog)
+}
+
+/// An AFU that takes spheres.
+fn spheres(search: Search) -> Config {
+    Config {
+        input: Input::Spheres,
+        search,
+        results: Results::Hits,
+        contact: Fields::HIT,
+        shell: Shell::Line,
+        ..Config::default()
+    }
 }
 
 fn configurations() -> Vec<Config> {
@@ -59,6 +71,9 @@ fn configurations() -> Vec<Config> {
         Config { shell: Shell::Axi, outstanding: 256, ..Config::shipped() },
         Config { results: Results::Hits, ..with("half", "hit", 200.0) },
         Config { results: Results::Hits, ..with("half", "depth", 200.0) },
+        spheres(Search::default()),
+        spheres(Search { table: 65_536, lanes: 64, deciders: 8, box_bits: 18 }),
+        spheres(Search { table: 512, lanes: 256, deciders: 16, ..Search::default() }),
     ]
 }
 
@@ -122,7 +137,8 @@ fn clean_under_wall_of_both_verilators() {
         let (_folder, verilog) = write(&generate(config.clone()));
         for mut verilator in verilators() {
             let output = verilator
-                .args(["--lint-only", "-Wall", "--top-module", &top_name(&config), "-GSCPUS=2"])
+                .args(["--lint-only", "-Wall", "--top-module", &top_name(&config)])
+                .args((config.input == Input::Direct).then_some("-GSCPUS=2"))
                 // Vitis finds the pin by the name `interrupt`, which is a word of C++ libraries.
                 .args((config.shell == Shell::Axi).then_some("-Wno-SYMRSVDWORD"))
                 .args(&verilog)
@@ -195,8 +211,9 @@ fn names(verilog: &[PathBuf]) -> String {
 
 #[test]
 fn yosys_finds_no_latch_and_no_multiple_driver() {
-    for (shell, bus) in [(Shell::Spl2, 512), (Shell::Axi, 256)] {
-        let config = Config { scpus: 2, shell, bus, ..Config::shipped() };
+    let shells = [(Shell::Spl2, 512), (Shell::Axi, 256)];
+    let shells = shells.map(|(shell, bus)| Config { scpus: 2, shell, bus, ..Config::shipped() });
+    for config in shells.into_iter().chain([spheres(Search::default())]) {
         let (folder, verilog) = write(&generate(config.clone()));
         let script = format!(
             "read_verilog {}; hierarchy -check -top {}; proc; check -assert; select -assert-none t:$dlatch t:$adlatch t:$dlatchsr",
@@ -285,6 +302,25 @@ fn icarus_gives_the_reference_bits_below_spl2() {
     };
     let identity = format!("identity {:032x} version {}\n", map::AFU_ID, map::VERSION);
     assert_eq!(said, format!("{identity}{}{}no fault\n", job(1), job(2)));
+}
+
+/// Spheres too, in the bench's own job: the numbers that touch, and nothing unknown.
+#[test]
+fn icarus_finds_the_spheres_that_touch() {
+    for search in [Search::default(), Search { table: 512, lanes: 64, deciders: 2, box_bits: 10 }] {
+        let (folder, _) = write(&generate(spheres(search)));
+        let bench = folder.path().join("bench");
+        let file = folder.path().join("sim/contact_afu_bench.v");
+        let compiled = Command::new("iverilog")
+            .args(["-g2005", "-Wall", "-Wno-timescale", "-s", "contact_afu_bench", "-o"])
+            .args([&bench, Path::new("-y"), folder.path(), &file])
+            .output()
+            .expect("needs Icarus: run scripts/setup --test");
+        succeeded("Icarus", &compiled);
+        let ran = Command::new("vvp").arg("-n").arg(&bench).output().expect("vvp runs");
+        let said = String::from_utf8_lossy(&ran.stdout);
+        assert!(said.contains("PASS: 20 spheres, 3 lines") && said.contains("contacts 42 invalid 1"), "{said}");
+    }
 }
 
 /// Behind AXI4 too, on a bus of any width.

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use std::sync::LazyLock;
 
 use contact_afu::afu::{Afu, Spec};
-use contact_afu::config::{Config, Multipliers, Results, Shell};
+use contact_afu::config::{Config, Multipliers, Results, Search, Shell};
 
 /// Configurations that between them have every module and every way to write it.
 fn configurations() -> Vec<Config> {
@@ -36,6 +36,8 @@ fn configurations() -> Vec<Config> {
         hits("hit"),
         hits("depth"),
         hits("hit,depth,normal,position"),
+        super::spheres(Search::default()),
+        super::spheres(Search { table: 65_536, lanes: 256, deciders: 1, ..Search::default() }),
     ]
 }
 

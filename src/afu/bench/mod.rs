@@ -1,11 +1,13 @@
 //! The test bench beside the Verilog, for simulators without this crate: a job with its pairs, and the lines that the
 //! reference kernel computes for them. Each shell has its own bench, and `shared.v` has the common parts.
 
-use crate::query::{Flow, PairRecord};
+mod example;
 
 use super::shell::BenchText;
 use super::{Afu, COUNT_BITS};
-use crate::record::{Line, pack, pack_contacts, unpack_pairs};
+use crate::config::Input;
+use crate::record::Line;
+use example::Example;
 
 impl Afu {
     /// The name of the test bench's module.
@@ -15,17 +17,14 @@ impl Afu {
 
     /// The text of the test bench.
     pub(super) fn bench(&self) -> String {
-        let (config, layout) = (&self.spec().config, self.layout());
-        let examples = config.query.shape().examples.iter();
-        let pairs: Vec<_> = examples.map(|values| PairRecord::of_values(values.iter().copied())).collect();
-        let source = pack(&layout, &pairs);
-        // As the AFU reads them: rounded to the record format, with the hardware's radius.
-        let records = config.reference().run_all(&unpack_pairs(&layout, &source, pairs.len()));
-        let expected = pack_contacts(&layout, &records);
-        let invalid: Vec<usize> = (0..records.len()).filter(|&i| records[i].flow() == Some(Flow::Invalid)).collect();
-        let first_invalid = invalid.first().map_or(u32::MAX >> (u32::BITS - COUNT_BITS), |&number| number as u32);
-        let contacts = records.iter().filter(|record| record.is_contact()).count();
-
+        let config = &self.spec().config;
+        let Example { source, expected, count, contacts, invalid, first_invalid, last_line } = Example::of(self);
+        let first_invalid = first_invalid.map_or(u32::MAX >> (u32::BITS - COUNT_BITS), |number| number as u32);
+        // An AFU that takes spheres has no SCPUs.
+        let (what, parameter) = match config.input {
+            Input::Direct => ("pairs", "  parameter [31:0] SCPUS = 32'd@SCPUS@;\n"),
+            Input::Spheres => ("spheres", ""),
+        };
         let BenchText { text, first_line } = self.shell().bench(self);
         let lines = |lines: &[Line], text: &dyn Fn(usize, &str) -> String| {
             let lines = lines.iter().enumerate().map(|(number, line)| text(number, &hex(line)));
@@ -36,12 +35,14 @@ impl Afu {
             ("@TOP@", self.top_name()),
             ("@VERSION@", env!("CARGO_PKG_VERSION").to_owned()),
             ("@COMMAND@", self.command()),
+            ("@PARAMETER@\n", parameter.to_owned()),
             ("@SCPUS@", config.scpus.to_string()),
-            ("@COUNT@", pairs.len().to_string()),
-            ("@PER_LINE@", layout.pairs_per_line().to_string()),
+            ("@COUNT@", count.to_string()),
+            ("@WHAT@", what.to_owned()),
+            ("@LAST_LINE@", last_line),
             ("@EXPECTED_LINES@", expected.len().to_string()),
             ("@CONTACTS@", contacts.to_string()),
-            ("@INVALID@", invalid.len().to_string()),
+            ("@INVALID@", invalid.to_string()),
             ("@FIRST_INVALID@", first_invalid.to_string()),
             (
                 "@SOURCE@",

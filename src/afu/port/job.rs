@@ -2,7 +2,7 @@
 
 use super::interface;
 use crate::afu::{ADDRESS_BITS, EPOCH_BITS, Spec};
-use crate::config::Results;
+use crate::config::{Input, Results};
 use crate::record::{COUNT_BITS, Capability, JobError};
 
 /// Bits of `mode`.
@@ -19,8 +19,20 @@ interface! {
         destination_lines: Option<T> => COUNT_BITS,
             "lines there is room for at the destination; those beyond are not written",
             if spec.config.results == Results::Hits;
-        count: T => COUNT_BITS, "pairs of the job; 0 is a job";
-        mode: T => MODE_BITS, format!("0; anything else ends the job with error {}", JobError::Mode.code());
+        count: T => COUNT_BITS, match spec.config.input {
+            Input::Direct => "pairs of the job; 0 is a job",
+            Input::Spheres => "spheres of the first set, at most as many as the table holds; 0 is a job",
+        };
+        others: Option<T> => COUNT_BITS, "spheres of the second set, at most 65 536",
+            if spec.config.input == Input::Spheres;
+        mode: T => MODE_BITS, match spec.config.input {
+            Input::Direct => format!("0; anything else ends the job with error {}", JobError::Mode.code()),
+            Input::Spheres => format!(
+                "0: one set, each pair once; 1: the first set against the second; 2: the first set of the last job, \
+                 which is still in the table, against the second; anything else ends the job with error {}",
+                JobError::Mode.code()
+            ),
+        };
         epoch: T => EPOCH_BITS,
             "upper part of the job's tags: change it from job to job, so that late responses are known";
         watchdog: T => COUNT_BITS, format!(
@@ -46,8 +58,16 @@ interface! {
             Results::All => "contacts of the job so far",
             Results::Hits => "contacts of the job so far: as many records, each beginning with its pair's number",
         };
-        invalid: T => COUNT_BITS, "invalid pairs of the job so far";
-        first_invalid: T => COUNT_BITS, "number of the first invalid pair, all ones if there is none";
+        candidates: Option<T> => COUNT_BITS, "pairs of spheres of the job so far whose boxes meet",
+            if spec.config.input == Input::Spheres;
+        invalid: T => COUNT_BITS, match spec.config.input {
+            Input::Direct => "invalid pairs of the job so far",
+            Input::Spheres => "invalid spheres of the job so far",
+        };
+        first_invalid: T => COUNT_BITS, match spec.config.input {
+            Input::Direct => "number of the first invalid pair, all ones if there is none",
+            Input::Spheres => "number of the first invalid sphere, counted through both sets, all ones if there is none",
+        };
         cycles_busy: T => CYCLE_BITS, "cycles of the job so far";
         cycles_input: T => CYCLE_BITS, "of these, cycles in which the SCPUs waited for pairs";
         cycles_output: T => CYCLE_BITS, "of these, cycles in which pairs waited for room for their results";
@@ -59,6 +79,7 @@ interface! {
 fn errors(spec: &Spec) -> String {
     let is_told = |error: &JobError| match error {
         JobError::Room => false,
+        JobError::Table => spec.config.input == Input::Spheres,
         JobError::Overflow => spec.config.results == Results::Hits,
         _ => true,
     };

@@ -20,6 +20,8 @@ pub struct Job<'a> {
     pub source: &'a [Line],
     /// The number of pairs in them.
     pub pairs: u32,
+    /// The number of spheres in the second set, if spheres come in; `pairs` is that of the first.
+    pub others: u32,
     /// Lines that the results take. If only contacts come back, the number of lines that there is room for.
     pub destination_lines: u64,
     /// Contacts per destination line, if only contacts come back. The AFU must then write as many lines as its contacts
@@ -33,6 +35,8 @@ pub struct Job<'a> {
     pub mode: u8,
     /// Cycles without a response after which the AFU gives up. With 0 it never does.
     pub watchdog: u32,
+    /// Cycles that a search among spheres takes at most, if the AFU searches.
+    pub search: u64,
     /// The number of SCPUs that the AFU must have.
     pub scpus: Option<u32>,
     /// Cycles after which the job has failed even if requests are still answered. `None` leaves it to
@@ -46,12 +50,14 @@ impl<'a> Job<'a> {
         Self {
             source,
             pairs,
+            others: 0,
             destination_lines,
             hits_per_line: None,
             source_address: SOURCE,
             destination_address: DESTINATION,
             mode: 0,
             watchdog: 0,
+            search: 0,
             scpus: None,
             max_cycles: None,
         }
@@ -60,7 +66,7 @@ impl<'a> Job<'a> {
     /// The parts of the job that take time.
     pub(super) fn work(&self) -> Work {
         let (pairs, reads) = (self.pairs.into(), self.source.len() as u64);
-        Work { pairs, reads, writes: self.destination_lines, watchdog: self.watchdog }
+        Work { pairs, reads, writes: self.destination_lines, watchdog: self.watchdog, search: self.search }
     }
 
     fn source_range(&self) -> Range<u64> {
@@ -176,6 +182,7 @@ impl Running {
             error: ports.error(),
             failure: None,
             contacts: counters.contacts,
+            candidates: counters.candidates,
             invalid: counters.invalid,
             first_invalid,
             cycles_busy: counters.busy,

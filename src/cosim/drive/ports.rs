@@ -3,7 +3,7 @@
 use super::job::Job;
 use crate::afu::port::{self, Declaration, JobInputs, JobOutputs, ReadInputs, ReadOutputs, WriteInputs, WriteOutputs};
 use crate::afu::{EPOCH_BITS, Spec};
-use crate::config::{Config, Results};
+use crate::config::{Config, Input, Results};
 use crate::cosim::error::SimulationError;
 use crate::cosim::instance::Instance;
 use crate::cosim::port::Port;
@@ -28,6 +28,7 @@ pub(super) struct Ports<'a> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Counters {
     pub(super) contacts: u32,
+    pub(super) candidates: Option<u32>,
     pub(super) invalid: u32,
     pub(super) first_invalid: u32,
     pub(super) busy: u64,
@@ -39,7 +40,8 @@ impl<'a> Ports<'a> {
     pub(super) fn new(afu: &'a Instance) -> Result<Self, SimulationError> {
         let reset_active_low = !afu.has_port("rst") && afu.has_port("rst_n");
         let results = if afu.has_port("destination_lines") { Results::Hits } else { Results::All };
-        let mut spec = Spec::from(Config { results, ..Config::default() });
+        let input = if afu.has_port("others") { Input::Spheres } else { Input::Direct };
+        let mut spec = Spec::from(Config { input, results, ..Config::default() });
         // A tag that is too short or too long is refused below: its port has another width than any AFU's.
         let tag_bits = afu.port_list().into_iter().find(|(name, ..)| name == "rd_req_tag").map(|(_, bits, _)| bits);
         if let Some(slot_bits) = tag_bits.and_then(|bits| bits.checked_sub(EPOCH_BITS)).filter(|bits| *bits <= 8) {
@@ -78,6 +80,9 @@ impl<'a> Ports<'a> {
             port.set(job.destination_lines.min(u64::from(u32::MAX)));
         }
         ports.count.set(job.pairs.into());
+        if let Some(port) = ports.others {
+            port.set(job.others.into());
+        }
         ports.mode.set(job.mode.into());
         ports.epoch.set(epoch.into());
         ports.watchdog.set(job.watchdog.into());
@@ -87,11 +92,8 @@ impl<'a> Ports<'a> {
 
     /// Clears `start`, and every input that needs to be valid only with it.
     pub(super) fn started(&self) {
-        let JobInputs { start, source, destination, destination_lines, count, mode, epoch, watchdog, abort_job: _ } =
-            self.job;
-        for port in [start, source, destination, count, mode, epoch, watchdog].into_iter().chain(destination_lines) {
-            port.set(0);
-        }
+        let ports = self.job.named().into_iter().filter(|(name, _)| *name != "abort_job");
+        ports.for_each(|(_, port)| port.set(0));
     }
 
     pub(super) fn abort(&self, active: bool) {
@@ -117,6 +119,7 @@ impl<'a> Ports<'a> {
     pub(super) fn counters(&self) -> Counters {
         Counters {
             contacts: self.told.contacts.get() as u32,
+            candidates: self.told.candidates.map(|port| port.get() as u32),
             invalid: self.told.invalid.get() as u32,
             first_invalid: self.told.first_invalid.get() as u32,
             busy: self.told.cycles_busy.get(),

@@ -86,6 +86,7 @@ pub(in crate::host) fn status<T: Transport>(session: &mut Session<T>) -> Result<
         error: map::ERROR.get(status) as u8,
         failure: channel.map(|channel| Failure { channel, response, address }),
         contacts: read(session, map::CONTACTS, 0)?,
+        candidates: None,
         invalid: read(session, map::INVALID, 0)?,
         first_invalid: read(session, map::FIRST_INVALID, 0)?,
         cycles_busy: read_wide(session, map::CYCLES_BUSY)?,

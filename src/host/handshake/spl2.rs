@@ -80,6 +80,7 @@ pub(in crate::host) fn status<T: Transport>(session: &Session<T>, begin: &Begin)
         error: of_status(status::ERROR) as u8,
         failure: None,
         contacts: of_status(status::CONTACTS),
+        candidates: None,
         invalid: of_status(status::INVALID),
         first_invalid: of_status(status::FIRST_INVALID),
         cycles_busy: word(performance::BUSY, &figures),

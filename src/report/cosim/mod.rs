@@ -1,6 +1,7 @@
 //! The report of `afu cosim`: JSON for programs, a table for people.
 
 mod json;
+mod spheres;
 
 use std::collections::BTreeMap;
 
@@ -9,6 +10,8 @@ use super::tally::Tally;
 use crate::config::{Config, Results};
 use crate::query::Flow;
 use crate::verify::Mismatch;
+
+pub use spheres::{SpheresJob, SpheresRun};
 
 /// The schema of the JSON. `CHANGELOG.md` says when its number changes.
 pub const SCHEMA: &str = "contact-afu/cosim/1";

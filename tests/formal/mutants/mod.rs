@@ -3,6 +3,7 @@
 mod axi;
 mod others;
 mod parts;
+mod spheres;
 mod whole;
 
 use crate::proofs::{Method, Proof, proof};
@@ -58,7 +59,8 @@ const SHORT: [&str; 9] = [
 ];
 
 pub fn all() -> Vec<Mutant> {
-    let tables = parts::TABLES.iter().chain(whole::TABLES).chain(others::TABLES).chain(axi::TABLES);
+    let tables =
+        parts::TABLES.iter().chain(whole::TABLES).chain(others::TABLES).chain(axi::TABLES).chain(spheres::TABLES);
     let mutants = tables.flat_map(|(tried_in, file, rows)| {
         rows.iter().map(|&(what, old, new, cycle, breaks)| {
             let is_short = SHORT.contains(&what);

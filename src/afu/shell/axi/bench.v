@@ -345,7 +345,7 @@ module @BENCH@;
 
   initial begin
 @ARGUMENTS@
-    if (!is_own && count != 32'd0) $readmemh(source_name, source_lines, 0, (count - 1) / @PER_LINE@);
+    if (!is_own && count != 32'd0) $readmemh(source_name, source_lines, 0, @LAST_LINE@);
     for (line = 0; line < LINES; line = line + 1)
       for (at = 0; at < BEATS; at = at + 1) source_beats[line*BEATS+at] = source_lines[line][at*BUS +: BUS];
     repeat (4) @(posedge clk);

@@ -5,7 +5,7 @@
 //   iverilog -g2005 -o bench -s @BENCH@ -y . sim/@BENCH@.v
 //   vvp -n bench
 //
-// It sends @COUNT@ pairs through the AFU, compares every line written with the reference kernel's, and ends with a line that
+// It sends @COUNT@ @WHAT@ through the AFU, compares every line written with the reference kernel's, and ends with a line that
 // begins with PASS or FAIL. The memory answers in order, after LATENCY cycles, and refuses requests at random.
 //
 @FILES@
@@ -29,9 +29,7 @@ module @BENCH@;
   wire [9:0] wr_rsp_tag;
 @OUTPUTS@
 
-  @TOP@ #(
-    .SCPUS(SCPUS)
-  ) afu (
+  @TOP@@PARAMETERS@ afu (
 @PORTS@
   );
 
@@ -75,7 +73,7 @@ module @BENCH@;
 @ARGUMENTS@
     rd_req_ready = 1'b0;
     wr_req_ready = 1'b0;
-    if (!is_own && count != 32'd0) $readmemh(source_name, source_lines, 0, (count - 1) / @PER_LINE@);
+    if (!is_own && count != 32'd0) $readmemh(source_name, source_lines, 0, @LAST_LINE@);
     repeat (4) @(posedge clk);
     rst <= 1'b0;
     repeat (2) @(posedge clk);

@@ -3,13 +3,17 @@
 use std::fmt::Write as _;
 
 use crate::afu::{Afu, EPOCH_BITS, JobError};
-use crate::config::Results;
+use crate::config::{Input, Results};
 
 /// The protocol of a job on the line port, with its timing.
 pub(super) fn protocol(afu: &Afu) -> String {
     let spec = afu.spec();
-    let hits = spec.config.results == Results::Hits;
-    let inputs = if hits { "`destination`, `destination_lines`" } else { "`destination`" };
+    let (inputs, data) = match (spec.config.input, spec.config.results) {
+        (Input::Spheres, _) => ("`destination`, `destination_lines`, `others`", "spheres"),
+        (Input::Direct, Results::Hits) => ("`destination`, `destination_lines`", "pairs"),
+        (Input::Direct, Results::All) => ("`destination`", "pairs"),
+    };
+    let timing = if spec.config.input == Input::Direct { waves(afu) } else { String::new() };
     let slot_bits = spec.max_outstanding.ilog2();
     let reset = if spec.reset.active_low { "`rst_n` low" } else { "`rst` high" };
     let kind = if spec.reset.asynchronous { "acts without a clock edge" } else { "is sampled at the rising edge" };
@@ -33,7 +37,7 @@ Everything is sampled at the rising edge of `clk`, at the end of its cycle. Rese
 
 ## A job
 
-1. Reset the AFU once. Put the pairs into memory from line `source` on.
+1. Reset the AFU once. Put the {data} into memory from line `source` on.
 2. While `busy` is low, raise `start` for one cycle. The AFU reads each source line once, in order; memory may answer in any order.
 3. It writes each destination line once, in order, from line `destination` on.
 4. `done` rises after the last write was acknowledged. Until the next start `error`, `contacts`, `invalid`, `first_invalid` and \
@@ -46,7 +50,7 @@ Everything is sampled at the rising edge of `clk`, at the end of its cycle. Rese
         spec.max_outstanding - 1,
         spec.max_outstanding,
         spec.max_outstanding,
-        waves(afu),
+        timing,
     )
 }
 

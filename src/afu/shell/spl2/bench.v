@@ -193,7 +193,7 @@ module @BENCH@;
 
   initial begin
 @ARGUMENTS@
-    if (!is_own && count != 32'd0) $readmemh(source_name, source_lines, 1, 1 + (count - 1) / @PER_LINE@);
+    if (!is_own && count != 32'd0) $readmemh(source_name, source_lines, 1, 1 + @LAST_LINE@);
     source_lines[0] = 512'd0;
     // Dwords 6 to 2: lines of a buffer, results, pairs, in byte addresses.
     pointers = {288'd0, LINES[31:0], DESTINATION, 6'd0, SOURCE, 6'd0, 64'd0};

@@ -1,0 +1,112 @@
+//! The loader: takes spheres from lines, one per cycle, and gives each its box. A row that is
+//! searched begins only when one of those that are kept has ended.
+
+use std::sync::Arc;
+
+use super::bounds::{SPHERE_BITS, sphere_box};
+use super::walk::later;
+use super::{KEPT_ROWS, ROW_BITS, ROW_NUMBER_BITS, Sizes};
+use crate::afu::counter::{up_down, waiting};
+use crate::afu::lines::CYCLES_TO_WORD;
+use crate::afu::{COUNT_BITS, Spec};
+use crate::hdl::{BuildErrors, Graph, Module};
+
+/// Builds the module `contact_afu_loader`.
+pub(super) fn loader(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, BuildErrors> {
+    let unit = sphere_box(sizes.rule, &spec.model(), spec.config.cut_mhz())?;
+    let graph = Graph::new("contact_afu_loader");
+    graph.about("takes spheres from lines, and gives each its box");
+    let start = graph.input("start", 1);
+    let run = graph.input("run", 1);
+    let spheres = graph.input("count", COUNT_BITS);
+    let others = graph.input("others", COUNT_BITS);
+    let has_others = graph.input("has_others", 1);
+    let keeps_table = graph.input("keeps_table", 1);
+    let comes = graph.input("line_comes", 1);
+    let line = graph.input("line", spec.line_bits);
+    let row_ends = graph.input("row_ends", 1);
+
+    // Lines that were announced and not taken yet.
+    let slot_bits = spec.max_outstanding.ilog2();
+    let per_line = spec.line_bits / SPHERE_BITS;
+    let line_waits = graph.register("line_waits", 1, 0);
+    let line_ends = graph.wire("line_ends", 1);
+    let taken = (line_ends & !start).registered("taken");
+    line_waits.next(!start & waiting(&graph, "lines_waiting", slot_bits + 1, [start, comes], [line_ends, taken]));
+
+    // Where the next sphere is: the set, the row and the column.
+    let second = graph.register("is_second_set", 1, 0);
+    let left = graph.register("spheres_left", COUNT_BITS, 0);
+    let row = graph.register("row", ROW_NUMBER_BITS, 0);
+    let column = graph.register("column", ROW_BITS, 0);
+    let any_left = left.any().named("any_left");
+    let searched = (!has_others | *second).named("is_searched");
+    // A row that is searched needs a place among the rows that are kept.
+    let inside_bits = KEPT_ROWS.ilog2() + 1;
+    let inside = graph.register("rows_inside", inside_bits, 0);
+    let may_begin = !searched | !inside.msb();
+    let goes = (run & *line_waits & any_left & (column.any() | may_begin)).named("goes");
+    let begins = (goes & searched & !column.any()).named("row_begins");
+    let row_loaded = (goes & column.all()).named("row_loaded");
+    let per_line_bits = per_line.ilog2();
+    line_ends.drive(goes & column.low(per_line_bits).all());
+    up_down(inside, start, begins, row_ends);
+    column.next_if(start | goes, start.select(column.same(0), column.plus(1)));
+    let more = left.drop_low(ROW_BITS).any().named("has_whole_row");
+    let fewer = left.drop_low(ROW_BITS).minus(1).concat(left.low(ROW_BITS));
+    let behind_row = more.select(fewer, left.same(0)).named("left_behind_row");
+    let turns = (!any_left & has_others & !*second).named("turns_to_second_set");
+    let first_left = keeps_table.select(others, spheres);
+    left.next_if(start | row_loaded | turns, start.select(first_left, turns.select(others, behind_row)));
+    second.next(start.select(keeps_table, *second | turns));
+    row.next_if(start | row_loaded | turns, (start | turns).select(row.same(0), row.plus(1)));
+    let present = (more | left.low(ROW_BITS).greater_than(column.value())).named("is_present");
+
+    // The line in the collector's memory.
+    let head = graph.register("head", slot_bits, 0);
+    head.next_if(start | line_ends, start.select(head.same(0), head.plus(1)));
+    let word = column.low(per_line_bits).delay(CYCLES_TO_WORD).named("word");
+    let parts: Vec<_> = (0..per_line).map(|part| line.slice(part * SPHERE_BITS, SPHERE_BITS)).collect();
+    let sphere = super::bits::chosen("sphere", word.one_hot(), &parts).delay(1).named("sphere");
+    let cycles = CYCLES_TO_WORD + 1;
+    let bounds =
+        graph.instance("unit", &unit, &[("sphere", sphere), ("present", present.delay(cycles).named("present"))]);
+
+    // All that belongs to a sphere arrives with its box.
+    let cycles = cycles + unit.latency;
+    let valid = later(start, goes, cycles, "on_the_way");
+    graph.output("valid", valid);
+    graph.output("box", bounds.output("box"));
+    graph.output("sphere", sphere.delay(unit.latency).named("sphere_then"));
+    graph.output("column", column.delay(cycles).named("column_then"));
+    graph.output("row", row.delay(cycles).named("row_then"));
+    graph.output("searched", searched.delay(cycles).named("searched_then"));
+    let to_table = !*second;
+    graph.output("to_table", to_table.delay(cycles).named("to_table_then"));
+    graph.output("head", head.value());
+    graph.output("taken", taken);
+
+    // The status.
+    let invalid = (valid & bounds.output("invalid")).named("is_invalid");
+    let count = graph.register("invalid_count", COUNT_BITS, 0);
+    let passed = graph.register("spheres_passed", COUNT_BITS, 0);
+    let first = graph.register("first_invalid_sphere", COUNT_BITS, u128::from(u32::MAX));
+    let none_yet = graph.register("none_invalid", 1, 1);
+    let counted = (valid & present.delay(cycles)).named("is_counted");
+    passed.next_if(start | counted, start.select(passed.same(0), passed.plus(1)));
+    count.next_if(start | invalid, start.select(count.same(0), count.plus(1)));
+    first.next_if(start | (invalid & *none_yet), start.select(first.same(u128::from(u32::MAX)), passed.value()));
+    none_yet.next(start | (*none_yet & !invalid));
+    graph.output("invalid", count.value());
+    graph.output("first_invalid", first.value());
+    let set_ended = (!any_left & (!has_others | *second)).named("set_ended");
+    // The last sphere is still on its way to its box, and then to its row, for a few cycles.
+    let passing = later(start, goes, cycles + 4, "passing");
+    let on_the_way = graph.register("spheres_on_the_way", COUNT_BITS.ilog2() + 1, 0);
+    up_down(on_the_way, start, goes, passing);
+    let ended = set_ended & !inside.any() & !on_the_way.any() & !goes;
+    graph.output("all_ended", (ended & run & !start).registered("all_ended"));
+    let waits = run & any_left;
+    graph.output("waits_for_input", (waits & !*line_waits).registered("waits_for_input"));
+    graph.finish()
+}

@@ -1,0 +1,60 @@
+//! Memories of the search, each a word two cycles after its place: in look-up tables if it is shallow, otherwise in
+//! block memory.
+
+use super::{KEPT_ROWS, ROW_NUMBER_BITS};
+use crate::afu::Spec;
+use crate::afu::lines::{self, Access, line_memory};
+use crate::hdl::{BuildErrors, Graph, Signal};
+
+/// Cycles from a place to its word.
+pub(super) const CYCLES_TO_WORD: u32 = lines::CYCLES_TO_WORD;
+/// A deeper memory is one of block memories.
+const DEEPEST_IN_TABLES: u32 = 64;
+
+/// The box of a row that is searched, as the input `write_NAME_box`, which is written where `write_NAME` is set for
+/// the row `write_NAME_row`: that of `row` two cycles ago. It is kept as long as the row's spheres are.
+pub(super) fn kept_boxes<'g>(
+    graph: &'g Graph,
+    spec: &Spec,
+    name: &str,
+    row: Signal<'g>,
+) -> Result<Signal<'g>, BuildErrors> {
+    let kept = KEPT_ROWS.ilog2();
+    let bits = 6 * spec.config.search.box_bits;
+    let write = graph.input(&format!("write_{name}"), 1);
+    let write_row = graph.input(&format!("write_{name}_row"), ROW_NUMBER_BITS).low(kept);
+    let bounds = graph.input(&format!("write_{name}_box"), bits);
+    Store::new(spec, kept).column(graph, &format!("{name}_boxes"), [write, write_row, bounds], row.low(kept))
+}
+
+/// Memories of the same depth.
+pub(super) struct Store<'a> {
+    spec: &'a Spec,
+    depth: u32,
+}
+
+impl<'a> Store<'a> {
+    /// Memories with places of `bits` bits.
+    pub(super) fn new(spec: &'a Spec, bits: u32) -> Self {
+        Self { spec, depth: 1 << bits }
+    }
+
+    /// A memory of this name, with its writes (enable, place, word): the word at `place` two cycles ago.
+    pub(super) fn column<'g>(
+        &mut self,
+        graph: &'g Graph,
+        name: &str,
+        [write, write_place, word]: [Signal<'g>; 3],
+        place: Signal<'g>,
+    ) -> Result<Signal<'g>, BuildErrors> {
+        if self.depth <= DEEPEST_IN_TABLES {
+            let memory = graph.memory(name, self.depth, word.width());
+            memory.write(write, write_place, word);
+            return Ok(memory.read(place).delay(1).named(&format!("{name}_word")));
+        }
+        let always = graph.constant(1, 1);
+        let access =
+            Access { write, write_index: write_place, line: word, read: always, read_index: place, advance: always };
+        line_memory(graph, self.spec, name, self.depth, &access)
+    }
+}

@@ -1,0 +1,376 @@
+//! The accelerator that takes spheres: the search between collector and dispatcher.
+
+use std::sync::Arc;
+
+use super::level::{Level, level};
+use super::queue::queue;
+use super::{
+    KEPT_ROWS, QUEUE, ROW, ROW_BITS, ROW_NUMBER_BITS, SLACK, Sizes, candidates, decider, hits, loader, near, rows,
+};
+use crate::afu::control::control;
+use crate::afu::port::{JobInputs, JobOutputs, ReadInputs, ReadOutputs, WriteInputs, WriteOutputs, outputs};
+use crate::afu::{Spec, collector, dispatcher, packer};
+use crate::hdl::{BuildErrors, Error, Graph, Instantiated, Module, Signal};
+use crate::record::Capability;
+
+/// Lines that the dispatcher holds.
+const LINES: u32 = 32;
+
+/// The top over the plain line port, around a kernel of `--contact hit`.
+pub(in crate::afu) fn spheres_top(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>, BuildErrors> {
+    let graph = Graph::new("contact_afu");
+    graph.about("collision-detection accelerator: spheres in, the numbers of those that touch out");
+    let sizes = Sizes::of(&spec.config).map_err(|refused| {
+        let place = std::panic::Location::caller();
+        BuildErrors(vec![Error { module: "contact_afu".to_owned(), message: refused.to_string(), place }])
+    })?;
+    let job = JobInputs::of(spec).map(|port| port.input(&graph));
+    let reads = ReadInputs::of(spec).map(|port| port.input(&graph));
+    let writes = WriteInputs::of(spec).map(|port| port.input(&graph));
+    let wire = |name: &'static str, width: u32| (name, graph.wire(name, width));
+    let one = graph.constant(1, 1);
+
+    let told_to_control = ["read_failed", "write_failed", "read_unexpected", "write_unexpected", "read_answered"]
+        .into_iter()
+        .chain(["write_answered", "read_idle", "write_idle", "packer_done", "dispatched"])
+        .chain(["waits_for_input", "waits_for_output", "overflowed"]);
+    let told: Vec<_> = told_to_control.map(|name| wire(name, 1)).collect();
+    let (_, taken) = wire("line_taken", 1);
+    let (_, head) = wire("line_place", spec.max_outstanding.ilog2());
+    let (_, accepts) = wire("dispatcher_accepts", 1);
+    // What later stages tell earlier ones.
+    let (_, row_ends) = wire("row_ends", 1);
+    let (_, has_room) = wire("steps_have_room", 1);
+
+    // No delay line says when something happens, so a job may begin at once, and nothing that is inside matters
+    // after.
+    let control_inputs = [job.named(), told.clone(), vec![("none_inside", one), ("filled", one)]].concat();
+    let control = graph.instance("control", &control(spec)?, &control_inputs);
+    let begin = |part: &str| control.output(&format!("begin_{part}"));
+    let run = control.output("run");
+    let given_up = control.output("given_up");
+    let epoch = control.output("job_epoch");
+    let has_others = control.output("has_others");
+    let keeps_table = control.output("keeps_table");
+
+    let mut collector_inputs = reads.named();
+    collector_inputs.extend([
+        ("start", begin("collector")),
+        ("run", run),
+        ("given_up", given_up),
+        ("source", control.output("job_source")),
+        ("lines", control.output("lines")),
+        ("epoch", epoch),
+        ("taken", taken),
+        ("place", head),
+    ]);
+    let collector = graph.instance("collector", &collector::collector(spec)?, &collector_inputs);
+    let start = begin("loader");
+    let loader = graph.instance(
+        "loader",
+        &loader::loader(spec, &sizes)?,
+        &[
+            ("start", start),
+            ("run", run),
+            ("count", control.output("job_count")),
+            ("others", control.output("job_others")),
+            ("has_others", has_others),
+            ("keeps_table", keeps_table),
+            ("line_comes", collector.output("line_comes")),
+            ("line", collector.output("line")),
+            ("row_ends", row_ends),
+        ],
+    );
+    taken.drive(loader.output("taken"));
+    head.drive(loader.output("head"));
+    let of_sphere = ["valid", "box", "column", "row", "searched", "to_table"].map(|name| (name, loader.output(name)));
+    let [(_, valid), (_, bounds), (_, column), (_, row), (_, searched), (_, to_table)] = of_sphere;
+    let table_row = row.low(sizes.row_bits);
+    let write_own = (valid & searched).named("keeps_sphere");
+    let write_table = (valid & to_table).named("puts_sphere_into_table");
+    let mut inputs = vec![("start", start), ("keeps_table", keeps_table), ("has_others", has_others)];
+    inputs.extend(of_sphere);
+    let rows = graph.instance("rows", &rows::rows(&sizes)?, &inputs);
+
+    let one_set = !has_others;
+
+    // Groups of rows: one item a row.
+    let (_, groups_takes) = wire("groups_take", 1);
+    let words = stage_queue(
+        &graph,
+        start,
+        "row_queue",
+        rows.output("launches"),
+        &[rows.output("launched_row"), rows.output("words"), one],
+        groups_takes,
+    )?;
+    let queries = [
+        ("one_set", one_set),
+        ("table_last", rows.output("table_last")),
+        ("write_query", rows.output("writes_query")),
+        ("write_query_row", rows.output("row_box_row")),
+        ("write_query_box", rows.output("row_box")),
+    ];
+    let item = Parts::of(&words);
+    let (_, groups_may) = wire("groups_may_step", 1);
+    let mut inputs = vec![
+        ("start", start),
+        ("may_step", groups_may),
+        ("item_row", item.row),
+        ("item_last", item.last),
+        ("item_valid", item.valid),
+        ("item_mask", item.mask),
+        ("write", rows.output("writes_group_box")),
+        ("write_column", rows.output("group_box_group").extend(ROW_BITS.max(sizes.group_bits)).low(ROW_BITS)),
+        ("write_word", word_of(rows.output("group_box_group"), sizes.top_bits)),
+        ("write_box", rows.output("group_box")),
+    ];
+    inputs.extend(queries);
+    let groups = graph.instance("groups", &level(spec, &sizes, Level::Groups)?, &inputs);
+    groups_takes.drive(groups.output("takes"));
+
+    // Rows of these groups.
+    let (_, level_takes) = wire("group_rows_take", 1);
+    let level_queue = stage_queue(
+        &graph,
+        start,
+        "group_queue",
+        groups.output("put"),
+        &parts(&groups, (sizes.group_bits > ROW_BITS).then_some("place")),
+        level_takes,
+    )?;
+    groups_may.drive(level_queue.output("has_room"));
+    let (_, level_may) = wire("group_rows_may_step", 1);
+    let item = Parts::of(&level_queue);
+    let mut inputs = vec![
+        ("start", start),
+        ("may_step", level_may),
+        ("item_row", item.row),
+        ("item_last", item.last),
+        ("item_valid", item.valid),
+        ("item_mask", item.mask),
+        ("write", rows.output("writes_row_box")),
+        ("write_column", rows.output("row_box_row").low(ROW_BITS)),
+        ("write_word", rows.output("row_box_row").slice(ROW_BITS, sizes.group_bits)),
+        ("write_box", rows.output("row_box")),
+    ];
+    inputs.extend(queries);
+    inputs.extend(item.place.map(|place| ("item_place", place)));
+    let group_rows = graph.instance("group_rows", &level(spec, &sizes, Level::Rows)?, &inputs);
+    level_takes.drive(group_rows.output("takes"));
+
+    // Spheres of the row against the boxes of those rows.
+    let (_, near_takes) = wire("near_takes", 1);
+    let near_queue = stage_queue(
+        &graph,
+        start,
+        "near_queue",
+        group_rows.output("put"),
+        &parts(&group_rows, Some("place")),
+        near_takes,
+    )?;
+    level_may.drive(near_queue.output("has_room"));
+    let (_, near_may) = wire("near_may_step", 1);
+    let item = Parts::of(&near_queue);
+    let mut inputs = vec![
+        ("start", start),
+        ("may_step", near_may),
+        ("item_last", item.last),
+        ("item_valid", item.valid),
+        ("item_mask", item.mask),
+        ("write", rows.output("writes_row_box")),
+        ("item_row", item.row),
+        ("write_row", rows.output("row_box_row").low(sizes.row_bits)),
+        ("write_box", rows.output("row_box")),
+        ("write_column", column),
+        ("write_own", write_own),
+        ("write_own_row", row),
+        ("write_own_box", bounds),
+    ];
+    inputs.extend(item.place.map(|place| ("item_place", place)));
+    let near = graph.instance("near", &near::near(spec, &sizes)?, &inputs);
+    near_takes.drive(near.output("takes"));
+
+    // Box against box.
+    let (_, candidates_take) = wire("candidates_take", 1);
+    let queue_of_near = stage_queue(
+        &graph,
+        start,
+        "candidate_queue",
+        near.output("put"),
+        &parts(&near, Some("other")),
+        candidates_take,
+    )?;
+    near_may.drive(queue_of_near.output("has_room"));
+    let item = Parts::of(&queue_of_near);
+    let mut inputs = vec![
+        ("start", start),
+        ("may_step", has_room),
+        ("item_mask", item.mask),
+        ("item_row", item.row),
+        ("item_last", item.last),
+        ("item_valid", item.valid),
+        ("write", write_table),
+        ("write_own", write_own),
+        ("write_column", column),
+        ("write_row", row),
+        ("write_box", bounds),
+        ("one_set", one_set),
+    ];
+    inputs.extend(item.place.map(|place| ("item_other", place)));
+    let candidates = graph.instance("box_pairs", &candidates::candidates(spec, &sizes)?, &inputs);
+    candidates_take.drive(candidates.output("takes"));
+    let put = candidates.output("put");
+
+    // The deciders, and what joins their answers.
+    let own_row = candidates.output("row");
+    let chunk = (sizes.chunk_bits() > 0).then(|| ("chunk", candidates.output("chunk")));
+    let names = |prefix: &str| -> Vec<String> { (0..sizes.deciders).map(|d| format!("{prefix}_{d}")).collect() };
+    let takes: Vec<_> = names("take_answer").iter().map(|name| graph.wire(name, 1)).collect();
+    let decider = decider::decider(spec, &sizes, kernel)?;
+    let mut hits_inputs = vec![
+        ("start", begin("hits")),
+        ("may_leave", accepts),
+        ("put", put),
+        ("own_row", own_row),
+        ("row", candidates.output("other")),
+        ("last", candidates.output("last")),
+        ("all_ended", loader.output("all_ended")),
+    ];
+    hits_inputs.extend(chunk);
+    let (asks, valids, answers) = (names("asks"), names("answer_valid"), names("answer"));
+    let kept_bits = KEPT_ROWS.ilog2();
+    let column_low = sizes.deciders.ilog2();
+    for number in 0..sizes.deciders {
+        let index = number as usize;
+        let share = candidates.output(&format!("share_{number}"));
+        let is_asked = share.any().named(&format!("asked_{number}"));
+        let is_mine = if column_low == 0 { one } else { column.low(column_low).is(number.into()) };
+        let is_mine = (valid & is_mine).named(&format!("sphere_for_{number}"));
+        let mut inputs = vec![
+            ("start", begin("deciders")),
+            ("put", put & is_asked),
+            ("share", share),
+            ("kept", own_row.low(kept_bits)),
+            ("row", candidates.output("other")),
+            ("take_answer", takes[index]),
+            ("write_sphere", loader.output("sphere")),
+            ("write_column", column),
+            ("write_table", is_mine & to_table),
+            ("write_kept", write_own),
+            ("write_row", table_row),
+            ("write_kept_row", row.low(kept_bits)),
+        ];
+        inputs.extend(chunk);
+        let unit = graph.instance(&format!("decider_{number}"), &decider, &inputs);
+        hits_inputs.push((&asks[index], is_asked));
+        hits_inputs.push((&valids[index], unit.output("answer_valid")));
+        hits_inputs.push((&answers[index], unit.output("answer")));
+    }
+    let hits = graph.instance("hits", &hits::hits(&sizes)?, &hits_inputs);
+    for (take, name) in takes.into_iter().zip(names("take_answer")) {
+        take.drive(hits.output(&name));
+    }
+    has_room.drive(hits.output("has_room"));
+    row_ends.drive(hits.output("row_ends"));
+
+    // Hits into lines, lines into memory.
+    let records: Vec<_> = (0..hits::LANES).map(|lane| format!("record_{lane}")).collect();
+    let mut inputs =
+        vec![("start", begin("packer")), ("carries", hits.output("carries")), ("all_out", hits.output("all_out"))];
+    inputs.extend(records.iter().map(|name| (name.as_str(), hits.output(name))));
+    let packer = graph.instance("packer", &packer::of_pairs(spec, hits::LANES)?, &inputs);
+    let mut inputs = writes.named();
+    inputs.extend([
+        ("start", begin("dispatcher")),
+        ("run", run),
+        ("given_up", given_up),
+        ("destination", control.output("job_destination")),
+        ("epoch", epoch),
+        ("line_valid", packer.output("line_valid")),
+        ("line", packer.output("line")),
+        ("lines", control.output("job_destination_lines")),
+    ]);
+    let dispatcher = graph.instance("dispatcher", &dispatcher::dispatcher(spec, LINES)?, &inputs);
+    accepts.drive(dispatcher.output("accepts"));
+    for (name, wire) in told {
+        wire.drive(match name {
+            "packer_done" => packer.output("done"),
+            "dispatched" => dispatcher.output("empty"),
+            "waits_for_input" => loader.output("waits_for_input"),
+            "waits_for_output" => hits.output("waits"),
+            _ => match name.split_once('_') {
+                Some(("read", told)) => collector.output(told),
+                Some(("write", told)) => dispatcher.output(told),
+                _ => dispatcher.output(name),
+            },
+        });
+    }
+
+    let word = u128::from(Capability::new(&spec.config, kernel.latency).bits());
+    let told = JobOutputs {
+        busy: control.output("busy"),
+        done: control.output("done"),
+        error: control.output("error"),
+        contacts: hits.output("contacts"),
+        candidates: Some(candidates.output("candidates")),
+        invalid: loader.output("invalid"),
+        first_invalid: loader.output("first_invalid"),
+        cycles_busy: control.output("cycles_busy"),
+        cycles_input: control.output("cycles_input"),
+        cycles_output: control.output("cycles_output"),
+        capability: graph.constant(64, word),
+    };
+    outputs(&graph, told.named());
+    outputs(&graph, ReadOutputs::of(spec).map(|port| collector.output(port.name)).named());
+    outputs(&graph, WriteOutputs::of(spec).map(|port| dispatcher.output(port.name)).named());
+    graph.finish()
+}
+
+/// A queue between two stages.
+fn stage_queue<'g>(
+    graph: &'g Graph,
+    start: Signal<'g>,
+    name: &str,
+    put: Signal<'g>,
+    parts: &[Signal<'g>],
+    take: Signal<'g>,
+) -> Result<Instantiated<'g>, BuildErrors> {
+    let word = Signal::join(parts);
+    let module = queue(QUEUE, word.width(), SLACK)?;
+    Ok(graph.instance(name, &module, &[("start", start), ("put", put), ("word", word), ("take", take)]))
+}
+
+/// What a stage puts into its queue: the row that is searched, a place of this name, 16 bits, and whether it is the
+/// last of its row.
+fn parts<'g>(stage: &Instantiated<'g>, place: Option<&str>) -> Vec<Signal<'g>> {
+    ["row"].into_iter().chain(place).chain(["mask", "last"]).map(|part| stage.output(part)).collect()
+}
+
+/// The number of the word that a group is in.
+fn word_of(group: Signal<'_>, top_bits: u32) -> Signal<'_> {
+    group.extend(top_bits + ROW_BITS).drop_low(ROW_BITS)
+}
+
+/// What stands at the output of a queue between two stages.
+struct Parts<'g> {
+    valid: Signal<'g>,
+    row: Signal<'g>,
+    place: Option<Signal<'g>>,
+    mask: Signal<'g>,
+    last: Signal<'g>,
+}
+
+impl<'g> Parts<'g> {
+    fn of(queue: &Instantiated<'g>) -> Self {
+        let word = queue.output("oldest");
+        let place_bits = word.width() - 1 - ROW - ROW_NUMBER_BITS;
+        Self {
+            valid: queue.output("valid"),
+            row: word.high(ROW_NUMBER_BITS),
+            place: (place_bits > 0).then(|| word.slice(1 + ROW, place_bits)),
+            mask: word.slice(1, ROW),
+            last: word.bit(0),
+        }
+    }
+}

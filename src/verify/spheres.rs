@@ -1,0 +1,149 @@
+//! Spheres through a simulated AFU, and what it found compared with the search in software.
+
+use std::path::Path;
+use std::time::Instant;
+
+use super::Bench;
+use super::error::VerifyError;
+use crate::cosim::{CosimError, Driver, Job, Outcome};
+use crate::link::{Link, LinkModel};
+use crate::query::Fields;
+use crate::record::{LINE_BITS, pack_numbers, pack_spheres};
+use crate::spheres::{Counts, Search, Spheres};
+
+/// Hits in a line.
+const PER_LINE: u32 = LINE_BITS / 32;
+/// Cycles that a row takes besides its comparisons, at most.
+const CYCLES_OF_A_ROW: u64 = 64;
+
+/// The verdict on a job of spheres.
+#[derive(Clone, Debug)]
+pub struct SpheresVerdict {
+    /// The spheres that touch, as they lie in memory: the number of the first, and of the second.
+    pub hits: Vec<[u32; 2]>,
+    /// Spheres of both sets.
+    pub spheres: u64,
+    /// The comparisons that the same search takes in software.
+    pub counts: Counts,
+    /// The number of hits that differ from the software's.
+    pub mismatches: u64,
+    /// What differs, and other checks that failed.
+    pub failed_checks: Vec<String>,
+    /// The outcome of the job.
+    pub outcome: Outcome,
+    /// Seconds of simulation.
+    pub seconds: f64,
+}
+
+impl SpheresVerdict {
+    /// True if no check failed.
+    pub fn is_good(&self) -> bool {
+        self.failed_checks.is_empty()
+    }
+}
+
+impl Bench {
+    /// Sends spheres through the AFU over a link, and compares the hits and their order with the search in software.
+    /// `seed` decides the link's randomness and the initial values of registers without a reset.
+    ///
+    /// # Errors
+    /// Returns an error if there are more spheres than the AFU takes, if the job does not finish, or if the AFU
+    /// breaks the line port's protocol. Differences are not errors.
+    pub fn run_spheres(
+        &self,
+        sets: &Spheres,
+        link: &LinkModel,
+        seed: u64,
+        waveform: Option<&Path>,
+    ) -> Result<SpheresVerdict, VerifyError> {
+        let config = self.config();
+        let (first, second) = (&sets.first, sets.second.as_deref());
+        let others = second.unwrap_or_default();
+        let table = config.search.table;
+        if first.len() > table as usize {
+            return Err(VerifyError::Table { spheres: first.len(), table });
+        }
+        if others.len() > 1 << 16 {
+            return Err(VerifyError::Second(others.len()));
+        }
+        let search = Search::new(config.profile.arithmetic(), config.search.box_bits)?;
+        let mut reference = config.profile.reference(Fields::HIT);
+        let found = search.find(&mut reference, first, second).map_err(VerifyError::Reference)?;
+        let expected: Vec<_> = found.hits.iter().map(|hit| hit.spheres).collect();
+        let lines = pack_numbers(&expected);
+
+        let source = [pack_spheres(first), pack_spheres(others)].concat();
+        let mut job = Job::new(&source, first.len() as u32, lines.len() as u64);
+        job.others = others.len() as u32;
+        job.mode = second.is_some().into();
+        job.hits_per_line = Some(PER_LINE);
+        job.search = steps(&found.counts, expected.len() as u64, source.len() as u64);
+        let begun = Instant::now();
+        let instance = self.model().instance(seed)?;
+        if let Some(path) = waveform {
+            let half_period_ps = (500.0 * config.cycle_ns()).round() as u64;
+            instance.trace_open(path, half_period_ps).map_err(CosimError::from)?;
+        }
+        let outcome: Result<_, VerifyError> = Link::new(link.clone(), seed)
+            .map_err(VerifyError::from)
+            .and_then(|link| Ok(Driver::new(&instance, link)?.run(&job)?));
+        // The waveform of a failed job is the most useful one.
+        let closed = if waveform.is_some() { instance.trace_close() } else { Ok(()) };
+        let outcome = outcome?;
+        closed.map_err(CosimError::from)?;
+        let seconds = begun.elapsed().as_secs_f64();
+
+        let words: Vec<u32> = outcome.lines.iter().flat_map(|line| line.unwrap_or([u32::MAX; 16])).collect();
+        let hits: Vec<_> = words.iter().take(expected.len()).map(|word| [word & 0xFFFF, word >> 16]).collect();
+        let mut failed_checks = Vec::new();
+        if let Some(error) = outcome.job_error() {
+            failed_checks.push(format!("the job ended with error {} ({error:?})", outcome.error));
+        }
+        let differing: Vec<_> = (0..expected.len()).filter(|&hit| hits.get(hit) != expected.get(hit)).collect();
+        if let Some(&hit) = differing.first() {
+            let text = |hit: Option<&[u32; 2]>| hit.map_or("nothing".to_owned(), |[i, j]| format!("{i} and {j}"));
+            failed_checks.push(format!(
+                "{} of {} hits differ; the first is hit {hit}: expected spheres {}, found {}",
+                differing.len(),
+                expected.len(),
+                text(expected.get(hit)),
+                text(hits.get(hit))
+            ));
+        }
+        if words.get(expected.len()..).is_some_and(|rest| rest.iter().any(|word| *word != 0)) {
+            failed_checks.push("unused bits of the last line are not zero".to_owned());
+        }
+        let valid = |sphere: &crate::spheres::Sphere| !sphere.is_valid();
+        let first_invalid = first.iter().chain(others).position(valid).map(|place| place as u64);
+        let counts = [
+            ("contacts", u64::from(outcome.contacts), expected.len() as u64),
+            ("candidates", outcome.candidates.unwrap_or_default().into(), found.counts.candidates),
+            ("invalid spheres", outcome.invalid.into(), found.counts.invalid),
+            (
+                "the number of the first invalid sphere",
+                outcome.first_invalid.map_or(u64::MAX, u64::from),
+                first_invalid.unwrap_or(u64::MAX),
+            ),
+        ];
+        for (what, told, wanted) in counts {
+            if told != wanted {
+                failed_checks.push(format!("{what}: the AFU counted {told}, the software {wanted}"));
+            }
+        }
+        Ok(SpheresVerdict {
+            hits,
+            spheres: (first.len() + others.len()) as u64,
+            counts: found.counts,
+            mismatches: differing.len() as u64,
+            failed_checks,
+            outcome,
+            seconds,
+        })
+    }
+}
+
+/// More cycles than the search takes: every comparison and every hit by itself, and what a row takes besides.
+fn steps(counts: &Counts, hits: u64, lines: u64) -> u64 {
+    let Counts { group_tests, row_tests, sphere_tests, column_tests, candidates, invalid: _ } = *counts;
+    group_tests + row_tests + sphere_tests + column_tests + candidates + hits + CYCLES_OF_A_ROW * (lines + 1)
+}

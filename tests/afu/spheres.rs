@@ -1,0 +1,139 @@
+//! Spheres in, the numbers of those that touch out: every hit, in its order, as the search in software finds them.
+
+use std::fs;
+use std::path::Path;
+
+use contact_afu::afu::{Afu, Spec};
+use contact_afu::config::{Config, Input, Results, Search, Shell};
+use contact_afu::cosim::Trace;
+use contact_afu::link::LinkModel;
+use contact_afu::query::Fields;
+use contact_afu::spheres::{Sphere, SphereSet, Spheres, hilbert_order, reorder};
+use contact_afu::verify::{Bench, SpheresVerdict, VerifyError};
+
+fn config(search: Search) -> Config {
+    Config {
+        input: Input::Spheres,
+        results: Results::Hits,
+        contact: Fields::HIT,
+        shell: Shell::Line,
+        search,
+        ..Config::default()
+    }
+}
+
+fn set(name: &str) -> Spheres {
+    name.parse::<SphereSet>().unwrap().spheres(3)
+}
+
+fn sorted(spheres: Spheres) -> Spheres {
+    let sort = |set: Vec<Sphere>| reorder(&set, &hilbert_order(&set));
+    Spheres { first: sort(spheres.first), second: spheres.second.map(sort) }
+}
+
+/// Pairs of spheres that nearly touch, at many scales: what a box must not lose.
+fn tangents() -> Spheres {
+    let mut spheres = Vec::new();
+    for scale in -20..20 {
+        let unit = 2_f32.powi(3 * scale);
+        for ulps in 0..4 {
+            // Each pair lies far from the others.
+            let (y, radius) = (unit * 64.0 * (1 + ulps) as f32, f32::from_bits(unit.to_bits() + ulps));
+            spheres.push([-unit, y, 0.0, unit]);
+            spheres.push([f32::from_bits(radius.to_bits() + ulps), y, 0.0, radius]);
+        }
+    }
+    let counterexample = [[-1.0, -9.0, 0.0, 1.0], [2_f32.powi(-30) + 2_f32.powi(-53), -9.0, 0.0, 2_f32.powi(-30)]];
+    spheres.extend(counterexample);
+    Spheres { first: spheres.into_iter().map(Sphere::new).collect(), second: None }
+}
+
+fn run(bench: &Bench, spheres: &Spheres, link: &str, seed: u64) -> Result<SpheresVerdict, VerifyError> {
+    bench.run_spheres(spheres, &link.parse::<LinkModel>().unwrap(), seed, None)
+}
+
+#[test]
+fn every_link_gives_every_hit_in_order() {
+    let bench = Bench::new(&config(Search { table: 2048, lanes: 32, deciders: 4, ..Search::default() })).unwrap();
+    for link in LinkModel::PRESETS {
+        for spheres in [sorted(set("diamond:8")), set("probes:300:700")] {
+            let verdict = run(&bench, &spheres, link, 5).unwrap();
+            assert!(verdict.is_good(), "{link}: {:?}", verdict.failed_checks);
+            assert!(!verdict.hits.is_empty());
+        }
+    }
+}
+
+#[test]
+fn any_size_of_the_search_gives_the_same() {
+    let sets = [sorted(set("gas:1500:0.3")), set("gas:500:0.3"), tangents()];
+    let mut found: Vec<Vec<_>> = vec![Vec::new(); sets.len()];
+    for (lanes, deciders, box_bits) in [(16, 1, 24), (64, 8, 18), (256, 16, 32)] {
+        let search = Search { table: 2048, lanes, deciders, box_bits };
+        let bench = Bench::new(&config(search)).unwrap();
+        for (spheres, found) in sets.iter().zip(&mut found) {
+            let verdict = run(&bench, spheres, "hostile", 2).unwrap();
+            assert!(verdict.is_good(), "{search:?}: {:?}", verdict.failed_checks);
+            found.push(verdict.hits);
+        }
+    }
+    for found in found {
+        assert!(!found[0].is_empty() && found.iter().all(|hits| *hits == found[0]));
+    }
+}
+
+#[test]
+fn too_many_spheres_are_told_before_anything_runs() {
+    let bench = Bench::new(&config(Search { table: 512, lanes: 16, deciders: 2, box_bits: 32 })).unwrap();
+    let error = run(&bench, &set("gas:513:0.1"), "ideal", 1).unwrap_err().to_string();
+    assert!(error.contains("513 spheres") && error.contains("--table"), "{error}");
+}
+
+/// Faults planted in the Verilog: what it is, the file, a text in it, and what stands there instead.
+const FAULTS: [(&str, &str, &str, &str); 8] = [
+    ("a box is one unit too small", "sphere_box.v", "{1'b0, r[30:0]} + 32'd2", "{1'b0, r[30:0]} + 32'd1"),
+    ("a lane is not wired", "contact_afu_near.v", "meets_3 <= &meets_3_by_side;", "meets_3 <= 1'b0;"),
+    ("a comparison too few", "contact_afu_candidates.v", "meets_0_7 <= &meets_0_7_by_side;", "meets_0_7 <= 1'b0;"),
+    ("the last row is left out", "contact_afu_rows.v", "table_rows - 13'd1;", "table_rows - 13'd2;"),
+    (
+        "answers of another decider",
+        "contact_afu.v",
+        ".answer_0       (decider_0_answer)",
+        ".answer_0       (decider_1_answer)",
+    ),
+    (
+        "numbers of another row",
+        "contact_afu_decider.v",
+        "about <= shares_oldest[19:8];",
+        "about <= shares_oldest[19:8] ^ 12'd1;",
+    ),
+    ("rows are kept too short", "contact_afu_loader.v", "~rows_inside[3])", "1'b1)"),
+    ("a queue has room that it has not", "queue_16x34_slack_8.v", "words_inside < 5'd7", "words_inside < 5'd17"),
+];
+
+/// Each fault is found in one of three jobs, by the hits, by the counts, or because the job does not end.
+#[test]
+fn planted_faults_are_found() {
+    let search = Search { table: 512, lanes: 16, deciders: 2, box_bits: 32 };
+    let afu = Afu::generate(Spec::from(config(search))).unwrap();
+    let crowd = Spheres { first: vec![Sphere::new([1.0, 2.0, 3.0, 0.5]); 300], second: None };
+    let sets = [sorted(set("gas:500:0.4")), tangents(), set("probes:100:300"), crowd];
+    for (what, file, old, new) in FAULTS {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, text) in afu.files() {
+            let path = folder.path().join(&name);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, text).unwrap();
+        }
+        plant(&folder.path().join(file), old, new);
+        let bench = Bench::of_folder(folder.path(), None, Trace::Off).unwrap();
+        let is_found = sets.iter().any(|spheres| run(&bench, spheres, "ideal", 1).map_or(true, |v| !v.is_good()));
+        assert!(is_found, "{what}: {file}");
+    }
+}
+
+fn plant(file: &Path, old: &str, new: &str) {
+    let text = fs::read_to_string(file).unwrap();
+    assert!(text.contains(old), "{} has no `{old}`", file.display());
+    fs::write(file, text.replacen(old, new, 1)).unwrap();
+}
