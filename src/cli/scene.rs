@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use contact_afu::config::Config;
+use contact_afu::config::{Config, Shell};
 use contact_afu::kernel::Engine;
 use contact_afu::report::folder::{self, Folder};
 use contact_afu::scene::{self, Cost, Part, Plan, Scene as Story, SceneError, SceneRun};
@@ -33,6 +33,12 @@ pub struct Scene {
     /// Engine that computes the contacts
     #[arg(long, value_name = "ENGINE", default_value = "ode")]
     engine: Who,
+    /// Logic around the AFU's line port, as for `afu rtl`: spl2, axi or line
+    #[arg(long, value_name = "SHELL", default_value_t = Shell::Spl2)]
+    shell: Shell,
+    /// Bits of the AXI4 master's data, only for --shell axi: 128, 256 or 512 [default: 512]
+    #[arg(long, value_name = "BITS")]
+    bus: Option<u32>,
     /// Folder to write: report.html, manifest.json, and the outputs of the scene as CSV
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -63,14 +69,14 @@ enum Who {
 
 pub fn run(options: &Scene) -> Result<(), Failure> {
     let story = Story::read(&options.file)?;
-    let plan = Plan::of(&story)?;
+    let plan = options.plan(&story)?;
     let other = match (&options.with, &options.without) {
         (Some(effect), _) => Some(story.switched(effect, true)?),
         (_, Some(effect)) => Some(story.switched(effect, false)?),
         _ => None,
     };
     if let Some(other) = other {
-        let other_plan = Plan::of(&other)?;
+        let other_plan = options.plan(&other)?;
         let mut costs = (options.compared(&plan.config)?, options.compared(&other_plan.config)?);
         (costs.0.host_step_ns, costs.1.host_step_ns) = (host_step(&story, &plan)?, host_step(&other, &other_plan)?);
         return output::show(&plan.difference(&other_plan, &costs.0, &costs.1), false);
@@ -106,6 +112,15 @@ pub fn run(options: &Scene) -> Result<(), Failure> {
 }
 
 impl Scene {
+    /// The plan of a scene, for the shell of the options.
+    fn plan(&self, story: &Story) -> Result<Plan, Failure> {
+        let plan = Plan::of(story)?;
+        let bus = self.bus.unwrap_or(plan.config.bus);
+        let plan = plan.below(self.shell, bus);
+        plan.config.check()?;
+        Ok(plan)
+    }
+
     fn cost(&self, config: &Config) -> Result<Cost, Failure> {
         let mut cost = Cost::of(config)?;
         if self.luts {
@@ -132,7 +147,7 @@ impl Scene {
     /// The cost of a touching-only query, then with one effect of the scene added after another.
     fn ladder(&self, story: &Story) -> Result<Vec<(String, Cost)>, Failure> {
         let rung = |(name, story): (String, Story)| {
-            let plan = Plan::of(&story)?;
+            let plan = self.plan(&story)?;
             let mut cost = self.cost(&plan.config)?;
             cost.host_step_ns = host_step(&story, &plan)?;
             Ok((name, cost))
@@ -163,7 +178,11 @@ impl Scene {
         spinner.finish_and_clear();
         let bench = bench?;
         let mut engine = BenchEngine::new(&bench, LinkModel::ideal(), 1);
-        let mut results = self.go(story, plan, &mut engine, "the simulated AFU")?;
+        let name = match self.shell {
+            Shell::Spl2 => "the simulated AFU".to_owned(),
+            shell => format!("the simulated AFU, shell {shell}"),
+        };
+        let mut results = self.go(story, plan, &mut engine, &name)?;
         results.summary.cycles = Some(engine.totals().cycles);
         Ok(results)
     }

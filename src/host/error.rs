@@ -2,7 +2,7 @@
 
 use super::transport::TransportError;
 use crate::afu::shell::spl2::map::AFU_ID;
-use crate::config::RecordFormat;
+use crate::config::{RecordFormat, Shell};
 use crate::count::counted;
 use crate::outcome::{Failure, Outcome};
 use crate::record::{JobError, OtherRadius};
@@ -170,13 +170,13 @@ pub enum HitError {
 
 impl HostError {
     /// The error with which a job ended; `None` if it ended well.
-    pub(super) fn of_outcome(outcome: &Outcome) -> Option<Self> {
+    pub(super) fn of_outcome(outcome: &Outcome, shell: Shell) -> Option<Self> {
         let code = outcome.error;
         if code == 0 {
             return None;
         }
         let unknown = ("unknown code", "load an AFU of this program's version");
-        let (what, advice) = JobError::of_code(code).map_or(unknown, |error| (error.what(), error.advice()));
+        let (what, advice) = JobError::of_code(code).map_or(unknown, |error| (error.what(), error.advice(shell)));
         Some(match outcome.failure {
             Some(failure) => Self::Access { code, what, failure, advice },
             None => Self::Job { code, what, advice },

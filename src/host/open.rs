@@ -71,7 +71,8 @@ impl<'s, T: Transport> Open<'s, T> {
 
     /// The records of a job that ended well, and what the job took.
     pub(super) fn results(&mut self, outcome: &Outcome) -> Result<JobResults, HostError> {
-        HostError::of_outcome(outcome).map_or(Ok(()), Err)?;
+        let shell = self.session.transport.protocol().shell();
+        HostError::of_outcome(outcome, shell).map_or(Ok(()), Err)?;
         let layout = self.session.workspace.layout();
         let Records { numbers, mut contacts } = Records::read(layout, self.count(), outcome)?;
         // Before anyone reads the records. Only the profile `exact` leaves pairs unsettled, and it has a record for

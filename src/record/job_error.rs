@@ -1,5 +1,7 @@
 //! The error codes of a job, shared by hardware, hosts and documentation.
 
+use crate::config::Shell;
+
 /// The error of a job, in the port `error` and in the status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JobError {
@@ -52,18 +54,36 @@ impl JobError {
         self.texts().0
     }
 
-    /// Advice for the user.
-    pub const fn advice(self) -> &'static str {
-        self.texts().1
+    /// Advice for the user of an AFU with this shell.
+    pub const fn advice(self, shell: Shell) -> &'static str {
+        match (self, shell) {
+            (Self::Read, Shell::Spl2) => {
+                "check that source and page table are where the context says, then send the transaction again"
+            }
+            (Self::Read, Shell::Axi) => {
+                "check that `source` and the lines behind it are memory that the master can reach, then start the job again"
+            }
+            (Self::Write, Shell::Axi) => {
+                "check that `destination` is memory that the master can write, then start the job again"
+            }
+            (Self::Response, Shell::Axi) => {
+                "reset the interconnect and the accelerator together, then start the job again: memory answered what \
+                 nobody had asked for"
+            }
+            _ => self.texts().1,
+        }
+    }
+
+    /// The errors that an AFU with this shell can give, in the order of their codes.
+    pub fn of_shell(shell: Shell) -> impl Iterator<Item = Self> {
+        // Only SPL2's context tells the AFU how long its buffers are.
+        Self::ALL.into_iter().filter(move |&error| error != Self::Room || shell == Shell::Spl2)
     }
 
     const fn texts(self) -> (&'static str, &'static str) {
         match self {
             Self::Aborted => ("aborted", "send the transaction again, unless you aborted it yourself"),
-            Self::Read => (
-                "read error",
-                "check that source and page table are where the context says, then send the transaction again",
-            ),
+            Self::Read => ("read error", "check that the source is readable, then send the transaction again"),
             Self::Write => ("write error", "check that the destination is writable, then send the transaction again"),
             Self::Watchdog => (
                 "watchdog",
@@ -97,5 +117,16 @@ mod tests {
             assert_eq!(error.map(JobError::code), (1..=JobError::ALL.len() as u8).contains(&code).then_some(code));
         }
         assert!(JobError::ALL.iter().all(|error| u32::from(error.code()) < 1 << JobError::BITS));
+    }
+
+    /// Advice speaks of what the shell's user has: no page table without SPL2.
+    #[test]
+    fn advice_is_of_the_shell() {
+        for shell in [Shell::Line, Shell::Axi] {
+            assert!(JobError::of_shell(shell).all(|error| !error.advice(shell).contains("page table")), "{shell}");
+            assert!(JobError::of_shell(shell).all(|error| error != JobError::Room), "{shell}");
+        }
+        assert!(JobError::of_shell(Shell::Spl2).eq(JobError::ALL));
+        assert!(JobError::Read.advice(Shell::Spl2).contains("page table"));
     }
 }

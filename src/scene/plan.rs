@@ -5,7 +5,7 @@ use super::demand::{Demand, MOVING, Part, RULES};
 use super::file::{Given, Pull, Scene, Shape};
 use super::{SceneError, bodies};
 use crate::afu::Spec;
-use crate::config::{Config, Profile, Results};
+use crate::config::{Config, Profile, Results, Shell};
 use crate::query::Fields;
 
 /// A line that calls for something.
@@ -105,6 +105,13 @@ impl Plan {
             });
         }
         Ok(Self { rows, config })
+    }
+
+    /// The same plan for an AFU with this shell, whose AXI4 master has this many bits.
+    #[must_use]
+    pub fn below(mut self, shell: Shell, bus: u32) -> Self {
+        (self.config.shell, self.config.bus) = (shell, bus);
+        self
     }
 
     /// The row of a part.

@@ -2,38 +2,20 @@
 
 import itertools
 import logging
-import os
 import random
-import re
-from pathlib import Path
 
 import cocotb
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge, with_timeout
 from cocotbext.axi import AxiBus, AxiLiteBus, AxiLiteMaster, AxiRam
 
-from records import PAIRS, PORTS, answer, expected, pack
+from records import PAIRS, answer, expected, pack
+from registers import IDENTITY, OFFSETS, VERSION, bit
 
-MAP = Path(os.environ["AFU_REGISTERS"]).read_text(encoding="utf-8")
 LINE_BYTES = 64
 SIZE = 1 << 18
 # In the middle of 4 KB, and at its end.
 PLACES = [(0x1_0840, 0x2_0000), (0x1_0FC0, 0x2_2FC0)]
-
-
-def rows(heading):
-    """The rows of the table that begins with this heading."""
-    table = MAP.split(f"| {heading} |", 1)[1].split("\n\n", 1)[0]
-    return [[cell.strip().strip("`") for cell in row.strip("| ").split("|")] for row in table.split("\n")[2:]]
-
-
-OFFSETS = {name: int(offset, 16) for offset, _, name, *_ in rows("offset")}
-FIELDS = {(register, name): int(bits.partition(":")[2]) for register, bits, name, *_ in rows("register")}
-IDENTITY, VERSION = re.search(r"AFU_ID `([0-9a-f]+)`, version (\d+)", MAP).groups()
-
-
-def bit(register, field):
-    return 1 << FIELDS[register, field]
 
 
 class Host:

@@ -31,14 +31,9 @@ module axi_writes (
     .awaddr(awaddr), .awlen(awlen), .wvalid(wvalid), .wdata(wdata), .wlast(wlast), .rsp_valid(), .rsp_tag(),
     .rsp_error(), .failed(), .failed_response(), .failed_address(), .idle()
   );
-  (* hierconn *) wire        \dut.burst_closes ;
-  (* hierconn *) wire        \dut.burst_open ;
-  (* hierconn *) wire [57:0] \dut.burst_first ;
-  (* hierconn *) wire [1:0]  \dut.burst_more ;
-  (* hierconn *) wire        \dut.line_waiting ;
-  (* hierconn *) wire        \dut.line_follows ;
-  (* hierconn *) wire [57:0] \dut.waiting_line ;
-  (* hierconn *) wire [57:0] \dut.next_line ;
+  wire         accepts = wr_valid & wr_ready;
+  wire [57:0]  asked = wr_address;
+`include "bursts.svh"
   (* hierconn *) wire        \dut.next_burst ;
   (* hierconn *) wire [1:0]  \dut.next_burst_more ;
   (* hierconn *) wire        \dut.burst_leaves ;
@@ -50,12 +45,7 @@ module axi_writes (
   (* hierconn *) wire [3:0]  \dut.head ;
   (* hierconn *) wire [3:0]  \dut.tail ;
 
-  (* anyconst *) wire [15:0] chosen;
-  reg [57:0] address;
-  reg [15:0] accepted = 16'd0;
-  reg [15:0] closed = 16'd0;
   reg [15:0] left = 16'd0;         // lines whose last beat has left for the channel
-  reg        after_reset = 1'b0;
   reg        aw_held = 1'b0;
   reg        w_held = 1'b0;
   reg [71:0] aw_was;
@@ -65,19 +55,9 @@ module axi_writes (
   reg [7:0]  next_length;
   reg [7:0]  beats = 8'd0;
   reg        is_last;
-  wire       accepts = wr_valid & wr_ready;
-  wire [57:0] first = \dut.burst_first ;
-  wire [15:0] more = {14'd0, \dut.burst_more };
-  wire [57:0] last = first + {42'd0, more};
-  wire [15:0] lines_open = \dut.burst_open ? more + 16'd1 : 16'd0;
-  wire [57:0] within = {42'd0, chosen - closed};
   wire [15:0] leaving = \dut.burst_leaves ? {14'd0, \dut.lines_left } + 16'd1 : 16'd0;
   wire [15:0] waiting = \dut.next_burst ? {14'd0, \dut.next_burst_more } + 16'd1 : 16'd0;
   always @(posedge clk) begin
-    after_reset <= after_reset | rst;
-    if (accepts & accepted == chosen) address <= wr_address;
-    accepted <= rst ? 16'd0 : accepted + {15'd0, accepts};
-    closed <= rst ? 16'd0 : closed + (\dut.burst_closes ? lines_open : 16'd0);
     left <= rst ? 16'd0 : left + {15'd0, \dut.line_leaves };
     if (\dut.burst_closes ) next_length <= {5'd0, \dut.burst_more , 1'b1};
     if (\dut.burst_begins_to_leave ) length <= next_length;
@@ -89,23 +69,10 @@ module axi_writes (
     w_was <= {wdata, wlast};
   end
 
-  always @* begin
-    assume (after_reset | rst);
-    assume (accepted < 16'hfff0);
-  end
-
   always @* if (~rst & after_reset) begin
     whole_lines: assert (~awvalid | (awaddr[5:0] == 6'd0 & awlen[0] & awlen[7:3] == 5'd0));
-    within_a_page: assert ((~awvalid | {1'b0, awaddr[11:6]} + {1'b0, awlen[7:1]} < 8'd64)
-      & (~\dut.burst_open | {1'b0, first[5:0]} + more[6:0] < 7'd64));
-    in_order: assert (accepted == closed + lines_open + {15'd0, \dut.line_waiting }
-      & closed <= accepted & accepted < 16'hfff1
-      & (~(\dut.burst_open & \dut.line_waiting & \dut.line_follows )
-         | (\dut.waiting_line == last + 58'd1 & \dut.waiting_line [5:0] != 6'd0))
-      & (~\dut.line_waiting | \dut.next_line == \dut.waiting_line + 58'd1)
-      & (~\dut.burst_open | \dut.line_waiting | \dut.next_line == last + 58'd1)
-      & (chosen < closed | chosen >= closed + lines_open | address == first + within)
-      & (~\dut.line_waiting | chosen != closed + lines_open | address == \dut.waiting_line ));
+    within_a_page: assert ((~awvalid | {1'b0, awaddr[11:6]} + {1'b0, awlen[7:1]} < 8'd64) & open_within_a_page);
+    in_order: assert (lines_in_order);
     all_are_there: assert (closed == left + leaving + waiting & left <= closed
       & \dut.head == left[3:0] & \dut.tail == accepted[3:0]);
     last_is_last: assert ((~wvalid | wlast == is_last)

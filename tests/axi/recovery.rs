@@ -1,6 +1,8 @@
 //! Aborts, resets, error responses and lost responses at any time: nothing wrong is ever written, no rule of AXI4 is
 //! broken, and the next transaction is right.
 
+use contact_afu::afu::JobError;
+use contact_afu::afu::shell::axi::map;
 use contact_afu::cosim::axi::Machine;
 use contact_afu::host::{HostError, Running, Session, Transaction};
 use contact_afu::link::axi::Handshake;
@@ -172,6 +174,45 @@ fn a_lost_response_is_an_error_and_never_wrong_data() {
             session.transport_mut().memory_mut().link_mut().plan(&[]);
             session.transport_mut().system_reset().unwrap();
             next_is_right(&mut session, &next, &what);
+        }
+    }
+}
+
+/// What nobody asked for is counted, and ends the job that runs with error 7. It never goes by unseen, whenever it
+/// comes, and the next job is right without a reset.
+#[test]
+fn a_response_that_nobody_asked_for_is_told() {
+    let (spoilt, next) = (Case::random(15, 31), Case::random(9, 32));
+    for (bus, link) in [(512, "late"), (128, "ideal")] {
+        let config = config(SCPUS, bus);
+        let model = model(&config);
+        for (read, write) in [(true, false), (false, true)] {
+            let afu = model.instance(7).unwrap();
+            let mut session = session(machine(&afu, link, Handshake::Free, 7), &config, spoilt.workspace(0, 0));
+            let unasked = |machine: &mut Machine<'_>| machine.read_register(map::UNASKED.offset).unwrap();
+            let mut told = 0;
+            for moment in 0.. {
+                let what = format!("{bus} bits, {link}, read {read}, after {moment} cycles");
+                let mut running = disturbed(&mut session, &spoilt, moment).unwrap_or_else(|e| panic!("{what}: {e}"));
+                let done = running.is_done();
+                running.transport_mut().memory_mut().give_unasked(read, write);
+                let ended = running.wait().unwrap_or_else(|e| panic!("{what}: {e}"));
+                let error = ended.outcome().error;
+                assert!(error == 0 || error == JobError::Response.code(), "{what}: error {error}");
+                if error != 0 {
+                    let text = ended.retrieve().unwrap_err().to_string();
+                    assert!(text.contains("reset the interconnect and the accelerator together"), "{what}: {text}");
+                    told += 1;
+                } else {
+                    std::mem::forget(ended);
+                }
+                next_is_right(&mut session, &next, &what);
+                assert_eq!(unasked(session.transport_mut()), moment as u32 + 1, "{what}");
+                if done {
+                    assert!(moment > 60 && told > 10 && error == 0, "{what}: {told} told");
+                    break;
+                }
+            }
         }
     }
 }

@@ -44,7 +44,9 @@ pub fn check(proof: &Proof, only: Option<&str>, files: &[(String, String)]) -> V
     let folder = tempfile::tempdir().expect("a temporary folder");
     let harness = format!("{}.sv", proof.harness);
     fs::write(folder.path().join(&harness), self::harness(&harness, only)).expect("written");
-    fs::copy(root().join("tb/formal/slots.svh"), folder.path().join("slots.svh")).expect("copied");
+    for name in ["slots.svh", "bursts.svh"] {
+        fs::copy(root().join("tb/formal").join(name), folder.path().join(name)).expect("copied");
+    }
     for (name, text) in files {
         fs::write(folder.path().join(name), text).expect("written");
     }

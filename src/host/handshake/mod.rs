@@ -3,6 +3,8 @@
 pub(super) mod axi;
 pub(super) mod spl2;
 
+use crate::config::Shell;
+
 /// The registers of a device, and with them the handshake of a transaction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Protocol {
@@ -14,6 +16,14 @@ pub enum Protocol {
 }
 
 impl Protocol {
+    /// The shell that has these registers.
+    pub(super) fn shell(self) -> Shell {
+        match self {
+            Self::Spl2 => Shell::Spl2,
+            Self::Axi => Shell::Axi,
+        }
+    }
+
     /// The version of its register map.
     pub(super) fn version(self) -> u32 {
         match self {

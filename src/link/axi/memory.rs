@@ -91,6 +91,8 @@ pub struct AxiMemory {
     answered: u64,
     sent: HashMap<u64, u64>,
     violations: u64,
+    /// Responses that nobody asked for, of channels R and B, still to be given.
+    unasked: [bool; 2],
 }
 
 impl AxiMemory {
@@ -118,6 +120,7 @@ impl AxiMemory {
             answered: 0,
             sent: HashMap::new(),
             violations: 0,
+            unasked: [false; 2],
             link,
         })
     }
@@ -135,6 +138,12 @@ impl AxiMemory {
     /// The slave's model.
     pub fn model(&self) -> &AxiModel {
         &self.model
+    }
+
+    /// Plants a fault: the memory gives a beat on channel R, and a response on channel B, as soon as the channel is
+    /// free, although nobody asked for it.
+    pub fn give_unasked(&mut self, read: bool, write: bool) {
+        self.unasked = [read, write];
     }
 
     /// The stalls of the slave's channels, beside the link's own: of reads, and of writes.
@@ -214,7 +223,19 @@ impl AxiMemory {
         {
             return Err(violation.into());
         }
-        Ok(from)
+        Ok(self.with_unasked(from))
+    }
+
+    /// The outputs with what a planted fault adds to them, which the monitor does not see.
+    fn with_unasked(&mut self, mut from: FromMemory) -> FromMemory {
+        let [read, write] = &mut self.unasked;
+        if from.r.is_none() && std::mem::take(read) {
+            from.r = Some(ReadBeat { data: [0; 16], response: OKAY, last: true });
+        }
+        if from.b.is_none() && std::mem::take(write) {
+            from.b = Some(OKAY);
+        }
+        from
     }
 
     fn lines(&self, burst: &Address) -> u64 {

@@ -99,6 +99,34 @@ fn a_query_says_who_touches_whom() {
     assert!(!out.join("trajectories.csv").exists() && !out.join("energy.csv").exists());
 }
 
+/// A scene runs behind AXI4 as behind any other shell, with the same contacts, and its manifest names the shell.
+#[cfg(feature = "cosim")]
+#[test]
+fn a_scene_behind_axi_finds_what_software_finds() {
+    let room = tempfile::tempdir().expect("a temporary folder");
+    let file = room.path().join("s.toml");
+    let scene = "scene = 1\nwant = [\"touching\"]\naccuracy = \"e8f3z\"\nscpus = 2\n[[bodies]]\nshape = \"lattice\"\n\
+                 count = [6, 6, 6]\n";
+    fs::write(&file, scene).unwrap();
+    let contacts = |more: &[&str]| {
+        let out = room.path().join("out");
+        afu(&[&[&text(&file), "--shell", "axi", "--bus", "128", "--force", "--out", &text(&out)], more].concat())
+            .success();
+        let manifest: serde_json::Value =
+            serde_json::from_slice(&fs::read(out.join("manifest.json")).unwrap()).unwrap();
+        let config = &manifest["config"];
+        assert_eq!((&config["shell"], &config["bus"]), (&"axi".into(), &128.into()));
+        (fs::read_to_string(out.join("contacts.csv")).unwrap(), manifest["engine"].clone())
+    };
+    let (simulated, software) = (contacts(&[]), contacts(&["--engine", "reference"]));
+    assert_eq!(simulated.0, software.0);
+    assert!(simulated.0.lines().count() > 500, "{}", simulated.0);
+    assert_eq!(simulated.1, "the simulated AFU, shell axi");
+    let error = afu(&[&text(&file), "--bus", "128"]).code(2);
+    let error = String::from_utf8_lossy(&error.get_output().stderr).into_owned();
+    assert!(error.contains("only shell axi has a bus of another width"), "{error}");
+}
+
 /// The simulated AFU in ODE's loop gives the same bytes as the same arithmetic in software. The page is animated in
 /// Chromium.
 #[cfg(all(feature = "ode", feature = "cosim"))]

@@ -16,19 +16,14 @@
 @FILES@
 
 module @BENCH@;
-  parameter [31:0] SCPUS = 32'd@SCPUS@;
-  parameter integer LINES = 4096;
-  parameter integer LATENCY = 7;
+@SIZES@
   localparam integer BUS = @BUS@;
   localparam integer BEATS = 512 / BUS;
   // Byte addresses. The pairs begin in the middle of 4 KB.
   localparam [63:0] SOURCE = 64'h0000_0001_0000_0b40;
   localparam [63:0] DESTINATION = 64'h0000_0002_0000_0000;
-  localparam [31:0] OWN_COUNT = 32'd@COUNT@;
-  localparam integer EXPECTED_LINES = @EXPECTED_LINES@;
 
-  reg clk = 1'b0;
-  always #5 clk = ~clk;
+@STATE@
   reg rst_n = 1'b0;
 
   // ---- the host's side ----
@@ -147,26 +142,6 @@ module @BENCH@;
     .m_axi_gmem_rlast      (gmem_rlast)
   );
 
-  integer seed;
-  integer cycles = 0;
-  integer faults = 0;
-  reg is_own;
-  reg [31:0] count;
-  integer file;
-  integer line;
-  integer written;
-  reg [8*256-1:0] source_name;
-  reg [8*256-1:0] destination_name;
-
-  task fault(input [8*40-1:0] what);
-    begin
-      $display("fault: %0s in cycle %0d", what, cycles);
-      faults = faults + 1;
-      verdict;
-      $finish;
-    end
-  endtask
-
   // ---- nothing unknown goes out ----
   reg checked = 1'b0;
   always @(posedge clk) if (checked) begin
@@ -186,8 +161,6 @@ module @BENCH@;
   localparam integer MOST = 512;
   reg [BUS-1:0] source_beats [0:LINES*BEATS-1];
   reg [BUS-1:0] destination_beats [0:LINES*BEATS-1];
-  reg [511:0] source_lines [0:LINES-1];
-  reg [511:0] destination_lines [0:LINES-1];
   reg [63:0] ar_queue [0:MOST-1];
   reg [7:0] ar_beats [0:MOST-1];
   integer ar_due [0:MOST-1];

@@ -37,8 +37,10 @@ pub(super) struct Bursts<'g> {
     pub(super) first: Signal<'g>,
     /// Its lines, less one.
     pub(super) more: Signal<'g>,
-    /// A burst that has left is answered in this cycle; a response without a burst is ignored.
+    /// A burst that has left is answered in this cycle. A response without a burst does not count.
     pub(super) answered: Signal<'g>,
+    /// No burst waits for a response.
+    pub(super) none_in_flight: Signal<'g>,
 }
 
 /// What the bursts depend on.
@@ -89,7 +91,8 @@ pub(super) fn bursts<'g>(graph: &'g Graph, spec: &Spec, lines: &Lines<'g>) -> Bu
     let first = graph.data_register("burst_first", lines.address.width());
     first.next_if(takes & begins, *line);
     more.next_if(takes, begins.select(more.same(0), more.plus(1)));
-    Bursts { ready, accepted, closes, first: first.value(), more: more.value(), answered }
+    let none_in_flight = !in_flight.any();
+    Bursts { ready, accepted, closes, first: first.value(), more: more.value(), answered, none_in_flight }
 }
 
 /// The beats of a burst of `more` lines and one, less one.

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use super::map::{self, Register};
 use super::port::{ControlInputs, ControlOutputs, REGISTER_ADDRESS_BITS};
 use crate::afu::port::{JobInputs, JobOutputs, outputs};
-use crate::afu::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, Spec};
+use crate::afu::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, JobError, Spec};
 use crate::config::Results;
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
@@ -31,6 +31,7 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     });
     let [read_idle, write_idle] = ["read_idle", "write_idle"].map(|name| graph.input(name, 1));
     let [line_read, line_written] = ["line_read", "line_written"].map(|name| graph.input(name, 1));
+    let [read_unasked, write_unasked] = ["read_unasked", "write_unasked"].map(|name| graph.input(name, 1));
     let constant = |width: u32, value: u128| graph.constant(width, value);
 
     // Nothing is taken while registers are still in reset.
@@ -116,6 +117,15 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     response.next_if(first, read_fails.select(read.response, write.response));
     address.next_if(first, read_fails.select(read.address, write.address));
 
+    // Responses that nothing waits for: what memory does from now on cannot be trusted.
+    let is_unasked = (read_unasked | write_unasked).named("answered_unasked");
+    let unasked = graph.register("unasked", WORD_BITS, 0);
+    unasked.next_if(is_unasked, unasked.plus(1));
+    let distrusted = graph.register("job_distrusted", 1, 0);
+    distrusted.next(!start & (*distrusted | (*runs & is_unasked)));
+    let distrust = constant(JobError::BITS, JobError::Response.code().into()).gate(*distrusted);
+    let error = told.error.any().select(told.error, distrust).named("job_error");
+
     // Latencies, in cycles since the start.
     let since = graph.data_register("since_start", WORD_BITS);
     since.next(start.select(since.same(0), since.plus(1)));
@@ -132,12 +142,7 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
         fields(&graph, &[(map::START, *start_bit), (map::DONE, done), (map::IDLE, !*runs), (map::READY, ready)]);
     let status_word = fields(
         &graph,
-        &[
-            (map::BUSY, *runs),
-            (map::ENDED, *ended),
-            (map::OUTSTANDING, outstanding),
-            (map::ERROR, told.error.gate(*ended)),
-        ],
+        &[(map::BUSY, *runs), (map::ENDED, *ended), (map::OUTSTANDING, outstanding), (map::ERROR, error.gate(*ended))],
     );
     let failure_word = fields(&graph, &[(map::CHANNEL, *failed), (map::RESPONSE, response.gate(failed.any()))]);
     let pending_word = pending[1].concat(pending[0]);
@@ -167,6 +172,7 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
         (map::FIRST_WRITE, first_write),
         (map::IDENTITY, constant(128, map::AFU_ID)),
         (map::MAP_VERSION, constant(WORD_BITS, map::VERSION.into())),
+        (map::UNASKED, *unasked),
         (map::CAPABILITY, told.capability),
         (map::SOFT_RESET, *soft),
         (map::SCRATCH, scratch),
@@ -322,6 +328,7 @@ impl<'g> Reads<'g> {
                 let part = value.slice(WORD_BITS * word, WORD_BITS);
                 all = all | part.gate(self.word.is(number.into()));
             }
+            all = all.named(&format!("through_{}", register.name));
         }
         let shown = graph.data_register("read_value", WORD_BITS);
         shown.next_if(self.happens, all);

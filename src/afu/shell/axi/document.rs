@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use super::map::{self, AFU_ID, Access, REGISTERS, VERSION};
 use crate::afu::JobError;
+use crate::config::Shell;
 
 /// The map as Markdown: tables of the registers, of their fields, and of the errors.
 pub fn markdown() -> String {
@@ -26,8 +27,8 @@ pub fn markdown() -> String {
         }
     }
     out += "\n| error | what it is | what to do |\n|---|---|---|\n";
-    for error in JobError::ALL {
-        let _ = writeln!(out, "| {} | {} | {} |", error.code(), error.what(), error.advice());
+    for error in JobError::of_shell(Shell::Axi) {
+        let _ = writeln!(out, "| {} | {} | {} |", error.code(), error.what(), error.advice(Shell::Axi));
     }
     out
 }
@@ -53,6 +54,9 @@ change nothing. A register of 64 or 128 bits is words of 32 bits, the least sign
    of memory failed, if one did.
 7. For another job, go on with 2. After error 4, wait until `outstanding` is 0 before memory is used for anything else.
 
+Memory that answers what nobody asked for ends the job that runs with error 7, and is counted in {unasked}. That register
+should stay 0. If it does not, the interconnect is faulty, or was not reset with the accelerator.
+
 To stop a job, write 1 to {reset}, and wait until it reads 0. The job ends with error 1. If it still reads 1 after the
 watchdog's time, memory owes a response that will not come: reset the interconnect and the accelerator together.
 ",
@@ -70,6 +74,7 @@ watchdog's time, memory owes a response that will not come: reset the interconne
         failure = at(map::FAILURE),
         address = at(map::FAILURE_ADDRESS),
         reset = at(map::SOFT_RESET),
+        unasked = at(map::UNASKED),
     )
 }
 
@@ -106,7 +111,7 @@ pub(super) fn header(prefix: &str, about: &str) -> String {
         }
     }
     out += "\n/* Errors of a job, in the field error of the status. */\n";
-    for error in JobError::ALL {
+    for error in JobError::of_shell(Shell::Axi) {
         let name: String = format!("{error:?}").to_uppercase();
         let _ = writeln!(out, "#define {upper}_ERROR_{name} {}u /* {} */", error.code(), error.what());
     }

@@ -219,6 +219,14 @@ pub const FIRST_WRITE: Register =
 pub const IDENTITY: Register = register(0x80, "afu_id", Read, "says which accelerator this is").of_words(4);
 /// The version.
 pub const MAP_VERSION: Register = register(0x90, "version", Read, "of this map");
+/// Responses that nothing waits for.
+pub const UNASKED: Register = register(
+    0x94,
+    "unasked",
+    Read,
+    "cycles since `ap_rst_n` in which memory answered what nobody had asked for, modulo 2^32; a job that runs in such a \
+     cycle ends with error 7",
+);
 /// The capability word.
 pub const CAPABILITY: Register =
     register(0x98, "capability", Read, "what this accelerator is: see PORTS.md").of_words(2);
@@ -232,7 +240,7 @@ pub const SOFT_RESET: Register =
 pub const SCRATCH: Register = register(0xA4, "scratch", ReadWrite, "no effect: for a first test of the bus");
 
 /// All registers, in the order of their offsets.
-pub const REGISTERS: [Register; 27] = [
+pub const REGISTERS: [Register; 28] = [
     CONTROL,
     GLOBAL_INTERRUPT_ENABLE,
     INTERRUPT_ENABLE,
@@ -257,6 +265,7 @@ pub const REGISTERS: [Register; 27] = [
     FIRST_WRITE,
     IDENTITY,
     MAP_VERSION,
+    UNASKED,
     CAPABILITY,
     SOFT_RESET,
     SCRATCH,

@@ -68,6 +68,7 @@ pub(super) fn read(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     graph.output("failed", failed.registered("line_failed"));
     graph.output("failed_response", worst.delay(1));
     graph.output("failed_address", oldest.drop_low(tag_bits).delay(1));
+    graph.output("unasked", (rvalid & !count.any()).registered("beat_unasked"));
     graph.output("idle", (!count.any()).named("none_expected"));
     graph.finish()
 }

@@ -72,6 +72,8 @@ pub(super) fn top(spec: &Spec, core: &Arc<Module>) -> Result<Arc<Module>, BuildE
         ("write_response", writer.output("failed_response")),
         ("write_address", writer.output("failed_address")),
         ("write_epoch", writer.output("rsp_tag").slice(slot_bits, EPOCH_BITS)),
+        ("read_unasked", reader.output("unasked")),
+        ("write_unasked", writer.output("unasked")),
         ("read_idle", reader.output("idle")),
         ("write_idle", writer.output("idle")),
         ("line_read", reader.output("rsp_valid")),

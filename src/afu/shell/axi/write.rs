@@ -32,7 +32,7 @@ pub(super) fn write(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let next_valid = graph.register("next_burst", 1, 0);
     let may_close = (!*awvalid & !*next_valid).named("may_close");
     let lines = Lines { valid, address, has_room: !count.msb(), may_close, response: bvalid };
-    let Bursts { ready, accepted, closes, first, more, answered } = bursts(&graph, spec, &lines);
+    let Bursts { ready, accepted, closes, first, more, answered, none_in_flight } = bursts(&graph, spec, &lines);
     awvalid.next(closes | (*awvalid & !awready));
     let awaddr = graph.data_register("awaddr", BYTE_ADDRESS_BITS);
     awaddr.next_if(closes, first.concat(graph.constant(BYTE_ADDRESS_BITS - ADDRESS_BITS, 0)));
@@ -119,6 +119,7 @@ pub(super) fn write(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     graph.output("failed", (first_line & failure.any()).registered("burst_failed"));
     graph.output("failed_response", failure.delay(1));
     graph.output("failed_address", failed_address.delay(1));
+    graph.output("unasked", (bvalid & none_in_flight).registered("response_unasked"));
     graph.output("idle", (!count.any()).named("none_taken"));
     graph.finish()
 }

@@ -11,32 +11,14 @@
 @FILES@
 
 module @BENCH@;
-  parameter [31:0] SCPUS = 32'd@SCPUS@;
-  parameter integer LINES = 4096;
-  parameter integer LATENCY = 7;
+@SIZES@
   localparam [57:0] SOURCE = 58'h1000;
   localparam [57:0] DESTINATION = 58'h200000;
 
-  reg clk = 1'b0;
-  always #5 clk = ~clk;
-
-  localparam [31:0] OWN_COUNT = 32'd@COUNT@;
-  localparam integer EXPECTED_LINES = @EXPECTED_LINES@;
+@STATE@
 
   reg rst = 1'b1;
   reg start = 1'b0;
-  reg [31:0] count;
-  integer seed;
-  integer file;
-  integer line;
-  integer cycles;
-  reg [8*256-1:0] source_name;
-  reg [8*256-1:0] destination_name;
-  reg [511:0] source_lines [0:LINES-1];
-  reg [511:0] destination_lines [0:LINES-1];
-  integer written;
-  integer faults;
-  reg is_own;
 
   reg rd_req_ready;
   wire rd_rsp_valid;
@@ -87,22 +69,12 @@ module @BENCH@;
     cycles <= cycles + 1;
   end
 
-  task fault(input [8*40-1:0] what);
-    begin
-      $display("fault: %0s", what);
-      faults = faults + 1;
-    end
-  endtask
-
 @VERDICT@
 
   initial begin
 @ARGUMENTS@
     rd_req_ready = 1'b0;
     wr_req_ready = 1'b0;
-    written = 0;
-    cycles = 0;
-    faults = 0;
     if (!is_own && count != 32'd0) $readmemh(source_name, source_lines, 0, (count - 1) / @PER_LINE@);
     repeat (4) @(posedge clk);
     rst <= 1'b0;

@@ -16,20 +16,15 @@
 @FILES@
 
 module @BENCH@;
-  parameter [31:0] SCPUS = 32'd@SCPUS@;
-  parameter integer LINES = 4096;
-  parameter integer LATENCY = 7;
+@SIZES@
   // Lines, of 64 bytes: the device status memory is physical, the others are virtual.
   localparam [57:0] DSM = 58'h0_4800_0080;
   localparam [57:0] CONTEXT = 58'h1fc_48d1_8000;
   localparam [57:0] SOURCE = CONTEXT + 58'd2;
   localparam [57:0] DESTINATION = SOURCE + LINES;
   localparam [31:0] START_WORD = 32'h406cccff;
-  localparam [31:0] OWN_COUNT = 32'd@COUNT@;
-  localparam integer EXPECTED_LINES = @EXPECTED_LINES@;
 
-  reg clk = 1'b0;
-  always #5 clk = ~clk;
+@STATE@
 
   // ---- what SPL gives ----
   reg reset_n = 1'b0;
@@ -54,14 +49,12 @@ module @BENCH@;
   wire wr_is_fence = wr_hdr[55:52] == 4'd5;
 
   // ---- memory ----
-  reg [511:0] source_lines [0:LINES-1]; // the control memory first, then the pairs
-  reg [511:0] destination_lines [0:LINES-1];
+  // In `source_lines`, the control memory comes before the pairs.
   reg [511:0] pointers;
   reg [511:0] identity;
   reg [511:0] status;
   reg identified = 1'b0;
   reg ended = 1'b0;
-  integer written;
   integer fences;
 
   // ---- answers: a pipe of LATENCY cycles each way ----
@@ -104,20 +97,6 @@ module @BENCH@;
     .afu_tx_wr_hdr        (wr_hdr),
     .afu_tx_data          (wr_data)
   );
-
-  integer seed;
-  integer cycles = 0;
-  integer faults = 0;
-  reg is_own;
-
-  task fault(input [8*40-1:0] what);
-    begin
-      $display("fault: %0s in cycle %0d", what, cycles);
-      faults = faults + 1;
-      verdict;
-      $finish;
-    end
-  endtask
 
   // ---- nothing unknown goes out ----
   reg checked = 1'b0;
@@ -181,12 +160,7 @@ module @BENCH@;
     end
   endtask
 
-  reg [31:0] count;
-  integer file;
-  integer line;
   integer limit;
-  reg [8*256-1:0] source_name;
-  reg [8*256-1:0] destination_name;
 
   task job(input [31:0] sequence);
     begin
