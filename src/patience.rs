@@ -43,7 +43,6 @@ const SHELL_READS: u64 = 2;
 /// Lines that it writes for itself: identity, scratch, latency, performance, fence, status.
 const SHELL_WRITES: u64 = 6;
 /// Cycles in which the host writes the registers of a job over AXI4-Lite, with much to spare.
-#[cfg(feature = "cosim")]
 const AXI_ACCESSES: f64 = 1000.0;
 /// The chance that a right AFU meets more refusals than are allowed for.
 const RARE: f64 = 1e-9;
@@ -89,7 +88,6 @@ pub fn spl2(afu: &Capability, link: &LinkModel, spl2: &Spl2Model, work: &Work) -
 }
 
 /// Patience with an AFU behind AXI4, whose memory refuses and holds back as these stalls say, beside its link.
-#[cfg(feature = "cosim")]
 pub(crate) fn axi(
     afu: &Capability,
     link: &LinkModel,

@@ -9,8 +9,8 @@ use crate::config::{Config, MANIFEST_SCHEMA};
 use crate::hdl::Primitive;
 use crate::pipeline::KernelReport;
 
-use super::Afu;
 use super::port::connections;
+use super::{Afu, Package};
 
 /// The folder of the test bench, separate from the files to synthesise.
 pub(super) const BENCH_FOLDER: &str = "sim";
@@ -23,6 +23,11 @@ pub fn file_list(config: &Config) -> String {
 impl Afu {
     /// All files of the generated folder as relative path and text. The manifest is last.
     pub fn files(&self) -> Vec<(String, String)> {
+        self.files_with(&[])
+    }
+
+    /// The same with the files of these packages, which the accelerator's shell must allow ([`Package::check`]).
+    pub fn files_with(&self, packages: &[Package]) -> Vec<(String, String)> {
         let verilog = self.verilog();
         let names: Vec<&str> = verilog.iter().map(|(name, _)| name.as_str()).collect();
         let config = &self.spec().config;
@@ -38,6 +43,7 @@ impl Afu {
             ("PORTS.md".to_owned(), self.ports_page()),
         ]);
         files.extend(self.shell().files(self));
+        files.extend(packages.iter().flat_map(|package| package.files(self)));
         let manifest = self.manifest(&files);
         files.push(("manifest.json".to_owned(), manifest));
         files

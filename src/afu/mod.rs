@@ -18,6 +18,7 @@ mod gather;
 mod generate;
 mod in_order;
 mod lines;
+mod package;
 mod packer;
 pub(crate) mod port;
 mod ports;
@@ -39,6 +40,7 @@ pub use crate::record::{COUNT_BITS, JobError};
 pub use control::DRAIN_CYCLES;
 pub use files::file_list;
 pub use generate::{Afu, BuildError, top_name};
+pub use package::{Package, PackageError};
 pub use spec::{Spec, SpecError};
 pub use timing::Timing;
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use contact_afu::afu::{Afu, BuildError, Spec};
+use contact_afu::afu::{Afu, BuildError, Package, PackageError, Spec};
 use contact_afu::hdl::Reset;
 use contact_afu::report::folder::{self, Folder};
 use contact_afu::report::table::counted;
@@ -34,6 +34,13 @@ pub struct Rtl {
     /// NAME is 1 to 32 letters, digits and underscores, and does not begin with a digit.
     #[arg(long, value_name = "NAME", help_heading = "The AFU")]
     prefix: Option<String>,
+    /// Also write what other tools want: a comma-separated list of ipxact, litex, fusesoc
+    ///
+    /// `ipxact` is a component.xml of IEEE 1685-2022, and a script that packages a Vitis kernel in Vivado (neither was
+    /// tried in Vivado). `litex` is a Python module for a SoC of LiteX. Both are for --shell axi. `fusesoc` is the core
+    /// file that every folder has.
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST", hide_possible_values = true)]
+    package: Vec<Tool>,
     /// Link for which --interval auto chooses the interval: a name or file as in `afu cosim`
     #[arg(long, value_name = "NAME|FILE", default_value = "ideal", help_heading = "The AFU")]
     link: String,
@@ -53,6 +60,29 @@ enum Style {
     AsyncLow,
 }
 
+#[derive(ValueEnum, Clone, Copy, Debug)]
+enum Tool {
+    Fusesoc,
+    Ipxact,
+    Litex,
+}
+
+impl From<Tool> for Package {
+    fn from(tool: Tool) -> Self {
+        match tool {
+            Tool::Fusesoc => Self::Fusesoc,
+            Tool::Ipxact => Self::Ipxact,
+            Tool::Litex => Self::Litex,
+        }
+    }
+}
+
+impl From<PackageError> for Failure {
+    fn from(error: PackageError) -> Self {
+        Self::caused(Kind::Usage, error)
+    }
+}
+
 impl From<Style> for Reset {
     fn from(style: Style) -> Self {
         Self {
@@ -67,6 +97,8 @@ pub fn run(options: &Rtl) -> Result<(), Failure> {
     let mut config = options.one.config_for_any_target(&options.link)?;
     config.prefix = options.prefix.clone().or(config.prefix);
     config.check()?;
+    let packages: Vec<Package> = options.package.iter().map(|&tool| tool.into()).collect();
+    packages.iter().try_for_each(|package| package.check(config.shell))?;
     let spec = Spec { reset: options.reset.into(), ..Spec::from(config) };
     let spec = match target {
         Some(target) => target.specialise(spec).ok_or_else(|| no_blocks(target))?,
@@ -75,7 +107,7 @@ pub fn run(options: &Rtl) -> Result<(), Failure> {
     folder::check(&options.out, options.force)?;
     let afu = Afu::generate(spec)?;
     let folder = Folder::begin(&options.out, options.force)?;
-    let files = afu.files();
+    let files = afu.files_with(&packages);
     for (name, text) in &files {
         folder.write(name, text.as_bytes())?;
     }

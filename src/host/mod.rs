@@ -2,7 +2,7 @@
 //!
 //! A [`Session`] has a device, by its [`Transport`], and a [`Workspace`]. It gives [`Transaction`]s, whose types are
 //! the paper's seven steps. A device is the Verilated AFU ([`Machine`](crate::cosim::spl2::Machine)) or a model of it
-//! in software ([`Software`]), which answer alike, byte for byte. A session is also an
+//! in software ([`Software`]), which answer alike, byte for byte; or it is on a board, behind a [`Device`]. A session is also an
 //! [`Engine`](crate::kernel::Engine): a batch is one transaction, or several where the buffers hold fewer pairs.
 
 #[cfg(feature = "cosim")]
@@ -10,6 +10,7 @@ mod behind_axi;
 mod engine;
 mod error;
 mod handshake;
+mod hardware;
 mod open;
 pub(crate) mod received;
 mod report;
@@ -26,6 +27,7 @@ mod workspace;
 
 pub use error::{HitError, HostError};
 pub use handshake::Protocol;
+pub use hardware::{Device, Hardware};
 pub use report::Report;
 pub use results::JobResults;
 pub use session::{Expected, Session};

@@ -19,6 +19,8 @@ use crate::record::Layout;
 const BASE: u64 = 0x0000_7F12_3460_0000;
 /// The byte address of a workspace of physical memory that is contiguous.
 const CONTIGUOUS: u64 = 0x8_4000_0000;
+/// Lines of the 4 KB that no burst crosses.
+const BURST_LINES: u64 = 64;
 /// Lines of the AFU's context.
 const CONTEXT_LINES: u64 = 2;
 /// The range of physical pages from which a workspace's pages are taken: the second terabyte.
@@ -93,6 +95,27 @@ impl Workspace {
         let lines = pages * PAGE_LINES / 2;
         let pages = Pages::new(CONTIGUOUS, (0..pages).map(|page| CONTIGUOUS + page * PAGE_BYTES));
         Ok(Self { pages, layout, base: CONTIGUOUS, reserved: 0, control: 0, source: 0, destination: lines, lines })
+    }
+
+    /// A workspace in this range of physical bytes, of which the device has the same view: a buffer that a driver gave.
+    /// The lower half is the source, the upper half the destination.
+    ///
+    /// # Errors
+    /// Returns [`HostError::Buffers`] if the range does not begin with a line, or has less than a line for each.
+    pub fn in_buffer(layout: Layout, bytes: Range<u64>) -> Result<Self, HostError> {
+        if !bytes.start.is_multiple_of(LINE_BYTES) {
+            return Err(HostError::Buffers("the buffer's address is not a multiple of 64: allocate whole pages"));
+        }
+        let half = bytes.end.saturating_sub(bytes.start) / LINE_BYTES / 2;
+        // Both halves begin with 4 KB if the buffer does.
+        let lines = if half > BURST_LINES { half / BURST_LINES * BURST_LINES } else { half };
+        if lines == 0 {
+            return Err(HostError::Buffers("the buffer has no room for a line of pairs and a line of contacts"));
+        }
+        let pages = bytes.start / PAGE_BYTES..bytes.end.div_ceil(PAGE_BYTES);
+        let pages = Pages::new(bytes.start, pages.map(|page| page * PAGE_BYTES));
+        let base = bytes.start;
+        Ok(Self { pages, layout, base, reserved: 0, control: 0, source: 0, destination: lines, lines })
     }
 
     /// The same pages with another source and destination, as offsets in lines from the beginning, each `lines` long.
@@ -250,6 +273,26 @@ mod tests {
                 let workspace = Workspace::for_pairs(layout, pairs, 1).unwrap();
                 assert!(workspace.capacity() >= pairs, "{fields}, {pairs}");
             }
+        }
+    }
+
+    #[test]
+    fn a_buffer_of_a_driver_is_used_as_it_lies() {
+        for (start, bytes, lines) in [(0x3F90_1000, 1 << 20, 8192), (0x3F9F_F000, 3 << 20, 24576), (64, 4 * 64, 2)] {
+            let workspace = Workspace::in_buffer(layout(), start..start + bytes).unwrap();
+            assert_eq!((workspace.source(), workspace.pairs(), workspace.buffer_lines()), (start, start, lines));
+            assert_eq!(workspace.destination(), start + 64 * lines);
+            for address in [start, start + bytes - 64] {
+                assert_eq!(
+                    workspace.physical(address),
+                    Some(address / 64),
+                    "what the device sees is what the host sees"
+                );
+            }
+        }
+        for (range, why) in [(32..4096, "not a multiple of 64"), (64..128, "no room"), (4096..4096, "no room")] {
+            let error = Workspace::in_buffer(layout(), range).unwrap_err().to_string();
+            assert!(error.contains(why), "{error}");
         }
     }
 

@@ -5,6 +5,7 @@
 
 mod bench;
 mod faults;
+mod hardware;
 mod header;
 mod matrix;
 mod recovery;

@@ -276,3 +276,38 @@ fn a_target_s_blocks_are_named() {
         assert_eq!(asks(files, "ram_style = \"distributed\""), target != Some("ice40"), "{target:?}");
     }
 }
+
+/// Packages are files more, with their hashes in the manifest. They name what cannot be tried here.
+#[test]
+fn packages_are_for_shells_with_buses() {
+    let room = tempfile::tempdir().expect("a temporary folder");
+    let options = ["rtl", "--shell", "axi", "--bus", "128", "--profile", "half", "--prefix", "left", "--out"];
+    afu(room.path(), &[&options[..], &["plain"]].concat()).success();
+    afu(room.path(), &[&options[..], &["packed", "--package", "ipxact,fusesoc,litex"]].concat()).success();
+    let [plain, packed] = ["plain", "packed"].map(|folder| contents(&room.path().join(folder)));
+    let added: Vec<&str> = packed.keys().filter(|name| !plain.contains_key(*name)).map(String::as_str).collect();
+    assert_eq!(added, ["component.xml", "left_contact_afu_litex.py", "package_xo.tcl"]);
+    assert!(plain.iter().all(|(name, bytes)| name == "manifest.json" || packed[name] == *bytes));
+    let text = |name: &str| String::from_utf8_lossy(&packed[name]).into_owned();
+    let manifest: serde_json::Value = serde_json::from_slice(&packed["manifest.json"]).expect("JSON");
+    assert!(added.iter().all(|name| manifest["files"][name].is_string()), "{manifest}");
+    for name in ["component.xml", "package_xo.tcl"] {
+        assert!(text(name).contains("UNTESTED: no Vivado") && text(name).contains("left_contact_afu_axi"), "{name}");
+    }
+    // The arguments of the kernel, at the offsets of REGISTERS.md.
+    for row in ["CTRL 0x000 32", "source 0x010 64 m_axi_gmem", "destination 0x018 64 m_axi_gmem", "count 0x020 32"] {
+        assert!(text("package_xo.tcl").contains(&format!("kernel_register $block {row}\n")), "{row}");
+    }
+    assert!(!text("package_xo.tcl").contains("scratch"));
+    assert!(!text("left_contact_afu_litex.py").contains('@'), "every value is filled in");
+    for shell in ["spl2", "line"] {
+        for package in ["ipxact", "litex"] {
+            let arguments = ["rtl", "--shell", shell, "--package", package, "--out", "none"];
+            let refused = said(&afu(room.path(), &arguments).code(2));
+            let expected = format!("afu: package {package} of shell {shell}: only shell axi has buses");
+            assert!(refused.starts_with(&expected) && refused.lines().count() == 1, "{refused}");
+        }
+    }
+    afu(room.path(), &["rtl", "--package", "fusesoc", "--profile", "half", "--out", "core"]).success();
+    assert!(!room.path().join("none").exists());
+}

@@ -178,7 +178,8 @@ fn fusesoc(room: &Path, package: &Path, arguments: &[&str]) -> Output {
 
 #[test]
 fn fusesoc_runs_the_sim_target() {
-    for config in [Config { interval: 5, ..Config::default() }, Config { clock_mhz: 312.5, ..line() }] {
+    let axi = Config { shell: Shell::Axi, bus: 128, profile: "half".parse().unwrap(), ..Config::default() };
+    for config in [Config { interval: 5, ..Config::default() }, Config { clock_mhz: 312.5, ..line() }, axi] {
         let (room, afu) = (tempfile::tempdir().unwrap(), generate(config));
         let (package, _) = write(&afu);
         let run = |arguments: &[&str]| fusesoc(room.path(), package.path(), arguments);

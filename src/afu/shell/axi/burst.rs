@@ -16,7 +16,7 @@ const PATIENCE_BITS: u32 = 3;
 
 /// The most lines of a burst: 4 KB, but no more than a quarter of what may be outstanding, so that other bursts are in
 /// flight while one is open.
-pub(super) fn most_lines(spec: &Spec) -> u32 {
+pub(in crate::afu) fn most_lines(spec: &Spec) -> u32 {
     PAGE_LINES.min(spec.max_outstanding / 4)
 }
 

@@ -19,6 +19,7 @@ use super::{BenchText, ShellDesign};
 use crate::afu::port::{Declaration, Ports};
 use crate::afu::{Afu, Spec};
 use crate::hdl::{BuildErrors, Module};
+pub(in crate::afu) use burst::most_lines;
 pub use document::{job, markdown};
 pub(crate) use port::{ControlInputs, ControlOutputs, MemoryInputs, MemoryOutputs};
 

@@ -29,23 +29,50 @@ accelerator: AXI has no way to take back what was asked for.
 - Byte i of a line is bits 8·i+7 to 8·i of the line; beat k has bytes {}·k and above, as little-endian memory has them.
 - AxCACHE is 3: memory is not cached for the accelerator. AxPROT is 0. Strobes are all ones.
 
+A read of two beats, the first of which memory holds back, and a write of two beats. Memory may take as long as it likes
+between the parts of each.
+
 ```text
-cycle                 c  c+1  c+2  c+3  c+4
-m_axi_gmem_arvalid  ____ #### #### ____ ____
-m_axi_gmem_arready  ____ ____ #### ____ ____
-m_axi_gmem_araddr   .... AAAA AAAA .... ....
-m_axi_gmem_awvalid  ____ #### #### #### ____
-m_axi_gmem_awready  ____ ____ ____ #### ____
-m_axi_gmem_wvalid   ____ ____ #### #### ####
-m_axi_gmem_wready   ____ ____ #### ____ ####
-m_axi_gmem_wdata    .... .... DDD0 DDD1 DDD1
-m_axi_gmem_wlast    ____ ____ ____ #### ####
+cycle                 c  c+1  c+2  c+3  c+4  c+5
+m_axi_gmem_arvalid  ____ #### #### ____ ____ ____
+m_axi_gmem_arready  ____ ____ #### ____ ____ ____
+m_axi_gmem_araddr   .... AAAA AAAA .... .... ....
+m_axi_gmem_rvalid   ____ ____ ____ ____ #### ####
+m_axi_gmem_rready   #### #### #### #### #### ####
+m_axi_gmem_rdata    .... .... .... .... DDD0 DDD1
+m_axi_gmem_rlast    .... .... .... .... ____ ####
+
+m_axi_gmem_awvalid  ____ #### #### #### ____ ____
+m_axi_gmem_awready  ____ ____ ____ #### ____ ____
+m_axi_gmem_wvalid   ____ ____ #### #### #### ____
+m_axi_gmem_wready   ____ ____ #### ____ #### ____
+m_axi_gmem_wdata    .... .... DDD0 DDD1 DDD1 ....
+m_axi_gmem_wlast    ____ ____ ____ #### #### ____
+m_axi_gmem_bvalid   ____ ____ ____ ____ ____ ####
+m_axi_gmem_bready   #### #### #### #### #### ####
 ```
 
 ## The slave `s_axi_control`
 
 Address and data of a write may come in any order. One write and one read are handled at a time. Registers, the steps of a
 job and the interrupt are in REGISTERS.md; `contact_afu_regs.h` has the same for C.
+
+A write and a read, each with its response two cycles after the last that it waits for:
+
+```text
+cycle                    c  c+1  c+2  c+3
+s_axi_control_awvalid  #### ____ ____ ____
+s_axi_control_awready  #### ____ #### ####
+s_axi_control_wvalid   #### ____ ____ ____
+s_axi_control_wready   #### ____ #### ####
+s_axi_control_bvalid   ____ ____ #### ____
+s_axi_control_bready   #### #### #### ####
+
+s_axi_control_arvalid  #### ____ ____ ____
+s_axi_control_arready  #### ____ ____ ####
+s_axi_control_rvalid   ____ ____ #### ____
+s_axi_control_rready   #### #### #### ####
+```
 ",
         lines * number,
         bus / 8,
