@@ -131,7 +131,8 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let takes_job = (accept & !refuses).named("takes_job");
     running.next(takes_job | (*running & !complete & !failing));
     busy.next(accept | (*busy & !complete & !drained));
-    // A job begins once the delay lines are filled, and runs a cycle later. Each part has a copy of the beginning.
+    // A job begins once the delay lines are filled, and runs one cycle later. Each part is told by a register of its
+    // own.
     let still_waits = (*waits & !failing).named("still_waits");
     let begins = ((accept | still_waits) & filled).named("begins");
     begin.next(begins);

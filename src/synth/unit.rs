@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::afu::{Afu, Spec};
-use crate::config::{Config, Profile};
+use crate::config::{Config, Input, Profile};
 use crate::hdl::verilog::{Style, emit};
 use crate::hdl::{BuildErrors, DelayModel, Module};
 use crate::operator::{Architecture, Domain, Operator, Values, pipelined};
@@ -99,7 +99,17 @@ impl Unit {
 
     fn of(config: &Config, afu: &Afu) -> Self {
         Self {
-            name: format!("afu of {} SCPU{}, {}", config.scpus, if config.scpus == 1 { "" } else { "s" }, config.shell),
+            name: match config.input {
+                Input::Direct => {
+                    format!(
+                        "afu of {} SCPU{}, {}",
+                        config.scpus,
+                        if config.scpus == 1 { "" } else { "s" },
+                        config.shell
+                    )
+                }
+                Input::Spheres => format!("afu of spheres, {}", config.shell),
+            },
             profile: config.profile.clone(),
             architecture: None,
             interval: Some(config.interval),

@@ -56,6 +56,9 @@ interface! {
         error: T => JobError::BITS, errors(spec);
         contacts: T => COUNT_BITS, match spec.config.results {
             Results::All => "contacts of the job so far",
+            Results::Hits if spec.config.input == Input::Spheres => {
+                "contacts of the job so far: as many records, each the numbers of two spheres"
+            }
             Results::Hits => "contacts of the job so far: as many records, each beginning with its pair's number",
         };
         candidates: Option<T> => COUNT_BITS, "pairs of spheres of the job so far whose boxes meet",
@@ -69,8 +72,14 @@ interface! {
             Input::Spheres => "number of the first invalid sphere, counted through both sets, all ones if there is none",
         };
         cycles_busy: T => CYCLE_BITS, "cycles of the job so far";
-        cycles_input: T => CYCLE_BITS, "of these, cycles in which the SCPUs waited for pairs";
-        cycles_output: T => CYCLE_BITS, "of these, cycles in which pairs waited for room for their results";
+        cycles_input: T => CYCLE_BITS, match spec.config.input {
+            Input::Direct => "of these, cycles in which the SCPUs waited for pairs",
+            Input::Spheres => "of these, cycles in which no line of spheres was there",
+        };
+        cycles_output: T => CYCLE_BITS, match spec.config.input {
+            Input::Direct => "of these, cycles in which pairs waited for room for their results",
+            Input::Spheres => "of these, cycles in which hits waited for room in a line",
+        };
         capability: T => 64, capability(spec);
     }
 }

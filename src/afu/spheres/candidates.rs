@@ -25,6 +25,7 @@ pub(super) fn candidates(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, Buil
     let chunks = ROW / compared;
     let box_bits = sizes.box_bits();
     let start = graph.input("start", 1);
+    let run = graph.input("run", 1);
     let may_step = graph.input("may_step", 1);
     let near = graph.input("item_mask", ROW);
     let row = graph.input("item_row", ROW_NUMBER_BITS);
@@ -52,14 +53,14 @@ pub(super) fn candidates(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, Buil
     let chunk_in_hand = (chunk_bits > 0).then(|| number(walk.bit).named("chunk_in_hand"));
     let place = with_chunk(row.low(kept), chunk_in_hand);
     let write_place = with_chunk(write_row.low(kept), (chunk_bits > 0).then(|| column.high(chunk_bits)));
-    let mut own = Store::new(spec, kept + chunk_bits);
+    let own = Store::new(spec, kept + chunk_bits);
     let mut mine = Vec::new();
     for sphere in 0..compared {
         let is_it = if place_bits == 0 { write_own } else { write_own & column.low(place_bits).is(sphere.into()) };
         let write = is_it.named(&format!("writes_own_{sphere}"));
         mine.push(own.column(&graph, &format!("own_{sphere}"), [write, write_place, write_box], place)?);
     }
-    let mut store = Store::new(spec, sizes.row_bits);
+    let store = Store::new(spec, sizes.row_bits);
     let write = column.one_hot().gate(graph.input("write", 1)).named("writes_column");
     let mut others = Vec::new();
     for column in 0..ROW {
@@ -123,7 +124,7 @@ pub(super) fn candidates(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, Buil
     let sum_bits = (compared * ROW).ilog2() + 1;
     let of_sphere = |sphere: u32| {
         let found = count(&format!("count_{sphere}"), pairs.slice(sphere * ROW, ROW));
-        found.gate(put).delay(1).named(&format!("found_{sphere}")).extend(sum_bits)
+        found.gate(put & run).delay(1).named(&format!("found_{sphere}")).extend(sum_bits)
     };
     let found =
         (1..compared).fold(of_sphere(0), |sum, sphere| (sum + of_sphere(sphere)).named(&format!("sum_to_{sphere}")));

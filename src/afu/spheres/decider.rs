@@ -62,8 +62,7 @@ pub(super) fn decider(spec: &Spec, sizes: &Sizes, kernel: &Arc<Module>) -> Resul
     let write_row = graph.input("write_row", sizes.row_bits);
     let write_place = if column_bits > 0 { write_row.concat(column.high(column_bits)) } else { write_row };
     let table = Store::new(spec, sizes.decider_bits());
-    let first =
-        { table }.column(&graph, "columns", [write_table, write_place, sphere], other.named("place_in_table"))?;
+    let first = table.column(&graph, "columns", [write_table, write_place, sphere], other.named("place_in_table"))?;
     let write_own = graph.input("write_kept_row", kept_bits).concat(column);
     let own_bits = kept_bits + ROW_BITS;
     let second = Store::new(spec, own_bits).column(

@@ -62,7 +62,7 @@ pub(super) fn level(spec: &Spec, sizes: &Sizes, level: Level) -> Result<Arc<Modu
         None => low.low(index_bits),
     };
     let word = word.named("word");
-    let mut store = Store::new(spec, index_bits);
+    let store = Store::new(spec, index_bits);
     let column = graph.input("write_column", ROW_BITS);
     let write = column.one_hot().gate(graph.input("write", 1)).named("writes_column");
     let write_word = graph.input("write_word", index_bits);

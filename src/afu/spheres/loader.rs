@@ -1,8 +1,9 @@
-//! The loader: takes spheres from lines, one per cycle, and gives each its box. A row that is
-//! searched begins only when one of those that are kept has ended.
+//! The loader: takes spheres from lines, one per cycle, and gives each its box. A row that is searched begins only
+//! where fewer rows are inside than can be kept.
 
 use std::sync::Arc;
 
+use super::bits::chosen;
 use super::bounds::{SPHERE_BITS, sphere_box};
 use super::walk::later;
 use super::{KEPT_ROWS, ROW_BITS, ROW_NUMBER_BITS, Sizes};
@@ -67,7 +68,7 @@ pub(super) fn loader(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, BuildErr
     head.next_if(start | line_ends, start.select(head.same(0), head.plus(1)));
     let word = column.low(per_line_bits).delay(CYCLES_TO_WORD).named("word");
     let parts: Vec<_> = (0..per_line).map(|part| line.slice(part * SPHERE_BITS, SPHERE_BITS)).collect();
-    let sphere = super::bits::chosen("sphere", word.one_hot(), &parts).delay(1).named("sphere");
+    let sphere = chosen("sphere", word.one_hot(), &parts).delay(1).named("sphere");
     let cycles = CYCLES_TO_WORD + 1;
     let bounds =
         graph.instance("unit", &unit, &[("sphere", sphere), ("present", present.delay(cycles).named("present"))]);
@@ -87,12 +88,12 @@ pub(super) fn loader(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, BuildErr
     graph.output("taken", taken);
 
     // The status.
-    let invalid = (valid & bounds.output("invalid")).named("is_invalid");
+    let invalid = (run & valid & bounds.output("invalid")).named("is_invalid");
     let count = graph.register("invalid_count", COUNT_BITS, 0);
     let passed = graph.register("spheres_passed", COUNT_BITS, 0);
     let first = graph.register("first_invalid_sphere", COUNT_BITS, u128::from(u32::MAX));
     let none_yet = graph.register("none_invalid", 1, 1);
-    let counted = (valid & present.delay(cycles)).named("is_counted");
+    let counted = (run & valid & present.delay(cycles)).named("is_counted");
     passed.next_if(start | counted, start.select(passed.same(0), passed.plus(1)));
     count.next_if(start | invalid, start.select(count.same(0), count.plus(1)));
     first.next_if(start | (invalid & *none_yet), start.select(first.same(u128::from(u32::MAX)), passed.value()));

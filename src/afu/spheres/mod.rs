@@ -61,19 +61,17 @@ struct Sizes {
 impl Sizes {
     fn of(config: &Config) -> Result<Self, RefusedArithmetic> {
         let rule = BoundsRule::new(config.profile.arithmetic(), config.search.box_bits)?;
-        let row_bits = config.search.table.ilog2() - ROW_BITS;
         let above = |bits: u32| bits.saturating_sub(ROW_BITS).max(1);
-        let group_bits = above(row_bits);
-        let row_bits = group_bits + ROW_BITS;
-        let sizes = Self {
+        // There are at least two groups.
+        let group_bits = above(config.search.table.ilog2() - ROW_BITS);
+        Ok(Self {
             rule,
-            row_bits,
+            row_bits: group_bits + ROW_BITS,
             group_bits,
             top_bits: above(group_bits),
             compared: config.search.lanes / ROW,
             deciders: config.search.deciders,
-        };
-        Ok(sizes)
+        })
     }
 
     /// Bits of a box.

@@ -43,7 +43,7 @@ pub(super) fn near(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, BuildError
     let column = graph.input("write_column", ROW_BITS).one_hot().gate(graph.input("write_own", 1)).named("writes_own");
     let own_row = graph.input("write_own_row", ROW_NUMBER_BITS).low(kept);
     let own_box = graph.input("write_own_box", sizes.box_bits());
-    let mut store = Store::new(spec, kept);
+    let store = Store::new(spec, kept);
     let mut meets = Vec::new();
     for place in 0..ROW {
         let writes = [column.bit(place), own_row, own_box];

@@ -41,7 +41,7 @@ impl<'a> Store<'a> {
 
     /// A memory of this name, with its writes (enable, place, word): the word at `place` two cycles ago.
     pub(super) fn column<'g>(
-        &mut self,
+        &self,
         graph: &'g Graph,
         name: &str,
         [write, write_place, word]: [Signal<'g>; 3],

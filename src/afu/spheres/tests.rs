@@ -20,13 +20,20 @@ fn config(search: Sizes) -> Config {
 }
 
 /// What a job gave.
-#[derive(Debug, PartialEq, Eq)]
+#[derive(Debug, Default, PartialEq, Eq)]
 struct Outcome {
     hits: Vec<[u32; 2]>,
     candidates: u64,
     invalid: u64,
     first_invalid: u32,
     error: u128,
+}
+
+/// The cycle in which a job is stopped.
+#[derive(Clone, Copy, Debug)]
+enum Stop {
+    Abort(u64),
+    Reset(u64),
 }
 
 /// A core with memory at its line port: lines are answered after a few cycles.
@@ -46,6 +53,11 @@ impl Bench {
     }
 
     fn run(&mut self, mode: u128, first: &[Sphere], second: &[Sphere]) -> Outcome {
+        self.run_until(mode, first, second, None)
+    }
+
+    /// As `run`, but stopped.
+    fn run_until(&mut self, mode: u128, first: &[Sphere], second: &[Sphere], stop: Option<Stop>) -> Outcome {
         let mut lines: Vec<[u64; 8]> = Vec::new();
         let sets = if mode == 2 {
             vec![second]
@@ -81,6 +93,14 @@ impl Bench {
         let mut written = Vec::new();
         let mut cycles = 0;
         while unit.get("done") == 0 {
+            match stop {
+                Some(Stop::Reset(cycle)) if cycle == cycles => {
+                    unit.reset();
+                    return Outcome::default();
+                }
+                Some(Stop::Abort(cycle)) if cycle == cycles => unit.set("abort_job", 1),
+                _ => {}
+            }
             let takes_write = cycles % self.write_pace == 0;
             unit.set("wr_req_ready", takes_write.into());
             let response = reads.front().filter(|(due, ..)| *due <= cycles).copied();
@@ -115,7 +135,16 @@ impl Bench {
             cycles += 1;
             assert!(cycles < 3_000_000, "the job hangs");
         }
+        unit.set("abort_job", 0);
         let contacts = unit.get("contacts") as usize;
+        let error = unit.get("error");
+        if error != 0 {
+            let counts = ["contacts", "candidates", "invalid", "first_invalid"];
+            let told = counts.map(|port| unit.get(port));
+            (0..100).for_each(|_| unit.step());
+            assert_eq!(counts.map(|port| unit.get(port)), told, "a job that has ended counts nothing");
+            return Outcome { error, ..Outcome::default() };
+        }
         let words = written.iter().flatten().flat_map(|word| [*word as u32, (*word >> 32) as u32]);
         let words: Vec<u32> = words.collect();
         assert_eq!(words.len(), contacts.div_ceil(16) * 16);
@@ -125,7 +154,7 @@ impl Bench {
             candidates: unit.get("candidates") as u64,
             invalid: unit.get("invalid") as u64,
             first_invalid: unit.get("first_invalid") as u32,
-            error: unit.get("error"),
+            error,
         }
     }
 }
@@ -232,6 +261,29 @@ fn slow_writes_hold_everything_back_and_lose_nothing() {
     bench.waits = ["group_rows", "near", "box_pairs", "hits"].map(|stage| (stage, 0)).to_vec();
     check(&mut bench, &config, &[Sphere::new([1.0, 2.0, 3.0, 0.5]); 512], None);
     assert!(bench.waits.iter().all(|(_, cycles)| *cycles > 100), "{:?}", bench.waits);
+}
+
+/// Whenever a job is aborted or the AFU is reset, the next job is right.
+#[test]
+fn aborts_and_resets_at_every_cycle_leave_nothing_behind() {
+    let config = config(Sizes { table: 512, lanes: 32, deciders: 2, ..Sizes::default() });
+    let mut bench = Bench::new(&config);
+    let (short, crowd) = (odd(50, 1), vec![Sphere::new([1.0, 2.0, 3.0, 0.5]); 40]);
+    let mut aborted = 0;
+    for cycle in 0.. {
+        let ended = bench.run_until(0, &crowd, &[], Some(Stop::Abort(cycle)));
+        check(&mut bench, &config, &short, None);
+        if ended.error == 0 {
+            break;
+        }
+        assert_eq!(ended.error, u128::from(crate::record::JobError::Aborted.code()));
+        aborted += 1;
+    }
+    assert!(aborted > 300, "{aborted} cycles");
+    for cycles in 0..aborted {
+        bench.run_until(0, &crowd, &[], Some(Stop::Reset(cycles)));
+        check(&mut bench, &config, &short, None);
+    }
 }
 
 #[test]

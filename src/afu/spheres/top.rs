@@ -42,8 +42,8 @@ pub(in crate::afu) fn spheres_top(spec: &Spec, kernel: &Arc<Module>) -> Result<A
     let (_, row_ends) = wire("row_ends", 1);
     let (_, has_room) = wire("steps_have_room", 1);
 
-    // No delay line says when something happens, so a job may begin at once, and nothing that is inside matters
-    // after.
+    // No delay line says when something happens, so a job may begin at once. What is inside when a job is stopped
+    // neither leaves nor counts, and the next job's start removes it.
     let control_inputs = [job.named(), told.clone(), vec![("none_inside", one), ("filled", one)]].concat();
     let control = graph.instance("control", &control(spec)?, &control_inputs);
     let begin = |part: &str| control.output(&format!("begin_{part}"));
@@ -205,6 +205,7 @@ pub(in crate::afu) fn spheres_top(spec: &Spec, kernel: &Arc<Module>) -> Result<A
     let item = Parts::of(&queue_of_near);
     let mut inputs = vec![
         ("start", start),
+        ("run", run),
         ("may_step", has_room),
         ("item_mask", item.mask),
         ("item_row", item.row),
@@ -230,7 +231,7 @@ pub(in crate::afu) fn spheres_top(spec: &Spec, kernel: &Arc<Module>) -> Result<A
     let decider = decider::decider(spec, &sizes, kernel)?;
     let mut hits_inputs = vec![
         ("start", begin("hits")),
-        ("may_leave", accepts),
+        ("may_leave", (accepts & run).registered("hits_may_leave")),
         ("put", put),
         ("own_row", own_row),
         ("row", candidates.output("other")),
