@@ -2,7 +2,7 @@
 
 use contact_afu::pairs::check_name;
 use contact_afu::query::{ContactRecord, FLAGS, Flow};
-use contact_afu::report::cosim::{SpheresJob, SpheresRun};
+use contact_afu::report::cosim::{Run, SpheresJob};
 use contact_afu::spheres::{self, Hit, Spheres as Sets};
 use contact_afu::tools;
 use contact_afu::verify::{Bench, Command};
@@ -54,7 +54,7 @@ pub fn run(options: &Cosim) -> Result<(), Failure> {
         }
         done.push(job);
     }
-    let run = SpheresRun {
+    let run = Run {
         seed: options.seed,
         replay: command(options, &bench, &sources),
         tools: tools::simulators(),

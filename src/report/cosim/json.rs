@@ -9,8 +9,9 @@ use crate::config::Config;
 use crate::query::ContactRecord;
 use crate::report::tally::{Flows, Tally};
 use crate::verify::Mismatch;
+/// What a report begins with, and its jobs.
 #[derive(Serialize)]
-struct Document<'a> {
+struct Document<'a, A: Serialize, J: Serialize> {
     schema: &'static str,
     version: &'static str,
     seed: u64,
@@ -21,9 +22,35 @@ struct Document<'a> {
     clock_mhz: f64,
     passed: bool,
     failures: Vec<String>,
+    /// Sums over all jobs, if there are any.
     #[serde(flatten)]
-    all: Figures<'a>,
-    jobs: Vec<JobFigures<'a>>,
+    all: Option<A>,
+    jobs: Vec<J>,
+}
+
+impl<J> Run<J> {
+    /// The report with these figures. The run passed if there are no failures.
+    pub(super) fn document<'a, A: Serialize + 'a, F: Serialize + 'a>(
+        &'a self,
+        failures: Vec<String>,
+        all: Option<A>,
+        jobs: Vec<F>,
+    ) -> impl Serialize + 'a {
+        Document {
+            schema: SCHEMA,
+            version: env!("CARGO_PKG_VERSION"),
+            seed: self.seed,
+            replay: &self.replay,
+            tools: &self.tools,
+            rtl_sha256: &self.rtl_sha256,
+            config: &self.config,
+            clock_mhz: self.config.clock_mhz,
+            passed: failures.is_empty(),
+            failures,
+            all,
+            jobs,
+        }
+    }
 }
 
 #[derive(Serialize)]
@@ -103,20 +130,8 @@ struct LinkFigures<'a> {
 impl Run {
     /// The report for programs. The figures at the top are sums over all jobs; `jobs` has each of them.
     pub fn json(&self) -> impl Serialize {
-        Document {
-            schema: SCHEMA,
-            version: env!("CARGO_PKG_VERSION"),
-            seed: self.seed,
-            replay: &self.replay,
-            tools: &self.tools,
-            rtl_sha256: &self.rtl_sha256,
-            config: &self.config,
-            clock_mhz: self.config.clock_mhz,
-            passed: self.passed(),
-            failures: self.failures(),
-            all: self.figures(&self.total()),
-            jobs: self.jobs.iter().map(|job| self.job_figures(job)).collect(),
-        }
+        let jobs = self.jobs.iter().map(|job| self.job_figures(job)).collect();
+        self.document(self.failures(), Some(self.figures(&self.total())), jobs)
     }
 
     fn job_figures<'a>(&'a self, job: &'a Job) -> JobFigures<'a> {

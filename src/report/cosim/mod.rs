@@ -11,7 +11,7 @@ use crate::config::{Config, Results};
 use crate::query::Flow;
 use crate::verify::Mismatch;
 
-pub use spheres::{SpheresJob, SpheresRun};
+pub use spheres::SpheresJob;
 
 /// The schema of the JSON. `CHANGELOG.md` says when its number changes.
 pub const SCHEMA: &str = "contact-afu/cosim/1";
@@ -45,7 +45,7 @@ impl Job {
 
 /// Everything about a run of one or more jobs through one AFU.
 #[derive(Clone, Debug)]
-pub struct Run {
+pub struct Run<J = Job> {
     /// The AFU.
     pub config: Config,
     /// Seed of random pairs and of the link.
@@ -59,7 +59,7 @@ pub struct Run {
     /// The link model.
     pub link: String,
     /// The jobs, in the order in which they ran.
-    pub jobs: Vec<Job>,
+    pub jobs: Vec<J>,
 }
 
 impl Run {

@@ -1,11 +1,8 @@
 //! The report of `afu cosim --input spheres`.
 
-use std::collections::BTreeMap;
-
 use serde::Serialize;
 
-use super::{SCHEMA, percent};
-use crate::config::Config;
+use super::{Run, percent};
 use crate::report::table::{counted, figure, grouped, table};
 use crate::verify::SpheresVerdict;
 
@@ -16,40 +13,6 @@ pub struct SpheresJob {
     pub name: String,
     /// The verdict, or why the job did not finish.
     pub verdict: Result<SpheresVerdict, String>,
-}
-
-/// Everything about a run of one or more jobs of spheres through one AFU.
-#[derive(Clone, Debug)]
-pub struct SpheresRun {
-    /// The AFU.
-    pub config: Config,
-    /// Seed of random spheres and of the link.
-    pub seed: u64,
-    /// The command that repeats the run.
-    pub replay: String,
-    /// The version that each tool reports, by the tool's name.
-    pub tools: BTreeMap<String, String>,
-    /// SHA-256 of the Verilog, in hex.
-    pub rtl_sha256: String,
-    /// The link model.
-    pub link: String,
-    /// The jobs, in the order in which they ran.
-    pub jobs: Vec<SpheresJob>,
-}
-
-#[derive(Serialize)]
-struct Document<'a> {
-    schema: &'static str,
-    version: &'static str,
-    seed: u64,
-    replay: &'a str,
-    tools: &'a BTreeMap<String, String>,
-    rtl_sha256: &'a str,
-    config: &'a Config,
-    clock_mhz: f64,
-    passed: bool,
-    failures: Vec<String>,
-    jobs: Vec<JobFigures<'a>>,
 }
 
 #[derive(Serialize)]
@@ -98,7 +61,7 @@ impl SpheresJob {
     }
 }
 
-impl SpheresRun {
+impl Run<SpheresJob> {
     /// The jobs that failed.
     pub fn bad(&self) -> Vec<&str> {
         self.jobs.iter().filter(|job| !job.failures().is_empty()).map(|job| job.name.as_str()).collect()
@@ -178,33 +141,15 @@ impl SpheresRun {
                 host_seconds: verdict.seconds,
             }
         };
-        let job = |job: &'_ SpheresJob| -> (String, Vec<String>) { (job.name.clone(), job.failures()) };
-        let failures = self
-            .jobs
-            .iter()
-            .map(job)
-            .flat_map(|(name, all)| all.into_iter().map(move |text| format!("{name}: {text}")).collect::<Vec<_>>());
-        Document {
-            schema: SCHEMA,
-            version: env!("CARGO_PKG_VERSION"),
-            seed: self.seed,
-            replay: &self.replay,
-            tools: &self.tools,
-            rtl_sha256: &self.rtl_sha256,
-            config: &self.config,
-            clock_mhz: self.config.clock_mhz,
-            passed: self.bad().is_empty(),
-            failures: failures.collect(),
-            jobs: self
-                .jobs
-                .iter()
-                .map(|job| JobFigures {
-                    name: &job.name,
-                    passed: job.failures().is_empty(),
-                    failures: job.failures(),
-                    figures: job.verdict.as_ref().ok().map(figures),
-                })
-                .collect(),
-        }
+        let job =
+            |job: &'_ SpheresJob| job.failures().into_iter().map(|text| format!("{}: {text}", job.name)).collect();
+        let failures: Vec<Vec<String>> = self.jobs.iter().map(job).collect();
+        let jobs = self.jobs.iter().map(|job| JobFigures {
+            name: &job.name,
+            passed: job.failures().is_empty(),
+            failures: job.failures(),
+            figures: job.verdict.as_ref().ok().map(figures),
+        });
+        self.document(failures.concat(), None::<()>, jobs.collect())
     }
 }
