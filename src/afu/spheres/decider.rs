@@ -100,7 +100,7 @@ pub(super) fn decider(spec: &Spec, sizes: &Sizes, kernel: &Arc<Module>) -> Resul
     let inputs = [
         ("start", start),
         ("put", (ends & !start).registered("answer_comes")),
-        ("word", hits_now.delay(1).named("answer")),
+        ("word", hits_now.delay(1).named("answer_put")),
         ("take", graph.input("take_answer", 1)),
     ];
     let answers = graph.instance("answers", &answers, &inputs);

@@ -94,8 +94,8 @@ pub(super) fn hits(sizes: &Sizes) -> Result<Arc<Module>, BuildErrors> {
     for lane in 0..LANES {
         let place = hits.lookup(&packed(lane), place_bits);
         let first = Signal::join(&[row, quarter, place]).extend(NUMBER_BITS);
-        let record = second.concat(first).delay(2).named(&format!("hit_{lane}"));
-        graph.output(&format!("record_{lane}"), record);
+        let hit = second.concat(first).delay(1).named(&format!("hit_{lane}"));
+        graph.output(&format!("record_{lane}"), hit.delay(1).named(&format!("leaving_{lane}")));
     }
     let found = count("count_of_hits", hits).registered("hits_found");
     let total = graph.register("contact_count", COUNT_BITS, 0);

@@ -95,7 +95,7 @@ pub(super) fn level(spec: &Spec, sizes: &Sizes, level: Level) -> Result<Arc<Modu
             !in_last | columns.at_least(columns.same(column.into()))
         })
         .collect();
-    let mut found = (meets & Signal::join(&present)).named("found");
+    let mut found = (meets & Signal::join(&present).named("boxes_there")).named("found");
     if level == Level::Groups {
         // The group that a row is in always meets it. It is still being written, so it is not compared.
         found = found | limit.low(ROW_BITS).one_hot().gate(one_set & in_last);

@@ -38,8 +38,8 @@ pub(super) fn loader(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, BuildErr
     // Where the next sphere is: the set, the row and the column.
     let second = graph.register("is_second_set", 1, 0);
     let left = graph.register("spheres_left", COUNT_BITS, 0);
-    let row = graph.register("row", ROW_NUMBER_BITS, 0);
-    let column = graph.register("column", ROW_BITS, 0);
+    let row = graph.register("row_now", ROW_NUMBER_BITS, 0);
+    let column = graph.register("column_now", ROW_BITS, 0);
     let any_left = left.any().named("any_left");
     let searched = (!has_others | *second).named("is_searched");
     // A row that is searched needs a place among the rows that are kept.
@@ -68,10 +68,13 @@ pub(super) fn loader(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, BuildErr
     head.next_if(start | line_ends, start.select(head.same(0), head.plus(1)));
     let word = column.low(per_line_bits).delay(CYCLES_TO_WORD).named("word");
     let parts: Vec<_> = (0..per_line).map(|part| line.slice(part * SPHERE_BITS, SPHERE_BITS)).collect();
-    let sphere = chosen("sphere", word.one_hot(), &parts).delay(1).named("sphere");
+    let sphere = chosen("sphere", word.one_hot(), &parts).delay(1).named("sphere_now");
     let cycles = CYCLES_TO_WORD + 1;
-    let bounds =
-        graph.instance("unit", &unit, &[("sphere", sphere), ("present", present.delay(cycles).named("present"))]);
+    let bounds = graph.instance(
+        "unit",
+        &unit,
+        &[("sphere", sphere), ("present", present.delay(cycles).named("sphere_is_present"))],
+    );
 
     // All that belongs to a sphere arrives with its box.
     let cycles = cycles + unit.latency;

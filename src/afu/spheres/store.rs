@@ -50,7 +50,8 @@ impl<'a> Store<'a> {
         if self.depth <= DEEPEST_IN_TABLES {
             let memory = graph.memory(name, self.depth, word.width());
             memory.write(write, write_place, word);
-            return Ok(memory.read(place).delay(1).named(&format!("{name}_word")));
+            let read = memory.read(place).named(&format!("{name}_read"));
+            return Ok(read.delay(1).named(&format!("{name}_word")));
         }
         let always = graph.constant(1, 1);
         let access =
