@@ -37,7 +37,10 @@ const HOUSE: &[(&str, &[&str])] = &[
     ),
     (
         "host",
-        &["count", "outcome", "query", "record", "cosim", "patience", "link", "afu", "config", "kernel", "number"],
+        &[
+            "count", "outcome", "query", "record", "cosim", "patience", "link", "afu", "config", "spheres", "kernel",
+            "number",
+        ],
     ),
     (
         "verify",

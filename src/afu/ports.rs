@@ -62,14 +62,24 @@ impl Afu {
 #[cfg(test)]
 mod tests {
     use crate::afu::{Afu, Spec};
-    use crate::config::{Config, Results, Shell};
+    use crate::config::{Config, Input, Results, Shell};
+    use crate::query::Fields;
 
     #[test]
     fn the_top_has_the_ports_that_are_declared() {
-        for (shell, results) in
-            [Shell::Line, Shell::Spl2, Shell::Axi].into_iter().flat_map(|s| [(s, Results::All), (s, Results::Hits)])
-        {
-            let afu = Afu::generate(Spec::from(Config { shell, results, ..Config::default() })).expect("an AFU");
+        let shells = [Shell::Line, Shell::Spl2, Shell::Axi];
+        let direct = shells.into_iter().flat_map(|s| [(s, Results::All), (s, Results::Hits)]);
+        let direct = direct.map(|(shell, results)| Config { shell, results, ..Config::default() });
+        let spheres = [Shell::Line, Shell::Axi].map(|shell| Config {
+            shell,
+            results: Results::Hits,
+            contact: Fields::HIT,
+            input: Input::Spheres,
+            ..Config::default()
+        });
+        for config in direct.chain(spheres) {
+            let what = format!("{}, {}, {}", config.shell, config.results, config.input);
+            let afu = Afu::generate(Spec::from(config)).expect("an AFU");
             let declared = afu.ports();
             let of = |output: bool| {
                 let ports = afu.top().ports.iter().filter(move |port| port.output == output);
@@ -78,7 +88,7 @@ mod tests {
             let [inputs, outputs] = [&declared.inputs, &declared.outputs]
                 .map(|ports| ports.iter().map(|p| (p.name, p.bits)).collect::<Vec<_>>());
             let implied = 1 + usize::from(afu.top().has_reset_port());
-            assert_eq!((&inputs[implied..], outputs), (&of(false)[..], of(true)), "{shell}, {results}");
+            assert_eq!((&inputs[implied..], outputs), (&of(false)[..], of(true)), "{what}");
         }
     }
 }

@@ -97,8 +97,7 @@ impl From<contact_afu::verify::VerifyError> for Failure {
             | VerifyError::Link(_)
             | VerifyError::Pairs(_)
             | VerifyError::Radius(_)
-            | VerifyError::Table { .. }
-            | VerifyError::Second(_)
+            | VerifyError::Set(_)
             | VerifyError::Search(_) => Kind::Usage,
             VerifyError::Model(CosimError::MissingTool { .. }) => Kind::Tool,
             VerifyError::Model(CosimError::Source(_)) => Kind::Usage,

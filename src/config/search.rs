@@ -65,8 +65,8 @@ pub enum SearchError {
         "input spheres with {0}: spheres would be rounded before their boxes are made; use wide, or at least 23 fraction bits"
     )]
     Short(super::Profile),
-    /// Only the line port carries spheres so far.
-    #[error("input spheres below shell {0}: not built yet; use shell line")]
+    /// The shell does not carry spheres.
+    #[error("input spheres below shell {0}: not built yet; use shell axi or line")]
     Shell(Shell),
     /// An option that the search does not have.
     #[error("input spheres with {0}: not possible; leave it out")]
@@ -111,7 +111,7 @@ impl Search {
         if config.contact != Fields::HIT {
             return Err(SearchError::Contact(config.contact));
         }
-        if config.shell != Shell::Line {
+        if config.shell == Shell::Spl2 {
             return Err(SearchError::Shell(config.shell));
         }
         let options = [

@@ -2,10 +2,10 @@
 
 use super::transport::TransportError;
 use crate::afu::shell::spl2::map::AFU_ID;
-use crate::config::{RecordFormat, Shell};
+use crate::config::{Input, RecordFormat, Shell};
 use crate::count::counted;
 use crate::outcome::{Failure, Outcome};
-use crate::record::{JobError, OtherRadius};
+use crate::record::{JobError, OtherRadius, SetTooLarge};
 
 /// Why a transaction has no results.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -31,6 +31,32 @@ pub enum HostError {
         capacity: u64,
         /// The number of pages that would hold them.
         pages: u64,
+    },
+    /// The AFU takes something else.
+    #[error(
+        "this AFU takes {taken}, not {sent}: send {taken}, or load an AFU of --input {option} and create the session for it"
+    )]
+    Input {
+        /// What it takes.
+        taken: &'static str,
+        /// What was to be sent.
+        sent: &'static str,
+        /// The option of an AFU that takes it.
+        option: Input,
+    },
+    /// A set has more spheres than the AFU takes.
+    #[error(transparent)]
+    Set(#[from] SetTooLarge),
+    /// The sets take more lines than the source has.
+    #[error(
+        "the spheres take {lines} lines, and the source has {room}: give the session a larger workspace (`for_spheres`), or send \
+         fewer spheres"
+    )]
+    TooManySpheres {
+        /// Lines of the sets.
+        lines: u64,
+        /// Lines of the source.
+        room: u64,
     },
     /// The pair has a radius that differs from the AFU's.
     #[error(transparent)]
@@ -135,6 +161,19 @@ pub enum HostError {
         /// The format of the AFU's records.
         record: RecordFormat,
     },
+    /// The job had invalid spheres.
+    #[error(
+        "{}; the {field} of the first, sphere {first}, is NaN, infinite or a negative radius: correct it or leave it out",
+        counted((*count).into(), "invalid sphere")
+    )]
+    InvalidSpheres {
+        /// The number of invalid spheres.
+        count: u32,
+        /// The number of the first invalid sphere, counted through the sets.
+        first: u32,
+        /// The first invalid field of that sphere.
+        field: &'static str,
+    },
     /// The transport failed.
     #[error(transparent)]
     Transport(#[from] TransportError),
@@ -166,17 +205,31 @@ pub enum HitError {
         /// The number of pairs in the job.
         pairs: usize,
     },
+    /// Two spheres must be in their sets, and come in the order of the search.
+    #[error(
+        "contact {index} is of spheres {} and {}, of {} and {} spheres, or not in the order of the search",
+        spheres[0], spheres[1], sets[0], sets[1]
+    )]
+    Spheres {
+        /// The index of the record, from 0.
+        index: usize,
+        /// The numbers of both spheres.
+        spheres: [u32; 2],
+        /// The numbers of spheres that there are in their sets.
+        sets: [u32; 2],
+    },
 }
 
 impl HostError {
     /// The error with which a job ended; `None` if it ended well.
-    pub(super) fn of_outcome(outcome: &Outcome, shell: Shell) -> Option<Self> {
+    pub(super) fn of_outcome(outcome: &Outcome, shell: Shell, input: Input) -> Option<Self> {
         let code = outcome.error;
         if code == 0 {
             return None;
         }
         let unknown = ("unknown code", "load an AFU of this program's version");
-        let (what, advice) = JobError::of_code(code).map_or(unknown, |error| (error.what(), error.advice(shell)));
+        let (what, advice) =
+            JobError::of_code(code).map_or(unknown, |error| (error.what(), error.advice(shell, input)));
         Some(match outcome.failure {
             Some(failure) => Self::Access { code, what, failure, advice },
             None => Self::Job { code, what, advice },

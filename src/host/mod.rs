@@ -20,6 +20,8 @@ mod session;
 #[cfg(feature = "cosim")]
 pub(crate) mod simulated;
 mod software;
+pub(crate) mod spheres;
+mod task;
 mod transaction;
 mod transport;
 #[cfg(feature = "cosim")]
@@ -33,6 +35,7 @@ pub use report::Report;
 pub use results::JobResults;
 pub use session::{Expected, Session};
 pub use software::Software;
-pub use transaction::{Done, Loaded, Pointed, Retrieved, Running, Started, Transaction};
+pub use spheres::{SpheresJob, SpheresResults};
+pub use transaction::{Done, Loaded, PairsJob, Pointed, Retrieved, Running, Started, Transaction};
 pub use transport::{Transport, TransportError};
 pub use workspace::Workspace;

@@ -2,11 +2,13 @@
 
 use super::error::{HitError, HostError};
 use super::session::Session;
+use super::task::Task;
 use super::transport::Transport;
+use crate::config::Input;
 use crate::link::{LINE_BYTES, Traffic};
 use crate::outcome::{Failure, Outcome};
 use crate::query::{ContactRecord, Flow};
-use crate::record::{Contacts, Layout};
+use crate::record::{Contacts, Layout, hit_lines};
 
 /// The state at the start of a job: the cycle of its start word, and the link's traffic and the device's writes until
 /// then.
@@ -39,13 +41,17 @@ pub(super) struct Status {
 }
 
 /// The outcome of the job with this beginning and end. Bytes count all traffic over the link since the start.
-pub(super) fn outcome<T: Transport>(session: &Session<T>, begin: &Begin, pairs: u32, end: &Status) -> Outcome {
+pub(super) fn outcome<T: Transport>(session: &Session<T>, begin: &Begin, task: &Task, end: &Status) -> Outcome {
     let (transport, workspace) = (&session.transport, &session.workspace);
     let traffic = transport.traffic();
     let reads = traffic.read_responses - begin.traffic.read_responses;
     let writes = traffic.writes - begin.traffic.writes;
     let Status { first_read, first_write, .. } = *end;
-    let results = workspace.limits(pairs.into()).results;
+    let mut results = workspace.limits(task).results;
+    if task.input == Input::Spheres {
+        // There may be room for far more.
+        results.end = results.end.min(results.start + hit_lines(end.contacts.into()));
+    }
     let stored = |line: u64| transport.line(workspace.physical(line * LINE_BYTES)?);
     let sent = |line: u64| Some(transport.sent(line)?.saturating_sub(begin.cycle));
     Outcome {

@@ -5,6 +5,8 @@
 pub struct Report {
     /// The number of pairs.
     pub pairs: u64,
+    /// The number of spheres, of both sets.
+    pub spheres: u64,
     /// From the first CSR write to SPL enabled: reset, DSM, AFU_ID, contexts.
     pub set_up: u64,
     /// The AFU's own count of its busy cycles.

@@ -4,16 +4,16 @@ use super::error::HostError;
 use super::handshake::{Identity, Protocol, axi, spl2};
 use super::received::{Begin, Status};
 use super::report::Report;
+use super::task::Task;
 use super::transaction::{Pointed, Transaction};
 use super::transport::Transport;
 use super::workspace::Workspace;
 use crate::afu::shell::spl2::map::AFU_ID;
 use crate::afu::{Afu, BuildError, Spec};
-use crate::config::Config;
+use crate::config::{Config, Input};
 use crate::link::{LINE_BYTES, Line, Traffic};
-use crate::patience::{Patience, Work};
-use crate::query::PairRecord;
-use crate::record::{Capability, LINE_BITS, Layout, Part, pack};
+use crate::patience::Patience;
+use crate::record::{Capability, LINE_BITS, Layout, Part};
 
 /// Cycles between two calls of `progress`.
 pub(super) const PROGRESS_CYCLES: u64 = 4096;
@@ -42,13 +42,14 @@ impl Expected {
     /// The AFU of a configuration whose Verilog may have been edited. Of its capability word, only the number of SCPUs
     /// is compared.
     pub fn edited(config: &Config) -> Self {
-        Self { capability: config.scpus.into(), compared: Part::SCPUS.mask(), layout: Layout::of(LINE_BITS, config) }
+        let capability = Capability::new(config, 0).bits();
+        Self { capability, compared: Part::SCPUS.mask(), layout: Layout::of(LINE_BITS, config) }
     }
 
     /// Compares the parts of a capability word.
     fn check(&self, found: u64) -> Result<(), HostError> {
         for part in Part::ALL {
-            let (expected, found) = (part.of(self.capability), part.of(found & self.compared));
+            let [expected, found] = [self.capability, found].map(|word| part.of(word & self.compared));
             if expected != found {
                 return Err(HostError::Capability { what: part.meaning, expected, found });
             }
@@ -113,24 +114,35 @@ impl<T: Transport> Session<T> {
         &self.reports
     }
 
-    /// The most cycles that this number of pairs may take.
-    pub(super) fn patience(&self, pairs: u64) -> Patience {
-        let layout = self.workspace.layout();
-        let (reads, writes) = (layout.source_lines(pairs), layout.destination_lines(pairs));
-        let work = Work { pairs, reads, writes, watchdog: self.watchdog, search: 0 };
-        self.transport.patience(&self.afu, &work)
+    /// What the expected AFU takes.
+    pub(super) fn input(&self) -> Input {
+        Capability::from_bits(self.expected.capability).search.map_or(Input::Direct, |_| Input::Spheres)
     }
 
-    /// Puts pairs into the source as the next job. Its start word is not written yet.
-    pub(super) fn load(&mut self, pairs: &[PairRecord]) -> Result<(), HostError> {
-        let (layout, count) = (*self.workspace.layout(), pairs.len() as u64);
+    /// The spheres that the expected AFU's table holds.
+    ///
+    /// # Errors
+    /// Returns an error if it takes pairs.
+    pub(super) fn table(&self) -> Result<u32, HostError> {
+        let search = Capability::from_bits(self.expected.capability).search;
+        let refused = HostError::Input { taken: "pairs", sent: "spheres", option: Input::Spheres };
+        search.map(|search| search.table).ok_or(refused)
+    }
+
+    /// The most cycles that a job may take.
+    pub(super) fn patience(&self, task: &Task) -> Patience {
+        self.transport.patience(&self.afu, &task.work(self.watchdog))
+    }
+
+    /// Puts lines into the source as the next job. Its start word is not written yet.
+    pub(super) fn load(&mut self, lines: impl IntoIterator<Item = Line>, task: &Task) -> Result<(), HostError> {
         if self.transport.protocol() == Protocol::Spl2 {
             spl2::clear_control(self)?;
         }
-        for (number, line) in (0..).zip(pack(&layout, pairs)) {
+        for (number, line) in (0..).zip(lines) {
             self.put(self.workspace.pairs(), number, &line)?;
         }
-        for number in 0..layout.destination_lines(count) {
+        for number in 0..task.destination_lines {
             let at = self.workspace.line(self.workspace.destination(), number)?;
             self.transport.forget(at..at + 1);
         }
@@ -176,21 +188,21 @@ impl<T: Transport> Session<T> {
     }
 
     /// Begins the job that is loaded. From now on the device may access only the lines of this job.
-    pub(super) fn start(&mut self, pairs: u32) -> Result<Begin, HostError> {
+    pub(super) fn start(&mut self, task: &Task) -> Result<Begin, HostError> {
         let Self { transport, workspace, .. } = self;
-        transport.limit(Some(workspace.limits(pairs.into())));
+        transport.limit(Some(workspace.limits(task)));
         let (cycle, traffic, logged) = (transport.cycle(), transport.traffic(), transport.device_writes().len());
         match self.transport.protocol() {
-            Protocol::Spl2 => spl2::start(self, pairs)?,
-            Protocol::Axi => axi::start(self, pairs)?,
+            Protocol::Spl2 => spl2::start(self, task)?,
+            Protocol::Axi => axi::start(self, task)?,
         }
         Ok(Begin { cycle, traffic, logged })
     }
 
     /// Asks the AFU to end the job.
-    pub(super) fn abort(&mut self, pairs: u32) -> Result<(), HostError> {
+    pub(super) fn abort(&mut self, task: &Task) -> Result<(), HostError> {
         match self.transport.protocol() {
-            Protocol::Spl2 => spl2::abort(self, pairs),
+            Protocol::Spl2 => spl2::abort(self, task),
             Protocol::Axi => axi::abort(self),
         }
     }
@@ -216,15 +228,14 @@ impl<T: Transport> Session<T> {
         self.transport.line(address / LINE_BYTES).unwrap_or_default()
     }
 
-    /// Waits for the status of a job of `pairs` pairs, and calls `progress` now and then with the traffic over the link
-    /// so far.
+    /// Waits for the status of a job, and calls `progress` now and then with the traffic over the link so far.
     pub(super) fn wait_for_status(
         &mut self,
         begin: &Begin,
-        pairs: u32,
+        task: &Task,
         progress: &mut dyn FnMut(Traffic),
     ) -> Result<Status, HostError> {
-        let patience = self.patience(pairs.into());
+        let patience = self.patience(task);
         let whole = self.max_cycles.unwrap_or(patience.whole);
         loop {
             if let Some(status) = self.status(begin)? {

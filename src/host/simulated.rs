@@ -10,13 +10,23 @@ use crate::link::axi::Handshake;
 use crate::link::spl2::{Spl2, Spl2Model};
 use crate::link::{Link, LinkError, LinkModel, Traffic};
 use crate::query::PairRecord;
-use crate::record::pack;
+use crate::record::{HITS_PER_LINE, hit_lines, pack, pack_spheres};
+use crate::spheres::Spheres;
+
+/// What a job is given.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Given<'a> {
+    /// Pairs.
+    Pairs(&'a [PairRecord]),
+    /// Spheres, with room for this number of contacts, whose search takes at most this number of cycles.
+    Spheres { sets: &'a Spheres, contacts: u64, search: u64 },
+}
 
 /// A job to be run.
 pub(crate) struct Run<'a> {
     pub(crate) config: &'a Config,
     pub(crate) expected: Expected,
-    pub(crate) pairs: &'a [PairRecord],
+    pub(crate) given: Given<'a>,
     pub(crate) seed: u64,
     pub(crate) progress: &'a mut dyn FnMut(Traffic),
 }
@@ -35,12 +45,20 @@ impl Run<'_> {
             Shell::Spl2 => {
                 let spl = Spl2::new(Spl2Model::default(), Link::new(link, self.seed)?, self.seed);
                 let device = spl2::Machine::new(afu, spl).map_err(HostError::from)?;
-                let workspace = Workspace::for_pairs(self.expected.layout, self.pairs.len() as u64, self.seed)?;
+                let pairs = if let Given::Pairs(pairs) = self.given { pairs.len() as u64 } else { 0 };
+                let workspace = Workspace::for_pairs(self.expected.layout, pairs, self.seed)?;
                 self.through_a_host(device, workspace)?
             }
             Shell::Axi => {
                 let device = axi::Machine::new(afu, link, Handshake::Free, self.seed).map_err(HostError::from)?;
-                let workspace = Workspace::contiguous(self.expected.layout, self.pairs.len() as u64)?;
+                let layout = self.expected.layout;
+                let workspace = match self.given {
+                    Given::Pairs(pairs) => Workspace::contiguous(layout, pairs.len() as u64)?,
+                    Given::Spheres { sets, contacts, .. } => {
+                        let second = sets.second.as_ref().map_or(0, Vec::len);
+                        Workspace::for_spheres(layout, [sets.first.len() as u64, second as u64], contacts)?
+                    }
+                };
                 self.through_a_host(device, workspace)?
             }
             Shell::Line => {
@@ -52,17 +70,38 @@ impl Run<'_> {
 
     fn through_a_host(self, device: impl Transport, workspace: Workspace) -> Result<Outcome, HostError> {
         let mut session = Session::new(device, workspace, self.expected);
-        let running = session.transaction().send(self.pairs)?.start()?.confirm()?;
-        Ok(running.wait_with(self.progress)?.outcome())
+        let transaction = session.transaction();
+        Ok(match self.given {
+            Given::Pairs(pairs) => transaction.send(pairs)?.start()?.confirm()?.wait_with(self.progress)?.outcome(),
+            Given::Spheres { sets, search, .. } => {
+                let loaded = transaction.send_spheres_within(sets, search)?;
+                loaded.start()?.confirm()?.wait_with(self.progress)?.outcome()
+            }
+        })
     }
 
     fn at_the_line_port(self, mut driver: Driver) -> Result<Outcome, DriveError> {
         let layout = &self.expected.layout;
-        let source = pack(layout, self.pairs);
-        let mut job = Job::new(&source, self.pairs.len() as u32, layout.destination_lines(self.pairs.len() as u64));
-        job.scpus = Some(self.config.scpus);
-        let only_hits = self.config.results == Results::Hits;
-        job.hits_per_line = only_hits.then(|| layout.contacts_per_line());
+        let source;
+        let mut job;
+        match self.given {
+            Given::Pairs(pairs) => {
+                source = pack(layout, pairs);
+                job = Job::new(&source, pairs.len() as u32, layout.destination_lines(pairs.len() as u64));
+                job.scpus = Some(self.config.scpus);
+                let only_hits = self.config.results == Results::Hits;
+                job.hits_per_line = only_hits.then(|| layout.contacts_per_line());
+            }
+            Given::Spheres { sets, contacts, search } => {
+                let others = sets.second.as_deref();
+                source = [pack_spheres(&sets.first), pack_spheres(others.unwrap_or_default())].concat();
+                job = Job::new(&source, sets.first.len() as u32, hit_lines(contacts));
+                job.others = others.map_or(0, |others| others.len() as u32);
+                job.mode = others.is_some().into();
+                job.hits_per_line = Some(HITS_PER_LINE);
+                job.search = search;
+            }
+        }
         driver.start(&job)?;
         while !driver.step()? {
             if driver.cycle().is_multiple_of(PROGRESS_CYCLES) {

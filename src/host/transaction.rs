@@ -13,29 +13,42 @@ use crate::query::PairRecord;
 /// After step 1: the pointers are known.
 #[derive(Debug)]
 pub struct Pointed(());
-/// After step 2: the pairs are in the source, and SPL is started.
+/// After step 2: the pairs are in the source, or the spheres of a [`SpheresJob`](super::SpheresJob), and SPL is
+/// started.
 #[derive(Debug)]
-pub struct Loaded(());
+pub struct Loaded<J = PairsJob> {
+    pub(super) job: J,
+}
 /// After step 3: the start word is in the control memory.
 #[derive(Debug)]
-pub struct Started {
+pub struct Started<J = PairsJob> {
     begin: Begin,
+    job: J,
 }
 /// After step 4: the AFU has identified itself.
 #[derive(Debug)]
-pub struct Running {
+pub struct Running<J = PairsJob> {
     begin: Begin,
+    job: J,
 }
 /// After step 5: the status has arrived.
 #[derive(Debug)]
-pub struct Done {
+pub struct Done<J = PairsJob> {
     begin: Begin,
     status: Status,
+    pub(super) job: J,
 }
 /// After step 6: the host has the results.
 #[derive(Debug)]
-pub struct Retrieved {
-    results: JobResults,
+pub struct Retrieved<R = JobResults> {
+    pub(super) results: R,
+}
+
+/// A job of pairs, as a transaction knows it after step 2.
+#[derive(Clone, Debug)]
+pub struct PairsJob {
+    /// The host needs them again if the AFU leaves some unsettled.
+    pub(super) pairs: Vec<PairRecord>,
 }
 
 /// A transaction at the step that `S` names. Each step takes the transaction and returns the next, so no step can be
@@ -99,8 +112,8 @@ pub struct Retrieved {
 /// ```
 #[derive(Debug)]
 pub struct Transaction<'s, T: Transport, S> {
-    open: Open<'s, T>,
-    state: S,
+    pub(super) open: Open<'s, T>,
+    pub(super) state: S,
 }
 
 impl<'s, T: Transport, S> Transaction<'s, T, S> {
@@ -114,7 +127,7 @@ impl<'s, T: Transport, S> Transaction<'s, T, S> {
         &mut self.open.session.transport
     }
 
-    fn to<N>(self, state: impl FnOnce(S) -> N) -> Transaction<'s, T, N> {
+    pub(super) fn to<N>(self, state: impl FnOnce(S) -> N) -> Transaction<'s, T, N> {
         Transaction { open: self.open, state: state(self.state) }
     }
 }
@@ -142,39 +155,39 @@ impl<'s, T: Transport> Transaction<'s, T, Pointed> {
     /// Step 2: puts the pairs into the source and starts SPL.
     ///
     /// # Errors
-    /// Returns an error if there are more pairs than the buffers hold, if no AFU_ID arrives or another one than
-    /// expected, or if the device breaks its protocol.
+    /// Returns an error if the AFU takes spheres, if there are more pairs than the buffers hold, if no AFU_ID arrives
+    /// or another one than expected, or if the device breaks its protocol.
     pub fn send(mut self, pairs: &[PairRecord]) -> Result<Transaction<'s, T, Loaded>, HostError> {
-        self.open.load(pairs)?;
+        let job = self.open.load_pairs(pairs)?;
         self.open.set_up()?;
-        Ok(self.to(|_| Loaded(())))
+        Ok(self.to(|_| Loaded { job }))
     }
 }
 
-impl<'s, T: Transport> Transaction<'s, T, Loaded> {
+impl<'s, T: Transport, J> Transaction<'s, T, Loaded<J>> {
     /// Step 3: writes nCol and the start word into the control memory.
     ///
     /// # Errors
     /// Returns [`HostError::Outside`], which cannot happen with a workspace.
-    pub fn start(mut self) -> Result<Transaction<'s, T, Started>, HostError> {
+    pub fn start(mut self) -> Result<Transaction<'s, T, Started<J>>, HostError> {
         let begin = self.open.start()?;
-        Ok(self.to(|_| Started { begin }))
+        Ok(self.to(|Loaded { job }| Started { begin, job }))
     }
 }
 
-impl<'s, T: Transport> Transaction<'s, T, Started> {
+impl<'s, T: Transport, J> Transaction<'s, T, Started<J>> {
     /// Step 4: checks by the AFU_ID in the DSM that the AFU is there and is the expected one. (It is written while SPL
     /// starts, and step 2 waited for it.)
     ///
     /// # Errors
     /// Returns an error if it is a different AFU by now.
-    pub fn confirm(self) -> Result<Transaction<'s, T, Running>, HostError> {
+    pub fn confirm(self) -> Result<Transaction<'s, T, Running<J>>, HostError> {
         self.open.session.check_identity()?;
-        Ok(self.to(|Started { begin }| Running { begin }))
+        Ok(self.to(|Started { begin, job }| Running { begin, job }))
     }
 }
 
-impl<'s, T: Transport> Transaction<'s, T, Running> {
+impl<'s, T: Transport, J> Transaction<'s, T, Running<J>> {
     /// Asks the AFU to abort the job; its status then says so.
     ///
     /// # Errors
@@ -202,7 +215,7 @@ impl<'s, T: Transport> Transaction<'s, T, Running> {
     /// Returns [`HostError::NoStatus`] if the AFU takes, or is silent for, longer than a correct one could
     /// ([`patience`](crate::patience)), or takes longer than [`Session::max_cycles`]. Returns the device's protocol
     /// errors.
-    pub fn wait(self) -> Result<Transaction<'s, T, Done>, HostError> {
+    pub fn wait(self) -> Result<Transaction<'s, T, Done<J>>, HostError> {
         self.wait_with(|_| {})
     }
 
@@ -210,26 +223,33 @@ impl<'s, T: Transport> Transaction<'s, T, Running> {
     ///
     /// # Errors
     /// Returns the errors of `wait`.
-    pub(crate) fn wait_with(self, mut progress: impl FnMut(Traffic)) -> Result<Transaction<'s, T, Done>, HostError> {
-        let status = self.open.session.wait_for_status(&self.state.begin, self.open.count(), &mut progress)?;
-        Ok(self.to(|Running { begin }| Done { begin, status }))
+    pub(crate) fn wait_with(
+        mut self,
+        mut progress: impl FnMut(Traffic),
+    ) -> Result<Transaction<'s, T, Done<J>>, HostError> {
+        let Open { session, task, .. } = &mut self.open;
+        let status = session.wait_for_status(&self.state.begin, task, &mut progress)?;
+        Ok(self.to(|Running { begin, job }| Done { begin, status, job }))
     }
 }
 
-impl<'s, T: Transport> Transaction<'s, T, Done> {
+impl<T: Transport, J> Transaction<'_, T, Done<J>> {
     /// The outcome as it is in memory, even if the job ended with an error: the AFU's counts, each destination line,
     /// and the cycle in which it was written.
     pub fn outcome(&self) -> Outcome {
         self.open.outcome(&self.state.begin, &self.state.status)
     }
+}
 
+impl<'s, T: Transport> Transaction<'s, T, Done> {
     /// Step 6: takes the results from the destination.
     ///
     /// # Errors
     /// Returns [`HostError::Job`] if the AFU ended the job with an error. Returns [`HostError::Unwritten`] or
     /// [`HostError::Hit`] if memory does not hold what the status promises.
     pub fn retrieve(mut self) -> Result<Transaction<'s, T, Retrieved>, HostError> {
-        let results = self.open.results(&self.outcome())?;
+        let outcome = self.outcome();
+        let results = self.open.results(&self.state.job, &outcome)?;
         Ok(self.to(|_| Retrieved { results }))
     }
 
@@ -238,24 +258,26 @@ impl<'s, T: Transport> Transaction<'s, T, Done> {
     /// # Errors
     /// Returns an error if there are more pairs than the buffers hold.
     pub fn send_next(mut self, pairs: &[PairRecord]) -> Result<Transaction<'s, T, Loaded>, HostError> {
-        self.open.load(pairs)?;
-        Ok(self.to(|_| Loaded(())))
+        let job = self.open.load_pairs(pairs)?;
+        Ok(self.to(|_| Loaded { job }))
+    }
+}
+
+impl<T: Transport, R> Transaction<'_, T, Retrieved<R>> {
+    /// The results.
+    pub fn results(&self) -> &R {
+        &self.state.results
     }
 }
 
 impl<'s, T: Transport> Transaction<'s, T, Retrieved> {
-    /// The results.
-    pub fn results(&self) -> &JobResults {
-        &self.state.results
-    }
-
     /// Step 2 again, for another job: replaces the pairs of the last one, while SPL and the AFU stay enabled.
     ///
     /// # Errors
     /// Returns an error if there are more pairs than the buffers hold.
     pub fn send_next(mut self, pairs: &[PairRecord]) -> Result<Transaction<'s, T, Loaded>, HostError> {
-        self.open.load(pairs)?;
-        Ok(self.to(|_| Loaded(())))
+        let job = self.open.load_pairs(pairs)?;
+        Ok(self.to(|_| Loaded { job }))
     }
 
     /// Step 7: stops SPL and frees the workspace.
@@ -263,8 +285,7 @@ impl<'s, T: Transport> Transaction<'s, T, Retrieved> {
     /// # Errors
     /// Returns the device's protocol errors since then.
     pub fn end(mut self) -> Result<JobResults, HostError> {
-        let report = self.open.finish()?;
-        self.open.session.reports.push(report);
+        let report = self.open.end()?;
         Ok(JobResults { report, ..self.state.results })
     }
 }

@@ -10,10 +10,11 @@ use rand::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::error::HostError;
+use super::task::Task;
 use crate::afu::shell::spl2::map::{self, pointers};
 use crate::link::spl2::{Limits, MAX_PAGES, PAGE_BYTES, PAGE_LINES, Pages};
 use crate::link::{LINE_BYTES, Line};
-use crate::record::Layout;
+use crate::record::{Layout, hit_lines, sphere_lines};
 
 /// The virtual byte address of a workspace.
 const BASE: u64 = 0x0000_7F12_3460_0000;
@@ -48,6 +49,7 @@ pub struct Workspace {
     destination: u64,
     /// Lines of each.
     lines: u64,
+    room: u64,
 }
 
 impl Workspace {
@@ -78,6 +80,7 @@ impl Workspace {
             source: CONTEXT_LINES,
             destination: CONTEXT_LINES + lines,
             lines,
+            room: lines,
         })
     }
 
@@ -88,13 +91,27 @@ impl Workspace {
     /// Returns [`HostError::Pages`] if 2 GB are not enough.
     pub fn contiguous(layout: Layout, pairs: u64) -> Result<Self, HostError> {
         let lines = layout.source_lines(pairs).max(layout.destination_lines(pairs));
-        let pages = (2 * lines).div_ceil(PAGE_LINES).max(1);
-        if pages > MAX_PAGES {
-            return Err(HostError::Pages(pages));
-        }
-        let lines = pages * PAGE_LINES / 2;
-        let pages = Pages::new(CONTIGUOUS, (0..pages).map(|page| CONTIGUOUS + page * PAGE_BYTES));
-        Ok(Self { pages, layout, base: CONTIGUOUS, reserved: 0, control: 0, source: 0, destination: lines, lines })
+        let pages = contiguous_pages(2 * lines)?;
+        let lines = pages.count() * PAGE_LINES / 2;
+        Ok(Self::physical_from(CONTIGUOUS, pages, layout, lines))
+    }
+
+    /// The smallest workspace of that kind for jobs of these numbers of spheres, in the first set and in the second,
+    /// with room for `contacts` contacts. Each buffer is exactly as long as that takes, and begins with 4 KB.
+    ///
+    /// # Errors
+    /// Returns [`HostError::Pages`] if 2 GB are not enough.
+    pub fn for_spheres(layout: Layout, spheres: [u64; 2], contacts: u64) -> Result<Self, HostError> {
+        let lines = spheres.map(sphere_lines).iter().sum::<u64>();
+        let (destination, room) = (lines.next_multiple_of(BURST_LINES), hit_lines(contacts));
+        let pages = contiguous_pages(destination + room)?;
+        Ok(Self { lines, destination, room, ..Self::physical_from(CONTIGUOUS, pages, layout, lines) })
+    }
+
+    /// Physical memory with buffers of this length, one behind the other.
+    fn physical_from(base: u64, pages: Pages, layout: Layout, lines: u64) -> Self {
+        let (destination, room) = (lines, lines);
+        Self { pages, layout, base, reserved: 0, control: 0, source: 0, destination, lines, room }
     }
 
     /// A workspace in this range of physical bytes, of which the device has the same view: a buffer that a driver gave.
@@ -114,8 +131,7 @@ impl Workspace {
         }
         let pages = bytes.start / PAGE_BYTES..bytes.end.div_ceil(PAGE_BYTES);
         let pages = Pages::new(bytes.start, pages.map(|page| page * PAGE_BYTES));
-        let base = bytes.start;
-        Ok(Self { pages, layout, base, reserved: 0, control: 0, source: 0, destination: lines, lines })
+        Ok(Self::physical_from(bytes.start, pages, layout, lines))
     }
 
     /// The same pages with another source and destination, as offsets in lines from the beginning, each `lines` long.
@@ -131,7 +147,7 @@ impl Workspace {
         if source.abs_diff(destination) < lines {
             return Err(HostError::Buffers("they overlap"));
         }
-        Ok(Self { source, destination, lines, ..self })
+        Ok(Self { source, destination, lines, room: lines, ..self })
     }
 
     /// The smallest workspace that holds `pairs` pairs and their contacts.
@@ -160,7 +176,7 @@ impl Workspace {
     /// The most pairs that a transaction may have: what source and destination hold, and what a count can represent.
     pub fn capacity(&self) -> u64 {
         let pairs = self.lines.saturating_sub(self.control) * u64::from(self.layout.pairs_per_line());
-        pairs.min(self.lines * u64::from(self.layout.contacts_per_line())).min(u32::MAX.into())
+        pairs.min(self.room * u64::from(self.layout.contacts_per_line())).min(u32::MAX.into())
     }
 
     /// Virtual byte address of the AFU's context.
@@ -188,9 +204,19 @@ impl Workspace {
         self.base + self.destination * LINE_BYTES
     }
 
-    /// Lines of source, and of destination.
+    /// Lines of source, and of destination: of the shorter one.
     pub fn buffer_lines(&self) -> u64 {
-        self.lines
+        self.lines.min(self.room)
+    }
+
+    /// Lines of the source behind the control memory.
+    pub(super) fn source_room(&self) -> u64 {
+        self.lines.saturating_sub(self.control)
+    }
+
+    /// Lines of the destination.
+    pub(super) fn destination_room(&self) -> u64 {
+        self.room
     }
 
     /// The physical line of a virtual byte address; `None` if the address is outside the workspace.
@@ -204,18 +230,17 @@ impl Workspace {
         self.physical(address).ok_or(HostError::Outside(address))
     }
 
-    /// The lines that a job of this number of pairs may access.
-    pub(super) fn limits(&self, pairs: u64) -> Limits {
+    /// The lines that a job may access.
+    pub(super) fn limits(&self, task: &Task) -> Limits {
         let line = |address: u64| address / LINE_BYTES;
         let (context, source, destination) = (line(self.context()), line(self.source()), line(self.destination()));
         let [pointers, status] = [map::POINTERS_LINE, map::STATUS_LINE].map(|number| context + u64::from(number));
-        let source_lines = self.control + self.layout.source_lines(pairs);
-        let sources = source..source + source_lines;
+        let sources = source..source + self.control + task.source_lines;
         let has_context = self.reserved > 0;
         Limits {
             reads: if has_context { vec![pointers..pointers + 1, sources] } else { vec![sources] },
             status: if has_context { status..status + 1 } else { 0..0 },
-            results: destination..destination + self.layout.destination_lines(pairs),
+            results: destination..destination + task.destination_lines,
         }
     }
 
@@ -231,6 +256,15 @@ impl Workspace {
         lines.push((self.line(self.source(), map::CONTROL_LINE.into())?, [0; 16]));
         Ok(lines)
     }
+}
+
+/// Pages that follow each other, for this number of lines.
+fn contiguous_pages(lines: u64) -> Result<Pages, HostError> {
+    let pages = lines.div_ceil(PAGE_LINES).max(1);
+    if pages > MAX_PAGES {
+        return Err(HostError::Pages(pages));
+    }
+    Ok(Pages::new(CONTIGUOUS, (0..pages).map(|page| CONTIGUOUS + page * PAGE_BYTES)))
 }
 
 /// Lines of each half behind the context: (length − 128) / 2, a whole number of lines for any number of pages.
@@ -294,6 +328,19 @@ mod tests {
             let error = Workspace::in_buffer(layout(), range).unwrap_err().to_string();
             assert!(error.contains(why), "{error}");
         }
+    }
+
+    #[test]
+    fn buffers_of_spheres_are_as_long_as_they_must_be() {
+        for (spheres, contacts, source, room) in [([20, 0], 160, 8, 10), ([17, 1], 17, 12, 2), ([0, 0], 0, 0, 0)] {
+            let workspace = Workspace::for_spheres(layout(), spheres, contacts).unwrap();
+            assert_eq!((workspace.source_room(), workspace.destination_room()), (source, room));
+            assert!((workspace.destination() - workspace.source()) / 64 >= source);
+            assert!([workspace.source(), workspace.destination()].iter().all(|at| at.is_multiple_of(4096)));
+            assert!(workspace.physical(workspace.destination() + 64 * room).is_some());
+        }
+        let error = Workspace::for_spheres(layout(), [16, 0], 1 << 40).unwrap_err().to_string();
+        assert!(error.contains("expected 1 to 1024 pages"), "{error}");
     }
 
     #[test]

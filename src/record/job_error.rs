@@ -1,6 +1,6 @@
 //! The error codes of a job, shared by hardware, hosts and documentation.
 
-use crate::config::Shell;
+use crate::config::{Input, Shell};
 
 /// The error of a job, in the port `error` and in the status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,9 +57,10 @@ impl JobError {
         self.texts().0
     }
 
-    /// Advice for the user of an AFU with this shell.
-    pub const fn advice(self, shell: Shell) -> &'static str {
+    /// Advice for the user of an AFU with this shell and this input.
+    pub const fn advice(self, shell: Shell, input: Input) -> &'static str {
         match (self, shell) {
+            (Self::Mode, _) if matches!(input, Input::Spheres) => "use mode 0, 1 or 2",
             (Self::Read, Shell::Spl2) => {
                 "check that source and page table are where the context says, then send the transaction again"
             }
@@ -77,12 +78,12 @@ impl JobError {
         }
     }
 
-    /// The errors that an AFU with this shell can give, in the order of their codes.
-    pub fn of_shell(shell: Shell) -> impl Iterator<Item = Self> {
-        // Only SPL2's context tells the AFU how long its buffers are, and only the line port carries spheres.
+    /// The errors that an AFU with this shell and this input can give, in the order of their codes.
+    pub fn of(shell: Shell, input: Input) -> impl Iterator<Item = Self> {
+        // Only SPL2's context tells the AFU how long its buffers are.
         Self::ALL.into_iter().filter(move |&error| match error {
             Self::Room => shell == Shell::Spl2,
-            Self::Table => shell == Shell::Line,
+            Self::Table => input == Input::Spheres,
             _ => true,
         })
     }
@@ -133,12 +134,18 @@ mod tests {
     /// Advice speaks of what the shell's user has: no page table without SPL2.
     #[test]
     fn advice_is_of_the_shell() {
-        for shell in [Shell::Line, Shell::Axi] {
-            assert!(JobError::of_shell(shell).all(|error| !error.advice(shell).contains("page table")), "{shell}");
-            assert!(JobError::of_shell(shell).all(|error| error != JobError::Room), "{shell}");
+        for (shell, input) in
+            [Shell::Line, Shell::Axi].into_iter().flat_map(|s| [(s, Input::Direct), (s, Input::Spheres)])
+        {
+            let errors: Vec<_> = JobError::of(shell, input).collect();
+            assert!(errors.iter().all(|error| !error.advice(shell, input).contains("page table")), "{shell}");
+            assert!(errors.iter().all(|error| *error != JobError::Room), "{shell}");
+            assert_eq!(errors.contains(&JobError::Table), input == Input::Spheres, "{shell}");
+            let says_one = JobError::Mode.advice(shell, input).contains("the only mode");
+            assert_eq!(says_one, input == Input::Direct, "{shell}");
         }
         let but_spheres = JobError::ALL.into_iter().filter(|error| *error != JobError::Table);
-        assert!(JobError::of_shell(Shell::Spl2).eq(but_spheres));
-        assert!(JobError::Read.advice(Shell::Spl2).contains("page table"));
+        assert!(JobError::of(Shell::Spl2, Input::Direct).eq(but_spheres));
+        assert!(JobError::Read.advice(Shell::Spl2, Input::Direct).contains("page table"));
     }
 }

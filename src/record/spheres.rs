@@ -7,10 +7,58 @@ use crate::spheres::{ROW, Sphere};
 const WORDS: usize = 4;
 /// Spheres in a line.
 const PER_LINE: usize = 16 / WORDS;
+/// Hits in a line.
+pub(crate) const HITS_PER_LINE: u32 = 16;
+/// The spheres of a second set, at most: as many as the 16 bits of a hit's number count.
+const MOST_OTHERS: usize = 1 << 16;
+
+/// A set has more spheres than a job can have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SetTooLarge {
+    /// The first set does not fit into the AFU's table.
+    #[error(
+        "{spheres} spheres: the AFU's table holds {table}; use a larger --table, or fewer spheres in the first set"
+    )]
+    First {
+        /// Spheres of the first set.
+        spheres: usize,
+        /// Spheres that the table holds.
+        table: u32,
+    },
+    /// A hit's number cannot represent all spheres of the second set.
+    #[error("{0} spheres in the second set: expected at most 65536 in a job")]
+    Second(usize),
+}
+
+impl SetTooLarge {
+    /// Checks the numbers of spheres in the first set and in the second, for an AFU with this table.
+    ///
+    /// # Errors
+    /// Fails with the first set that is too large.
+    pub(crate) fn check(first: usize, second: usize, table: u32) -> Result<(), Self> {
+        if first > table as usize {
+            return Err(Self::First { spheres: first, table });
+        }
+        if second > MOST_OTHERS {
+            return Err(Self::Second(second));
+        }
+        Ok(())
+    }
+}
+
+/// Lines of a set of spheres.
+pub(crate) fn sphere_lines(spheres: u64) -> u64 {
+    spheres.div_ceil(ROW as u64) * (ROW / PER_LINE) as u64
+}
+
+/// Lines of hits.
+pub(crate) fn hit_lines(hits: u64) -> u64 {
+    hits.div_ceil(HITS_PER_LINE.into())
+}
 
 /// The lines of a set. The padding of its last row is zero.
 pub(crate) fn pack_spheres(spheres: &[Sphere]) -> Vec<Line> {
-    let mut lines = vec![[0; 16]; spheres.len().div_ceil(ROW) * ROW / PER_LINE];
+    let mut lines = vec![[0; 16]; sphere_lines(spheres.len() as u64) as usize];
     for (place, sphere) in spheres.iter().enumerate() {
         let first = place % PER_LINE * WORDS;
         lines[place / PER_LINE][first..first + WORDS].copy_from_slice(&sphere.0);
@@ -29,6 +77,17 @@ pub(crate) fn pack_numbers(hits: &[[u32; 2]]) -> Vec<Line> {
     hits.chunks(16).map(line).collect()
 }
 
+/// The spheres of a set of `count` spheres, from its lines.
+pub(crate) fn unpack_spheres(lines: &[Line], count: usize) -> Vec<Sphere> {
+    let words = lines.iter().flat_map(|line| line.as_chunks::<WORDS>().0);
+    words.take(count).map(|words| Sphere(*words)).collect()
+}
+
+/// The two numbers in a word of hits.
+pub(crate) fn numbers_of(word: u32) -> [u32; 2] {
+    [word & 0xFFFF, word >> 16]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -42,6 +101,7 @@ mod tests {
             let words: Vec<u32> = packed.concat();
             assert!(set.iter().zip(words.chunks(4)).all(|(sphere, words)| sphere.0 == words));
             assert!(words[4 * set.len()..].iter().all(|word| *word == 0));
+            assert_eq!(unpack_spheres(&packed, set.len()), set);
         }
     }
 
@@ -49,5 +109,13 @@ mod tests {
     fn a_hit_is_two_numbers() {
         let lines = pack_numbers(&[[7, 65_535]; 17]);
         assert_eq!((lines.len(), lines[0][15], lines[1][0], lines[1][1]), (2, 0xFFFF_0007, 0xFFFF_0007, 0));
+        assert_eq!((numbers_of(lines[0][15]), hit_lines(17)), ([7, 65_535], 2));
+    }
+
+    #[test]
+    fn a_set_that_is_too_large_is_told_with_its_size() {
+        assert_eq!(SetTooLarge::check(512, 65_536, 512), Ok(()));
+        assert_eq!(SetTooLarge::check(513, 0, 512), Err(SetTooLarge::First { spheres: 513, table: 512 }));
+        assert_eq!(SetTooLarge::check(0, 65_537, 512), Err(SetTooLarge::Second(65_537)));
     }
 }

@@ -10,7 +10,7 @@ use crate::afu::{Afu, Spec, file_list, top_name};
 use crate::config::{self, Config, Results};
 use crate::cosim::{CosimError, File, Model, Source, Trace};
 use crate::host::Expected;
-use crate::host::simulated::Run;
+use crate::host::simulated::{Given, Run};
 use crate::kernel::Reference;
 use crate::link::{LinkModel, Traffic};
 use crate::query::PairRecord;
@@ -42,7 +42,7 @@ pub struct Bench {
     folder: Option<PathBuf>,
     source: Source,
     model: Model,
-    expected: Expected,
+    pub(super) expected: Expected,
     reference: Reference,
 }
 
@@ -168,7 +168,8 @@ impl Bench {
             };
             progress(Progress::Simulated(pairs.min(count.into())));
         };
-        let run = Run { config: &self.config, expected: self.expected, pairs, seed, progress: &mut tell };
+        let given = Given::Pairs(pairs);
+        let run = Run { config: &self.config, expected: self.expected, given, seed, progress: &mut tell };
         let outcome: Result<_, VerifyError> = run.on(&instance, link.clone());
         // The waveform of a failed job is the most useful one.
         let closed = if waveform.is_some() { instance.trace_close() } else { Ok(()) };

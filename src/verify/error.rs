@@ -7,7 +7,7 @@ use crate::cosim::drive::DriveError;
 use crate::host::{HostError, TransportError};
 use crate::kernel::EngineError;
 use crate::link::LinkError;
-use crate::record::OtherRadius;
+use crate::record::{OtherRadius, SetTooLarge};
 use crate::spheres::RefusedArithmetic;
 
 /// Why there is no verdict. (A mismatch is a verdict.)
@@ -37,19 +37,9 @@ pub enum VerifyError {
     /// There are more pairs than a job's count can represent.
     #[error("{0} pairs: expected at most 4294967295 in a job")]
     Pairs(usize),
-    /// There are more spheres than the AFU's table holds.
-    #[error(
-        "{spheres} spheres: the AFU's table holds {table}; use a larger --table, or fewer spheres in the first set"
-    )]
-    Table {
-        /// Spheres of the first set.
-        spheres: usize,
-        /// Spheres that the table holds.
-        table: u32,
-    },
-    /// There are more spheres in the second set than a hit's number can represent.
-    #[error("{0} spheres in the second set: expected at most 65536 in a job")]
-    Second(usize),
+    /// There are more spheres in a set than the AFU takes.
+    #[error(transparent)]
+    Set(#[from] SetTooLarge),
     /// The arithmetic has no boxes.
     #[error(transparent)]
     Search(#[from] RefusedArithmetic),
@@ -74,8 +64,7 @@ impl VerifyError {
             | Self::Link(_)
             | Self::Radius(_)
             | Self::Pairs(_)
-            | Self::Table { .. }
-            | Self::Second(_)
+            | Self::Set(_)
             | Self::Search(_)
             | Self::Reference(_) => false,
         }

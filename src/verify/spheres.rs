@@ -5,16 +5,13 @@ use std::time::Instant;
 
 use super::Bench;
 use super::error::VerifyError;
-use crate::cosim::{CosimError, Driver, Job, Outcome};
-use crate::link::{Link, LinkModel};
+use crate::cosim::{CosimError, Outcome};
+use crate::host::simulated::{Given, Run};
+use crate::host::spheres::steps;
+use crate::link::LinkModel;
 use crate::query::Fields;
-use crate::record::{LINE_BITS, pack_numbers, pack_spheres};
+use crate::record::{SetTooLarge, numbers_of, sphere_lines};
 use crate::spheres::{Counts, Search, Spheres};
-
-/// Hits in a line.
-const PER_LINE: u32 = LINE_BITS / 32;
-/// Cycles that a row takes besides its comparisons, at most.
-const CYCLES_OF_A_ROW: u64 = 64;
 
 /// The verdict on a job of spheres.
 #[derive(Clone, Debug)]
@@ -48,7 +45,7 @@ impl Bench {
     ///
     /// # Errors
     /// Returns an error if there are more spheres than the AFU takes, if the job does not finish, or if the AFU
-    /// breaks the line port's protocol. Differences are not errors.
+    /// breaks the protocol of its ports. Differences are not errors.
     pub fn run_spheres(
         &self,
         sets: &Spheres,
@@ -59,34 +56,23 @@ impl Bench {
         let config = self.config();
         let (first, second) = (&sets.first, sets.second.as_deref());
         let others = second.unwrap_or_default();
-        let table = config.search.table;
-        if first.len() > table as usize {
-            return Err(VerifyError::Table { spheres: first.len(), table });
-        }
-        if others.len() > 1 << 16 {
-            return Err(VerifyError::Second(others.len()));
-        }
+        SetTooLarge::check(first.len(), others.len(), config.search.table)?;
         let search = Search::new(config.profile.arithmetic(), config.search.box_bits)?;
         let mut reference = config.profile.reference(Fields::HIT);
         let found = search.find(&mut reference, first, second).map_err(VerifyError::Reference)?;
         let expected: Vec<_> = found.hits.iter().map(|hit| hit.spheres).collect();
-        let lines = pack_numbers(&expected);
 
-        let source = [pack_spheres(first), pack_spheres(others)].concat();
-        let mut job = Job::new(&source, first.len() as u32, lines.len() as u64);
-        job.others = others.len() as u32;
-        job.mode = second.is_some().into();
-        job.hits_per_line = Some(PER_LINE);
-        job.search = steps(&found.counts, expected.len() as u64, source.len() as u64);
+        let contacts = expected.len() as u64;
+        let lines = sphere_lines(first.len() as u64) + sphere_lines(others.len() as u64);
+        let given = Given::Spheres { sets, contacts, search: steps(&found.counts, contacts, lines) };
+        let run = Run { config, expected: self.expected, given, seed, progress: &mut |_| {} };
         let begun = Instant::now();
         let instance = self.model().instance(seed)?;
         if let Some(path) = waveform {
             let half_period_ps = (500.0 * config.cycle_ns()).round() as u64;
             instance.trace_open(path, half_period_ps).map_err(CosimError::from)?;
         }
-        let outcome: Result<_, VerifyError> = Link::new(link.clone(), seed)
-            .map_err(VerifyError::from)
-            .and_then(|link| Ok(Driver::new(&instance, link)?.run(&job)?));
+        let outcome: Result<_, VerifyError> = run.on(&instance, link.clone());
         // The waveform of a failed job is the most useful one.
         let closed = if waveform.is_some() { instance.trace_close() } else { Ok(()) };
         let outcome = outcome?;
@@ -94,7 +80,7 @@ impl Bench {
         let seconds = begun.elapsed().as_secs_f64();
 
         let words: Vec<u32> = outcome.lines.iter().flat_map(|line| line.unwrap_or([u32::MAX; 16])).collect();
-        let hits: Vec<_> = words.iter().take(expected.len()).map(|word| [word & 0xFFFF, word >> 16]).collect();
+        let hits: Vec<_> = words.iter().take(expected.len()).map(|word| numbers_of(*word)).collect();
         let mut failed_checks = Vec::new();
         if let Some(error) = outcome.job_error() {
             failed_checks.push(format!("the job ended with error {} ({error:?})", outcome.error));
@@ -140,10 +126,4 @@ impl Bench {
             seconds,
         })
     }
-}
-
-/// More cycles than the search takes: every comparison and every hit by itself, and what a row takes besides.
-fn steps(counts: &Counts, hits: u64, lines: u64) -> u64 {
-    let Counts { group_tests, row_tests, sphere_tests, column_tests, candidates, invalid: _ } = *counts;
-    group_tests + row_tests + sphere_tests + column_tests + candidates + hits + CYCLES_OF_A_ROW * (lines + 1)
 }

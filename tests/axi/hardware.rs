@@ -13,16 +13,17 @@ use contact_afu::link::{Line, LinkModel};
 
 use crate::bench::{Case, config, machine, model};
 
-const BUFFER: Range<u64> = 0x3F90_1000..0x3F94_1000;
+pub const BUFFER: Range<u64> = 0x3F90_1000..0x3F94_1000;
 /// Cycles in a nap.
 const NAP: u64 = 100;
 
+/// A driver.
 #[derive(Debug)]
-struct Board<'a> {
-    machine: RefCell<Machine<'a>>,
-    waits: u32,
+pub struct Board<'a> {
+    pub machine: RefCell<Machine<'a>>,
+    pub waits: u32,
     /// True if the registers do not answer.
-    is_gone: bool,
+    pub is_gone: bool,
 }
 
 impl Device for Board<'_> {

@@ -10,3 +10,4 @@ mod header;
 mod matrix;
 mod recovery;
 mod registers;
+mod spheres;

@@ -1,7 +1,8 @@
 //! The registers, as a host sees them over AXI4-Lite.
 
 use contact_afu::afu::JobError;
-use contact_afu::afu::shell::axi::map::{self, Access, REGISTERS};
+use contact_afu::afu::shell::axi::map::{self, Access};
+use contact_afu::config::Input;
 use contact_afu::cosim::axi::Machine;
 use contact_afu::link::axi::Handshake;
 
@@ -25,7 +26,7 @@ fn registers_keep_what_is_written_to_their_bytes() {
     let afu = model.instance(3).unwrap();
     let mut machine = machine(&afu, "ideal", Handshake::Free, 3);
     let special = [map::CONTROL, map::INTERRUPT_STATUS, map::SOFT_RESET];
-    for register in REGISTERS.iter().filter(|register| !special.contains(register)) {
+    for register in map::registers(Input::Direct).filter(|register| !special.contains(register)) {
         for word in 0..register.words {
             let at = register.offset + 4 * word;
             let before = machine.read_register(at).unwrap();

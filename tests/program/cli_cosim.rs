@@ -92,7 +92,7 @@ fn wrong_options_are_exit_2_before_anything_is_built() {
         (&["--spheres", "diamond:2"], "--spheres needs an AFU that takes spheres"),
         (&["--lanes", "32"], "lanes with input direct"),
         (&["--input", "spheres", "--pairs", "diamond:2"], "--pairs does not go with --input spheres"),
-        (&["--input", "spheres", "--shell", "axi"], "below shell axi: not built yet"),
+        (&["--input", "spheres", "--shell", "spl2"], "below shell spl2: not built yet; use shell axi or line"),
         (&["--input", "spheres", "--profile", "paper"], "exponent bits"),
         (&["--input", "spheres", "--table", "1000"], "table 1000: expected a power of two"),
         (&["--input", "spheres", "--scpus", "3"], "use --deciders"),
@@ -111,14 +111,16 @@ fn spheres_that_touch_come_back_as_numbers() {
     fs::write(room.path().join("four.csv"), "x,y,z,r\n0,0,0,0.5\n5,0,0,0.5\n0,0,0,-1\n0,1,0,0.5\n").expect("written");
     let arguments =
         ["cosim", "--input", "spheres", "--spheres", "four.csv", "--json", "out.json", "--contacts", "out.csv"];
-    afu(room.path(), &arguments).success();
-    let report = json(room.path(), "out.json");
-    let job = &report["jobs"][0];
-    let counts = ["spheres", "invalid", "candidates", "contacts", "mismatches"].map(|key| job[key].as_u64());
-    assert_eq!(counts, [4, 1, 1, 1, 0].map(Some));
-    assert!(job["ns_per_sphere"].as_f64().is_some_and(|ns| ns > 0.0));
-    let contacts = fs::read_to_string(room.path().join("out.csv")).expect("written");
-    assert!(contacts.lines().nth(1).is_some_and(|line| line.starts_with("0,3,real")), "{contacts}");
+    for shell in [&[][..], &["--shell", "axi", "--table", "512", "--deciders", "1", "--link", "zynqmp"]] {
+        afu(room.path(), &[&arguments, shell].concat()).success();
+        let report = json(room.path(), "out.json");
+        let job = &report["jobs"][0];
+        let counts = ["spheres", "invalid", "candidates", "contacts", "mismatches"].map(|key| job[key].as_u64());
+        assert_eq!(counts, [4, 1, 1, 1, 0].map(Some), "{shell:?}");
+        assert!(job["ns_per_sphere"].as_f64().is_some_and(|ns| ns > 0.0), "{shell:?}");
+        let contacts = fs::read_to_string(room.path().join("out.csv")).expect("written");
+        assert!(contacts.lines().nth(1).is_some_and(|line| line.starts_with("0,3,real")), "{shell:?}: {contacts}");
+    }
     // A table that is too small is told, with the option that helps.
     let refused =
         afu(room.path(), &["cosim", "--input", "spheres", "--table", "512", "--spheres", "gas:600:0.1"]).code(2);

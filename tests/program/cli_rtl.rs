@@ -300,6 +300,14 @@ fn packages_are_for_shells_with_buses() {
     }
     assert!(!text("package_xo.tcl").contains("scratch"));
     assert!(!text("left_contact_afu_litex.py").contains('@'), "every value is filled in");
+    // Of an AFU that takes spheres, with the argument that it has beside these, and without SCPUs.
+    let options = ["rtl", "--input", "spheres", "--shell", "axi", "--package", "ipxact,litex", "--out", "spheres"];
+    afu(room.path(), &options).success();
+    let packed = contents(&room.path().join("spheres"));
+    let has = |name: &str, text: &str| String::from_utf8_lossy(&packed[name]).contains(text);
+    assert!(has("package_xo.tcl", "kernel_register $block others 0x030 32\n") && has("component.xml", ">candidates<"));
+    assert!(packed.keys().all(|name| name == "manifest.json" || !has(name, "SCPUS")));
+    assert!(has("contact_afu_litex.py", "def __init__(self, platform, address_width=32)"));
     for shell in ["spl2", "line"] {
         for package in ["ipxact", "litex"] {
             let arguments = ["rtl", "--shell", shell, "--package", package, "--out", "none"];

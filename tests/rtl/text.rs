@@ -38,6 +38,7 @@ fn configurations() -> Vec<Config> {
         hits("hit,depth,normal,position"),
         super::spheres(Search::default()),
         super::spheres(Search { table: 65_536, lanes: 256, deciders: 1, ..Search::default() }),
+        Config { shell: Shell::Axi, ..super::spheres(Search::default()) },
     ]
 }
 

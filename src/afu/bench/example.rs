@@ -26,6 +26,8 @@ pub(super) struct Example {
     /// Pairs or spheres.
     pub(super) count: usize,
     pub(super) contacts: usize,
+    /// Pairs of spheres whose boxes meet; 0 if pairs come in.
+    pub(super) candidates: u64,
     pub(super) invalid: usize,
     pub(super) first_invalid: Option<usize>,
     /// The number of the last source line of another job, from its `count`, in Verilog.
@@ -53,6 +55,7 @@ impl Example {
             source,
             count: pairs.len(),
             contacts: records.iter().filter(|record| record.is_contact()).count(),
+            candidates: 0,
             invalid: invalid.len(),
             first_invalid: invalid.first().copied(),
             last_line: format!("(count - 1) / {}", layout.pairs_per_line()),
@@ -72,6 +75,7 @@ impl Example {
             expected: pack_numbers(&hits),
             count: spheres.len(),
             contacts: hits.len(),
+            candidates: found.counts.candidates,
             invalid: spheres.iter().filter(|sphere| !sphere.is_valid()).count(),
             first_invalid: spheres.iter().position(|sphere| !sphere.is_valid()),
             last_line: "(count + 15) / 16 * 4 - 1".to_owned(),

@@ -18,7 +18,8 @@ impl Afu {
     /// The text of the test bench.
     pub(super) fn bench(&self) -> String {
         let config = &self.spec().config;
-        let Example { source, expected, count, contacts, invalid, first_invalid, last_line } = Example::of(self);
+        let Example { source, expected, count, contacts, candidates, invalid, first_invalid, last_line } =
+            Example::of(self);
         let first_invalid = first_invalid.map_or(u32::MAX >> (u32::BITS - COUNT_BITS), |number| number as u32);
         // An AFU that takes spheres has no SCPUs.
         let (what, parameter) = match config.input {
@@ -42,6 +43,7 @@ impl Afu {
             ("@LAST_LINE@", last_line),
             ("@EXPECTED_LINES@", expected.len().to_string()),
             ("@CONTACTS@", contacts.to_string()),
+            ("@CANDIDATES@", candidates.to_string()),
             ("@INVALID@", invalid.to_string()),
             ("@FIRST_INVALID@", first_invalid.to_string()),
             (

@@ -7,8 +7,9 @@ use quick_xml::events::{BytesDecl, BytesText, Event};
 
 use super::super::Afu;
 use super::super::port::Declaration;
-use super::super::shell::axi::map::{Access, CONTROL, Field, REGISTERS, Register};
+use super::super::shell::axi::map::{self, Access, CONTROL, Field, Register};
 use super::logical;
+use crate::config::Input;
 
 type Xml = Writer<Vec<u8>>;
 
@@ -55,7 +56,7 @@ fn document(xml: &mut Xml, afu: &Afu) -> io::Result<()> {
                 text(xml, "addressUnitBits", "8")
             })
         })?;
-        group(xml, "memoryMaps", registers)?;
+        group(xml, "memoryMaps", |xml| registers(xml, afu.spec().config.input))?;
         group(xml, "model", |xml| model(xml, afu))?;
         group(xml, "fileSets", |xml| file_sets(xml, afu))
     })?;
@@ -160,7 +161,7 @@ fn interface(
 }
 
 /// The memory map of the slave: a register of 64 or 128 bits is words of 32 bits, as its bus sees them.
-fn registers(xml: &mut Xml) -> io::Result<()> {
+fn registers(xml: &mut Xml, input: Input) -> io::Result<()> {
     group(xml, "memoryMap", |xml| {
         text(xml, "name", SLAVE)?;
         group(xml, "addressBlock", |xml| {
@@ -169,9 +170,9 @@ fn registers(xml: &mut Xml) -> io::Result<()> {
             text(xml, "range", "4096")?;
             text(xml, "width", "32")?;
             text(xml, "usage", "register")?;
-            for register in &REGISTERS {
+            for register in map::registers(input) {
                 for word in 0..register.words {
-                    group(xml, "register", |xml| self::register(xml, register, word))?;
+                    group(xml, "register", |xml| self::register(xml, &register, word))?;
                 }
             }
             Ok(())
@@ -181,7 +182,7 @@ fn registers(xml: &mut Xml) -> io::Result<()> {
 }
 
 fn register(xml: &mut Xml, register: &Register, word: u32) -> io::Result<()> {
-    let Register { name, words, offset, access, meaning, fields } = *register;
+    let Register { name, words, offset, access, meaning, fields, .. } = *register;
     let name = if words == 1 { name.to_owned() } else { format!("{name}_{word}") };
     text(xml, "name", &name)?;
     text(xml, "description", &meaning.replace('`', ""))?;
@@ -232,15 +233,10 @@ fn model(xml: &mut Xml, afu: &Afu) -> io::Result<()> {
             text(xml, "name", RTL)?;
             text(xml, "language", "Verilog")?;
             text(xml, "moduleName", &afu.top_name())?;
-            group(xml, "moduleParameters", |xml| {
-                let scpus = [("parameterId", "SCPUS"), ("minimum", "1"), ("maximum", "64"), ("type", "int")];
-                let scpus = scpus.into_iter().chain([("resolve", "user")]);
-                xml.create_element("ipxact:moduleParameter").with_attributes(scpus).write_inner_content(|xml| {
-                    text(xml, "name", "SCPUS")?;
-                    text(xml, "value", &afu.spec().config.scpus.to_string())
-                })?;
-                Ok(())
-            })?;
+            // An AFU that takes spheres has no SCPUs.
+            if afu.spec().config.input == Input::Direct {
+                group(xml, "moduleParameters", |xml| parameter_scpus(xml, afu.spec().config.scpus))?;
+            }
             [RTL, CONSTRAINTS]
                 .into_iter()
                 .try_for_each(|set| group(xml, "fileSetRef", |xml| text(xml, "localName", set)))
@@ -253,6 +249,16 @@ fn model(xml: &mut Xml, afu: &Afu) -> io::Result<()> {
             .chain(ports.outputs.iter().map(|port| (port, "out")))
             .try_for_each(|(port, direction)| group(xml, "port", |xml| self::port(xml, port, direction)))
     })
+}
+
+fn parameter_scpus(xml: &mut Xml, scpus: u32) -> io::Result<()> {
+    let attributes = [("parameterId", "SCPUS"), ("minimum", "1"), ("maximum", "64"), ("type", "int")];
+    let attributes = attributes.into_iter().chain([("resolve", "user")]);
+    xml.create_element("ipxact:moduleParameter").with_attributes(attributes).write_inner_content(|xml| {
+        text(xml, "name", "SCPUS")?;
+        text(xml, "value", &scpus.to_string())
+    })?;
+    Ok(())
 }
 
 fn port(xml: &mut Xml, port: &Declaration, direction: &str) -> io::Result<()> {

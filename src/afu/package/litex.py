@@ -40,7 +40,7 @@ MOST_BEATS = 256
 class ContactAfu(LiteXModule):
     """`control` is the AXI4-Lite slave, `memory` the AXI4 master, `interrupt` a level; `ev` tells a CPU of it."""
 
-    def __init__(self, platform, scpus=@SCPUS@, address_width=32):
+    def __init__(self, platform, @ARGUMENT@address_width=32):
         self.control = axi.AXILiteInterface(data_width=32, address_width=address_width)
         self.memory = axi.AXIInterface(data_width=BUS_BITS, address_width=address_width, id_width=1)
         self.interrupt = Signal()
@@ -88,7 +88,7 @@ class ContactAfu(LiteXModule):
                 valid, ready = ("o", "i") if drives else ("i", "o")
                 ports[f"{valid}_{prefix}_{channel}valid"] = signals.valid
                 ports[f"{ready}_{prefix}_{channel}ready"] = signals.ready
-        self.specials += Instance("@TOP@", p_SCPUS=scpus, **ports)
+        self.specials += Instance("@TOP@", @PARAMETER@**ports)
 
         for line in (FOLDER / "@LIST@").read_text(encoding="utf-8").splitlines():
             if line and not line.startswith("//"):

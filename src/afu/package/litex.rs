@@ -2,17 +2,24 @@
 
 use super::super::shell::axi::most_lines;
 use super::super::{Afu, file_list};
+use crate::config::Input;
 
 /// The text of the Python file.
 pub(super) fn module(afu: &Afu) -> String {
     let spec = afu.spec();
+    // An AFU that takes spheres has no SCPUs.
+    let (argument, parameter) = match spec.config.input {
+        Input::Direct => (format!("scpus={}, ", spec.config.scpus), "p_SCPUS=scpus, "),
+        Input::Spheres => (String::new(), ""),
+    };
     let values = [
         ("@ORIGIN@", afu.origin()),
         ("@TOP@", afu.top_name()),
         ("@LIST@", file_list(&spec.config)),
         ("@FILE@", spec.config.prefixed("contact_afu_litex")),
         ("@BUS@", spec.config.bus.to_string()),
-        ("@SCPUS@", spec.config.scpus.to_string()),
+        ("@ARGUMENT@", argument),
+        ("@PARAMETER@", parameter.to_owned()),
         ("@BURST_LINES@", most_lines(spec).to_string()),
     ];
     values.into_iter().fold(include_str!("litex.py").to_owned(), |text, (name, value)| text.replace(name, &value))

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::super::Afu;
-use super::super::shell::axi::map::{self, Access, REGISTERS};
+use super::super::shell::axi::map::{self, Access, registers};
 
 /// The text of package_xo.tcl.
 pub(super) fn script(afu: &Afu) -> String {
@@ -63,10 +63,10 @@ proc kernel_register {{block name offset bits {{master \"\"}}}} {{
     for (register, name) in control {
         let _ = writeln!(out, "kernel_register $block {name} {:#05x} 32", register.offset);
     }
-    let is_argument = |register: &&map::Register| {
+    let is_argument = |register: &map::Register| {
         (map::SOURCE.offset..map::STATUS.offset).contains(&register.offset) && register.access == Access::ReadWrite
     };
-    for register in REGISTERS.iter().filter(is_argument) {
+    for register in registers(afu.spec().config.input).filter(is_argument) {
         let master = if register.words > 1 { " m_axi_gmem" } else { "" };
         let _ = writeln!(
             out,

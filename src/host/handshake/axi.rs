@@ -3,9 +3,11 @@
 use super::Identity;
 use crate::afu::DRAIN_CYCLES;
 use crate::afu::shell::axi::map::{self, Register};
+use crate::config::Input;
 use crate::host::error::HostError;
 use crate::host::received::Status;
 use crate::host::session::Session;
+use crate::host::task::Task;
 use crate::host::transport::{Transport, TransportError};
 use crate::outcome::{Channel, Failure};
 
@@ -25,7 +27,7 @@ pub(in crate::host) fn set_up<T: Transport>(session: &mut Session<T>) -> Result<
 pub(in crate::host) fn tear_down<T: Transport>(session: &mut Session<T>) -> Result<(), HostError> {
     write(session, map::SOFT_RESET, map::RESET.put(1))?;
     let begun = session.transport.cycle();
-    let patience = session.patience(0).whole + u64::from(DRAIN_CYCLES.max(session.watchdog));
+    let patience = session.patience(&Task::default()).whole + u64::from(DRAIN_CYCLES.max(session.watchdog));
     while map::RESET.get(read(session, map::SOFT_RESET, 0)?) != 0 {
         let waited = session.transport.cycle() - begun;
         if waited > patience {
@@ -47,15 +49,18 @@ pub(in crate::host) fn identity<T: Transport>(session: &mut Session<T>) -> Resul
 }
 
 /// Writes the job, then its start.
-pub(in crate::host) fn start<T: Transport>(session: &mut Session<T>, pairs: u32) -> Result<(), HostError> {
+pub(in crate::host) fn start<T: Transport>(session: &mut Session<T>, task: &Task) -> Result<(), HostError> {
     let workspace = &session.workspace;
     let (source, destination) = (workspace.pairs(), workspace.destination());
-    let lines = u32::try_from(workspace.buffer_lines()).unwrap_or(u32::MAX);
+    let lines = u32::try_from(workspace.destination_room()).unwrap_or(u32::MAX);
     write_wide(session, map::SOURCE, source)?;
     write_wide(session, map::DESTINATION, destination)?;
-    write(session, map::COUNT, pairs)?;
+    write(session, map::COUNT, task.count)?;
     write(session, map::DESTINATION_LINES, lines)?;
-    write(session, map::MODE, 0)?;
+    write(session, map::MODE, task.mode)?;
+    if task.input == Input::Spheres {
+        write(session, map::OTHERS, task.others)?;
+    }
     write(session, map::WATCHDOG, session.watchdog)?;
     write(session, map::CONTROL, map::START.put(1))?;
     Ok(())
@@ -82,11 +87,15 @@ pub(in crate::host) fn status<T: Transport>(session: &mut Session<T>) -> Result<
         _ => Some(Channel::Write),
     };
     let response = map::RESPONSE.get(failure) as u8;
+    let candidates = match session.input() {
+        Input::Direct => None,
+        Input::Spheres => Some(read(session, map::CANDIDATES, 0)?),
+    };
     Ok(Some(Status {
         error: map::ERROR.get(status) as u8,
         failure: channel.map(|channel| Failure { channel, response, address }),
         contacts: read(session, map::CONTACTS, 0)?,
-        candidates: None,
+        candidates,
         invalid: read(session, map::INVALID, 0)?,
         first_invalid: read(session, map::FIRST_INVALID, 0)?,
         cycles_busy: read_wide(session, map::CYCLES_BUSY)?,

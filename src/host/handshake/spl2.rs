@@ -5,6 +5,7 @@ use crate::afu::shell::spl2::map::{self, Csr, control, identity, latency, perfor
 use crate::host::error::HostError;
 use crate::host::received::{Begin, Status};
 use crate::host::session::Session;
+use crate::host::task::Task;
 use crate::host::transport::{Transport, TransportError};
 use crate::host::workspace::{AFU_DSM, SPL_CONTEXT, SPL_DSM};
 use crate::link::spl2::CsrOffset;
@@ -56,13 +57,13 @@ pub(in crate::host) fn clear_control<T: Transport>(session: &mut Session<T>) -> 
 }
 
 /// Writes the start word.
-pub(in crate::host) fn start<T: Transport>(session: &mut Session<T>, pairs: u32) -> Result<(), HostError> {
-    set_control(session, pairs, false)
+pub(in crate::host) fn start<T: Transport>(session: &mut Session<T>, task: &Task) -> Result<(), HostError> {
+    set_control(session, task, false)
 }
 
 /// Writes the control memory with the mark of an abort.
-pub(in crate::host) fn abort<T: Transport>(session: &mut Session<T>, pairs: u32) -> Result<(), HostError> {
-    set_control(session, pairs, true)
+pub(in crate::host) fn abort<T: Transport>(session: &mut Session<T>, task: &Task) -> Result<(), HostError> {
+    set_control(session, task, true)
 }
 
 /// True if the status of the job has arrived.
@@ -104,7 +105,7 @@ fn status_line<T: Transport>(session: &Session<T>, begin: &Begin) -> Option<(Lin
 
 /// Waits for an identity in a DSM.
 fn wait_for<T: Transport>(session: &mut Session<T>, is_there: impl Fn(&Session<T>) -> bool) -> Result<(), HostError> {
-    let (begun, patience) = (session.transport.cycle(), session.patience(0).whole);
+    let (begun, patience) = (session.transport.cycle(), session.patience(&Task::default()).whole);
     while !is_there(session) {
         let waited = session.transport.cycle() - begun;
         if waited > patience {
@@ -121,9 +122,9 @@ fn dsm<T: Transport>(session: &Session<T>, line: u32) -> Line {
 }
 
 /// Writes the control memory.
-fn set_control<T: Transport>(session: &mut Session<T>, pairs: u32, abort: bool) -> Result<(), HostError> {
+fn set_control<T: Transport>(session: &mut Session<T>, task: &Task, abort: bool) -> Result<(), HostError> {
     let mut line = [0; 16];
-    control::COUNT.set(&mut line, pairs.into());
+    control::COUNT.set(&mut line, task.count.into());
     control::SEQUENCE.set(&mut line, session.sequence.into());
     control::ABORT.set(&mut line, abort.into());
     control::WATCHDOG.set(&mut line, session.watchdog.into());

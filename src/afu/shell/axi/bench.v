@@ -5,7 +5,7 @@
 //   iverilog -g2005 -o bench -s @BENCH@ -y . sim/@BENCH@.v
 //   vvp -n bench
 //
-// The bench is host and memory: it reads the identity, writes the registers, and runs a job of @COUNT@ pairs twice, the
+// The bench is host and memory: it reads the identity, writes the registers, and runs a job of @COUNT@ @WHAT@ twice, the
 // second time into results that nobody has written. It compares every line written with the reference kernel's, and ends
 // with a line that begins with PASS or FAIL. Memory answers in order after LATENCY cycles at the earliest. Every READY
 // and every VALID of the bench comes and goes at random.
@@ -19,7 +19,7 @@ module @BENCH@;
 @SIZES@
   localparam integer BUS = @BUS@;
   localparam integer BEATS = 512 / BUS;
-  // Byte addresses. The pairs begin in the middle of 4 KB.
+  // Byte addresses. The @WHAT@ begin in the middle of 4 KB.
   localparam [63:0] SOURCE = 64'h0000_0001_0000_0b40;
   localparam [63:0] DESTINATION = 64'h0000_0002_0000_0000;
 
@@ -80,9 +80,7 @@ module @BENCH@;
   wire [2:0] gmem_arprot;
   wire [3:0] gmem_arqos;
 
-  @TOP@ #(
-    .SCPUS(SCPUS)
-  ) afu (
+  @TOP@@PARAMETERS@ afu (
     .ap_clk                (clk),
     .ap_rst_n              (rst_n),
     .s_axi_control_awvalid (aw_valid),
@@ -310,6 +308,7 @@ module @BENCH@;
       write_register(12'h24, LINES);
       write_register(12'h28, 32'd0);
       write_register(12'h2c, 32'd10000);
+@OTHERS@
       write_register(12'h04, 32'd1);
       write_register(12'h08, 32'd1);
       write_register(12'h00, 32'd1);
@@ -332,9 +331,10 @@ module @BENCH@;
         read_register(12'h50);
         if (value != 32'd@CONTACTS@) fault("another number of contacts");
         read_register(12'h54);
-        if (value != 32'd@INVALID@) fault("another number of invalid pairs");
+        if (value != 32'd@INVALID@) fault("another number of invalid @WHAT@");
         read_register(12'h58);
-        if (value != 32'd@FIRST_INVALID@) fault("another first invalid pair");
+        if (value != 32'd@FIRST_INVALID@) fault("another first invalid number");
+@CHECK_CANDIDATES@
         if (written != EXPECTED_LINES) fault("another number of lines");
         check_lines;
       end

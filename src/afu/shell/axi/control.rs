@@ -96,8 +96,11 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let [mode, watchdog, scratch] = [map::MODE, map::WATCHDOG, map::SCRATCH].map(argument);
     let only_hits = spec.config.results == Results::Hits;
     let room = argument(map::DESTINATION_LINES);
-    let mode_bits = JobInputs::of(spec).mode.bits;
-    let folded = mode.low(mode_bits) | mode.drop_low(mode_bits).any().extend(mode_bits);
+    let job = JobInputs::of(spec);
+    let others = job.others.map(|_| argument(map::OTHERS));
+    // A mode with a higher bit is the highest one, which is unknown.
+    let mode_bits = job.mode.bits;
+    let folded = mode.low(mode_bits) | mode.drop_low(mode_bits).any().repeat(mode_bits);
 
     // The number of a job gives its epoch.
     let jobs = graph.register("jobs", WORD_BITS, 0);
@@ -147,7 +150,7 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let failure_word = fields(&graph, &[(map::CHANNEL, *failed), (map::RESPONSE, response.gate(failed.any()))]);
     let pending_word = pending[1].concat(pending[0]);
     let failure_address = address.gate(failed.any()).concat(constant(BYTE_BITS, 0));
-    let values = [
+    let mut values = vec![
         (map::CONTROL, control_word),
         (map::GLOBAL_INTERRUPT_ENABLE, enable),
         (map::INTERRUPT_ENABLE, enabled),
@@ -177,7 +180,12 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
         (map::SOFT_RESET, *soft),
         (map::SCRATCH, scratch),
     ];
-    debug_assert!(values.iter().map(|(register, _)| register).eq(&map::REGISTERS), "every register has its value");
+    values.extend(others.map(|others| (map::OTHERS, others)));
+    values.extend(told.candidates.map(|candidates| (map::CANDIDATES, candidates)));
+    values.sort_by_key(|(register, _)| register.offset);
+    let offsets = values.iter().map(|(register, _)| register.offset);
+    let all = map::registers(spec.config.input).map(|register| register.offset);
+    debug_assert!(offsets.eq(all), "every register has its value");
     let read_word = reads.select(&graph, &values);
 
     let answers = ControlOutputs {
@@ -199,6 +207,9 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
         graph.output("destination_lines", room.low(COUNT_BITS));
     }
     graph.output("count", count);
+    if let Some(others) = others {
+        graph.output("others", others);
+    }
     graph.output("mode", folded);
     graph.output("epoch", jobs.low(EPOCH_BITS));
     graph.output("watchdog", watchdog);

@@ -2,15 +2,16 @@
 
 use std::fmt::Write as _;
 
-use super::map::{self, AFU_ID, Access, REGISTERS, VERSION};
+use super::map::{self, AFU_ID, Access, VERSION, registers};
 use crate::afu::JobError;
-use crate::config::Shell;
+use crate::config::{Input, Shell};
+use crate::spheres::ROW;
 
-/// The map as Markdown: tables of the registers, of their fields, and of the errors.
-pub fn markdown() -> String {
+/// The map as Markdown, of an accelerator with this input: tables of the registers, of their fields, and of the errors.
+pub fn markdown(input: Input) -> String {
     let mut out = format!("AFU_ID `{AFU_ID:032x}`, version {VERSION} of this map.\n\n");
     out += "| offset | bits | name | access | meaning |\n|---|---|---|---|---|\n";
-    for register in REGISTERS {
+    for register in registers(input) {
         let access = match register.access {
             Access::Read => "R",
             Access::ReadWrite => "R/W",
@@ -20,33 +21,44 @@ pub fn markdown() -> String {
         let _ = writeln!(out, "| {offset:#04X} | {bits} | `{}` | {access} | {} |", register.name, register.meaning);
     }
     out += "\n| register | bits | field | meaning |\n|---|---|---|---|\n";
-    for register in REGISTERS {
+    for register in registers(input) {
         for field in register.fields {
             let (first, last) = (field.low, field.low + field.bits - 1);
             let _ = writeln!(out, "| `{}` | {last}:{first} | `{}` | {} |", register.name, field.name, field.meaning);
         }
     }
     out += "\n| error | what it is | what to do |\n|---|---|---|\n";
-    for error in JobError::of_shell(Shell::Axi) {
-        let _ = writeln!(out, "| {} | {} | {} |", error.code(), error.what(), error.advice(Shell::Axi));
+    for error in JobError::of(Shell::Axi, input) {
+        let _ = writeln!(out, "| {} | {} | {} |", error.code(), error.what(), error.advice(Shell::Axi, input));
     }
     out
 }
 
 /// The steps of a job as Markdown.
-pub fn job() -> String {
+pub fn job(input: Input) -> String {
     let at = |register: map::Register| format!("`{}` ({:#04X})", register.name, register.offset);
+    let what = match input {
+        Input::Direct => "pairs",
+        Input::Spheres => "spheres",
+    };
+    let arguments = match input {
+        Input::Direct => format!("{}, {}", at(map::COUNT), at(map::MODE)),
+        Input::Spheres => {
+            let of_spheres = [map::DESTINATION_LINES, map::COUNT, map::OTHERS, map::MODE].map(at);
+            of_spheres.join(", ")
+        }
+    };
     format!(
         "## A job
 
-The records of pairs and contacts are in PORTS.md. Offsets between registers, and behind them, read 0; writes there
+The records of {what} and contacts are in PORTS.md. Offsets between registers, and behind them, read 0; writes there
 change nothing. A register of 64 or 128 bits is words of 32 bits, the least significant first.
 
 1. Hold `ap_rst_n` low for 16 cycles. Read {identity}: it is the AFU_ID above.
-2. Put the pairs into memory, from a byte address on that is a multiple of 64. A multiple of 4096 gives the longest
-   bursts. If the CPU's caches are not coherent with the port, flush the pairs from the CPU's caches, and invalidate the
+2. Put the {what} into memory, from a byte address on that is a multiple of 64. A multiple of 4096 gives the longest
+   bursts. If the CPU's caches are not coherent with the port, flush the {what} from the CPU's caches, and invalidate the
    lines of the contacts.
-3. Write {source}, {destination}, {count}, {mode} and {watchdog}.
+3. Write {source}, {destination}, {arguments} and {watchdog}.
 4. Write 1 to {control}.
 5. Read {status} until `done` is 1. Or set bit 0 of {enable} and of {global}, and wait for the port `interrupt`; then
    write 1 to {events}.
@@ -59,12 +71,10 @@ should stay 0. If it does not, the interconnect is faulty, or was not reset with
 
 To stop a job, write 1 to {reset}, and wait until it reads 0. The job ends with error 1. If it still reads 1 after the
 watchdog's time, memory owes a response that will not come: reset the interconnect and the accelerator together.
-",
+{more}",
         identity = at(map::IDENTITY),
         source = at(map::SOURCE),
         destination = at(map::DESTINATION),
-        count = at(map::COUNT),
-        mode = at(map::MODE),
         watchdog = at(map::WATCHDOG),
         control = at(map::CONTROL),
         status = at(map::STATUS),
@@ -75,11 +85,48 @@ watchdog's time, memory owes a response that will not come: reset the interconne
         address = at(map::FAILURE_ADDRESS),
         reset = at(map::SOFT_RESET),
         unasked = at(map::UNASKED),
+        more = if input == Input::Spheres { spheres() } else { String::new() },
+    )
+}
+
+/// What a job of spheres has beyond the steps.
+fn spheres() -> String {
+    let at = |register: map::Register| format!("`{}` ({:#04X})", register.name, register.offset);
+    format!(
+        "
+## Jobs of spheres
+
+Each set begins with a row of {ROW} spheres, which is {lines} lines. With n = `count` and m = `others`:
+
+| `mode` | the job | in memory, from `source` on |
+|---|---|---|
+| 0 | which of n spheres touch | ⌈n / {ROW}⌉ rows |
+| 1 | which of n spheres touch which of m others | ⌈n / {ROW}⌉ rows, then ⌈m / {ROW}⌉ rows |
+| 2 | which of the first set of the last job touch which of m others | ⌈m / {ROW}⌉ rows |
+
+For 20 spheres at 0x10000 with room for 160 contacts at 0x20000: write 0x10000 to {source}, 0x20000 to {destination}, 10
+to {lines_of_results}, 20 to {count} and 0 to {mode}, and start the job. It reads 8 lines. When it has ended, `contacts`
+({contacts:#04X}) records are at 0x20000, 16 in a line of 64 bytes.
+
+- {candidates} has the pairs whose boxes met, and {invalid} the spheres that touch nothing because they are no spheres.
+- Error 6 says that there was no room for all contacts. `contacts` has counted all: give `destination` room for them, and
+  start the job again.
+- Mode 2 needs a last job that ended with error 0.
+",
+        lines = ROW / 4,
+        source = at(map::SOURCE),
+        destination = at(map::DESTINATION),
+        lines_of_results = at(map::DESTINATION_LINES),
+        count = at(map::COUNT),
+        mode = at(map::MODE),
+        contacts = map::CONTACTS.offset,
+        candidates = at(map::CANDIDATES),
+        invalid = at(map::INVALID),
     )
 }
 
 /// The map as a C header. `prefix` begins its names.
-pub(super) fn header(prefix: &str, about: &str) -> String {
+pub(super) fn header(prefix: &str, input: Input, about: &str) -> String {
     let upper = prefix.to_uppercase();
     let mut out = format!(
         "/* SPDX-License-Identifier: MIT OR Apache-2.0 */
@@ -97,7 +144,7 @@ pub(super) fn header(prefix: &str, about: &str) -> String {
         let _ = writeln!(out, "#define {upper}_AFU_ID_{word} {value:#010x}u");
     }
     let _ = writeln!(out, "#define {upper}_VERSION_OF_MAP {VERSION}u");
-    for register in REGISTERS {
+    for register in registers(input) {
         let name = register.name.to_uppercase();
         let _ = writeln!(out, "\n/* {} */", register.meaning.replace('`', ""));
         let _ = writeln!(out, "#define {upper}_{name} {:#04x}u", register.offset);
@@ -111,7 +158,7 @@ pub(super) fn header(prefix: &str, about: &str) -> String {
         }
     }
     out += "\n/* Errors of a job, in the field error of the status. */\n";
-    for error in JobError::of_shell(Shell::Axi) {
+    for error in JobError::of(Shell::Axi, input) {
         let name: String = format!("{error:?}").to_uppercase();
         let _ = writeln!(out, "#define {upper}_ERROR_{name} {}u /* {} */", error.code(), error.what());
     }

@@ -6,6 +6,7 @@
 
 pub use super::super::spl2::map::AFU_ID;
 use crate::afu::JobError;
+use crate::config::Input;
 
 /// The version of this map. It changes with every change that affects software; `CHANGELOG.md` has the rule.
 pub const VERSION: u32 = 1;
@@ -69,9 +70,29 @@ pub struct Register {
     pub meaning: &'static str,
     /// Its parts, if it has any.
     pub fields: &'static [Field],
+    /// The purpose if spheres come in, where it is another one.
+    pub(super) of_spheres: Option<&'static str>,
+    /// The only input with which there is such a register; `None` if it is always there.
+    pub(super) only: Option<Input>,
 }
 
 impl Register {
+    /// The register with another purpose if spheres come in.
+    const fn of_spheres(self, meaning: &'static str) -> Self {
+        Self { of_spheres: Some(meaning), ..self }
+    }
+
+    /// The register, if spheres come in.
+    const fn only_of_spheres(self) -> Self {
+        Self { only: Some(Input::Spheres), ..self }
+    }
+
+    /// The register of an accelerator with this input; `None` if it has no such register.
+    fn of(self, input: Input) -> Option<Self> {
+        let meaning = self.of_spheres.filter(|_| input == Input::Spheres).unwrap_or(self.meaning);
+        self.only.is_none_or(|only| only == input).then_some(Self { meaning, ..self })
+    }
+
     /// The register with these parts.
     const fn with(self, fields: &'static [Field]) -> Self {
         Self { fields, ..self }
@@ -84,7 +105,7 @@ impl Register {
 }
 
 const fn register(offset: u32, name: &'static str, access: Access, meaning: &'static str) -> Register {
-    Register { offset, words: 1, name, access, meaning, fields: &[] }
+    Register { offset, words: 1, name, access, meaning, fields: &[], of_spheres: None, only: None }
 }
 
 use Access::{Read, ReadWrite, Toggle};
@@ -128,6 +149,7 @@ pub const INTERRUPT_STATUS: Register = register(
 /// Where the pairs lie.
 pub const SOURCE: Register =
     register(0x10, "source", ReadWrite, "byte address of the first line of pairs; its low six bits are ignored")
+        .of_spheres("byte address of the first line of spheres; its low six bits are ignored")
         .of_words(2);
 /// Where the contacts go.
 pub const DESTINATION: Register = register(
@@ -138,16 +160,21 @@ pub const DESTINATION: Register = register(
 )
 .of_words(2);
 /// The number of pairs.
-pub const COUNT: Register = register(0x20, "count", ReadWrite, "pairs of the job; 0 is a job");
+pub const COUNT: Register = register(0x20, "count", ReadWrite, "pairs of the job; 0 is a job")
+    .of_spheres("spheres of the first set, at most as many as the table holds; 0 is a job");
 /// The room for results.
 pub const DESTINATION_LINES: Register = register(
     0x24,
     "destination_lines",
     ReadWrite,
     "lines of 64 bytes that there is room for at `destination`; used with `--results hits` only",
-);
+)
+.of_spheres("lines of 64 bytes that there is room for at `destination`; what does not fit ends the job with error 6");
 /// The mode.
-pub const MODE: Register = register(0x28, "mode", ReadWrite, "0; anything else ends the job with error 5");
+pub const MODE: Register = register(0x28, "mode", ReadWrite, "0; anything else ends the job with error 5").of_spheres(
+    "0: one set, each pair once; 1: the first set against the second; 2: the first set of the last job, which is \
+         still in the table, against the second; anything else ends the job with error 5",
+);
 /// The watchdog.
 pub const WATCHDOG: Register = register(
     0x2C,
@@ -156,6 +183,11 @@ pub const WATCHDOG: Register = register(
     "cycles without a response, while one is outstanding, that end the job with error 4; 0: never, but for an aborted \
      or failed job, which ends after 65 536 such cycles",
 );
+
+/// The second set.
+pub const OTHERS: Register =
+    register(0x30, "others", ReadWrite, "spheres of the second set, at most 65 536; used in modes 1 and 2")
+        .only_of_spheres();
 
 /// Bit 0 of [`STATUS`].
 pub const BUSY: Field = field(0, 1, "busy", "a job runs");
@@ -193,10 +225,13 @@ pub const FAILURE_ADDRESS: Register = register(
 /// Contacts.
 pub const CONTACTS: Register = register(0x50, "contacts", Read, "contacts of the job so far");
 /// Invalid pairs.
-pub const INVALID: Register = register(0x54, "invalid", Read, "invalid pairs of the job so far");
+pub const INVALID: Register =
+    register(0x54, "invalid", Read, "invalid pairs of the job so far").of_spheres("invalid spheres of the job so far");
 /// The first invalid pair.
 pub const FIRST_INVALID: Register =
-    register(0x58, "first_invalid", Read, "number of the first invalid pair, all ones if there is none");
+    register(0x58, "first_invalid", Read, "number of the first invalid pair, all ones if there is none").of_spheres(
+        "number of the first invalid sphere, counted through the sets that the job reads, all ones if there is none",
+    );
 /// Jobs.
 pub const JOBS: Register = register(0x5C, "jobs", Read, "jobs that were started since `ap_rst_n`, modulo 2^32");
 /// Cycles of the job.
@@ -204,10 +239,13 @@ pub const CYCLES_BUSY: Register =
     register(0x60, "cycles_busy", Read, "cycles of the job; read it when the job has ended").of_words(2);
 /// Cycles without pairs.
 pub const CYCLES_INPUT: Register =
-    register(0x68, "cycles_input", Read, "of these, cycles in which the SCPUs waited for pairs").of_words(2);
+    register(0x68, "cycles_input", Read, "of these, cycles in which the SCPUs waited for pairs")
+        .of_spheres("of these, cycles in which no line of spheres was there")
+        .of_words(2);
 /// Cycles without room.
 pub const CYCLES_OUTPUT: Register =
     register(0x70, "cycles_output", Read, "of these, cycles in which pairs waited for room for their results")
+        .of_spheres("of these, cycles in which hits waited for room in a line")
         .of_words(2);
 /// When the first line came.
 pub const FIRST_READ: Register =
@@ -239,8 +277,17 @@ pub const SOFT_RESET: Register =
 /// Scratch.
 pub const SCRATCH: Register = register(0xA4, "scratch", ReadWrite, "no effect: for a first test of the bus");
 
-/// All registers, in the order of their offsets.
-pub const REGISTERS: [Register; 28] = [
+/// Candidates.
+pub const CANDIDATES: Register =
+    register(0xA8, "candidates", Read, "pairs of spheres of the job so far whose boxes meet").only_of_spheres();
+
+/// The registers of an accelerator with this input, in the order of their offsets.
+pub fn registers(input: Input) -> impl Iterator<Item = Register> {
+    REGISTERS.into_iter().filter_map(move |register| register.of(input))
+}
+
+/// All registers, in the order of their offsets, those included that not every accelerator has.
+pub const REGISTERS: [Register; 30] = [
     CONTROL,
     GLOBAL_INTERRUPT_ENABLE,
     INTERRUPT_ENABLE,
@@ -251,6 +298,7 @@ pub const REGISTERS: [Register; 28] = [
     DESTINATION_LINES,
     MODE,
     WATCHDOG,
+    OTHERS,
     STATUS,
     FAILURE,
     FAILURE_ADDRESS,
@@ -269,6 +317,7 @@ pub const REGISTERS: [Register; 28] = [
     CAPABILITY,
     SOFT_RESET,
     SCRATCH,
+    CANDIDATES,
 ];
 
 #[cfg(test)]
@@ -290,6 +339,19 @@ mod tests {
             assert!(bit <= 32);
         }
         assert!(end <= 1 << super::super::port::REGISTER_ADDRESS_BITS);
+    }
+
+    /// An accelerator of pairs has neither the registers of one of spheres nor their words.
+    #[test]
+    fn registers_are_those_of_the_input() {
+        let [pairs, spheres] = [Input::Direct, Input::Spheres].map(|input| registers(input).collect::<Vec<_>>());
+        let names = |all: &[Register]| all.iter().map(|register| register.name).collect::<Vec<_>>();
+        let more: Vec<_> = names(&spheres).into_iter().filter(|name| !names(&pairs).contains(name)).collect();
+        assert_eq!((more, spheres.len()), (vec!["others", "candidates"], pairs.len() + 2));
+        let says = |all: &[Register], word: &str| all.iter().filter(|it| it.meaning.contains(word)).count();
+        assert!(says(&pairs, "pair") > 5 && says(&pairs, "sphere") == 0 && says(&spheres, "sphere") > 5);
+        let of_pairs: Vec<_> = spheres.iter().filter(|it| it.meaning.contains("pair")).map(|it| it.name).collect();
+        assert_eq!(of_pairs, ["mode", "candidates"], "pairs of spheres");
     }
 
     /// What XRT and drivers of Vitis' kernels know.

@@ -18,6 +18,7 @@ use std::sync::Arc;
 use super::{BenchText, ShellDesign};
 use crate::afu::port::{Declaration, Ports};
 use crate::afu::{Afu, Spec};
+use crate::config::Input;
 use crate::hdl::{BuildErrors, Module};
 pub(in crate::afu) use burst::most_lines;
 pub use document::{job, markdown};
@@ -63,16 +64,31 @@ impl ShellDesign for Axi {
     }
 
     fn bench(&self, afu: &Afu) -> BenchText {
-        let text = include_str!("bench.v").replace("@BUS@", &afu.spec().config.bus.to_string());
+        let config = &afu.spec().config;
+        // An AFU that takes spheres has no SCPUs, and two registers more.
+        let (passed, others, candidates) = match config.input {
+            Input::Direct => (" #(\n    .SCPUS(SCPUS)\n  )", String::new(), String::new()),
+            Input::Spheres => (
+                "",
+                format!("      write_register(12'h{:x}, 32'd0);\n", map::OTHERS.offset),
+                format!(
+                    "        read_register(12'h{:x});\n        if (value != 32'd@CANDIDATES@) fault(\"another number of \
+                     candidates\");\n",
+                    map::CANDIDATES.offset
+                ),
+            ),
+        };
+        let text = include_str!("bench.v").replace("@BUS@", &config.bus.to_string()).replace("@PARAMETERS@", passed);
+        let text = text.replace("@OTHERS@\n", &others).replace("@CHECK_CANDIDATES@\n", &candidates);
         BenchText { text, first_line: 0 }
     }
 
     fn files(&self, afu: &Afu) -> Vec<(String, String)> {
         let title = format!("# Registers of `{}`", afu.top_name());
-        let prefix = afu.spec().config.prefixed("contact_afu");
+        let (input, prefix) = (afu.spec().config.input, afu.spec().config.prefixed("contact_afu"));
         vec![
-            ("REGISTERS.md".to_owned(), format!("{title}\n\n{}\n{}", document::markdown(), document::job())),
-            (format!("{prefix}_regs.h"), document::header(&prefix, &afu.origin())),
+            ("REGISTERS.md".to_owned(), format!("{title}\n\n{}\n{}", document::markdown(input), document::job(input))),
+            (format!("{prefix}_regs.h"), document::header(&prefix, input, &afu.origin())),
         ]
     }
 }

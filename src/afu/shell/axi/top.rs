@@ -6,6 +6,7 @@ use super::port::{ControlInputs, ControlOutputs, MemoryInputs, MemoryOutputs};
 use super::{control, read, write};
 use crate::afu::port::{JobInputs, JobOutputs, ReadInputs, ReadOutputs, WriteInputs, WriteOutputs, outputs};
 use crate::afu::{EPOCH_BITS, MAX_SCPUS, SCPU_BITS, Spec};
+use crate::config::Input;
 use crate::hdl::{BuildErrors, Graph, Module};
 
 /// The top's name.
@@ -19,7 +20,10 @@ pub(super) const RESET: &str = "ap_rst_n";
 pub(super) fn top(spec: &Spec, core: &Arc<Module>) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new(NAME);
     graph.about("collision-detection accelerator behind an AXI4 master and an AXI4-Lite slave");
-    graph.parameter("SCPUS", spec.config.scpus, 1..=MAX_SCPUS, SCPU_BITS);
+    // An AFU that takes spheres has no SCPUs.
+    if spec.config.input == Input::Direct {
+        graph.parameter("SCPUS", spec.config.scpus, 1..=MAX_SCPUS, SCPU_BITS);
+    }
     graph.clocked_by(CLOCK);
     graph.reset_by((!graph.input(RESET, 1)).delay(1).named("in_reset"));
     let host = ControlInputs::of(spec).map(|port| port.input(&graph));

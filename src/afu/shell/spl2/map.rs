@@ -7,7 +7,7 @@
 use std::fmt::Write as _;
 
 use crate::afu::JobError;
-use crate::config::Shell;
+use crate::config::{Input, Shell};
 use crate::hdl::{Graph, Signal};
 
 /// Identity of the accelerator, in DSM line 0 and in the status. It never changes.
@@ -305,8 +305,8 @@ pub fn markdown() -> String {
         }
     }
     out += "\n| error | what it is | what to do |\n|---|---|---|\n";
-    for error in JobError::of_shell(Shell::Spl2) {
-        let _ = writeln!(out, "| {} | {} | {} |", error.code(), error.what(), error.advice(Shell::Spl2));
+    for error in JobError::of(Shell::Spl2, Input::Direct) {
+        let _ = writeln!(out, "| {} | {} | {} |", error.code(), error.what(), error.advice(Shell::Spl2, Input::Direct));
     }
     out
 }

@@ -1,33 +1,39 @@
-//! The AFU in software: the same registers and the same lines in memory, with the reference kernel between them.
+//! The AFU in software: the same registers and the same lines in memory, with the reference kernel between them, or
+//! the search among spheres.
 //!
-//! A job takes no time, so cycle counters and latencies in the DSM are zero. Everything else is written as the hardware
-//! writes it, in the same order.
+//! A job takes no time, so cycle counters and latencies are zero. Everything else is written as the hardware writes it,
+//! in the same order.
+
+mod jobs;
+mod registers;
 
 use std::collections::HashMap;
 use std::ops::Range;
 
+use super::handshake::Protocol;
+use super::task::Task;
 use super::transport::{Transport, TransportError};
 use crate::afu::shell::spl2::map::{self, control, identity, latency, performance, pointers, scratch, status};
 use crate::afu::{Afu, BuildError, JobError, Spec};
-use crate::config::Config;
-use crate::kernel::Reference;
+use crate::config::{Config, Shell};
 use crate::link::spl2::{CsrOffset, DeviceWrite, Pages, SPL_ID};
 use crate::link::{LINE_BYTES, Line, LinkModel, Memory, Traffic};
-use crate::query::Flow;
-use crate::record::{Layout, pack_contacts, unpack_pairs};
+use crate::record::Layout;
+use jobs::{Counted, Jobs};
+use registers::Registers;
 
 /// The content of lines that were never written, as in the simulated link.
 const UNWRITTEN: Line = [0xDEAD_BEEF; 16];
 const DSM_LINES: u64 = map::DSM_BYTES / LINE_BYTES;
-/// The status field of a job without invalid pairs.
-const NONE: u128 = u32::MAX as u128;
 
-/// SPL2 and an AFU below it, in software.
+/// An AFU in software, below SPL2 or, with the shell `axi`, behind its registers.
 #[derive(Debug)]
 pub struct Software {
     capability: u64,
     layout: Layout,
-    reference: Reference,
+    jobs: Jobs,
+    /// The registers of the shell `axi`, if it is that shell's.
+    registers: Option<Registers>,
     link: LinkModel,
     memory: Memory,
     cycle: u64,
@@ -54,7 +60,8 @@ impl Software {
         Ok(Self {
             capability: afu.capability(),
             layout: afu.layout(),
-            reference: config.reference(),
+            jobs: Jobs::new(config, afu.layout()),
+            registers: (config.shell == Shell::Axi).then(|| Registers::new(config.input, afu.capability())),
             link,
             memory: Memory::new(),
             cycle: 0,
@@ -100,6 +107,9 @@ impl Software {
     }
 
     fn physical(&self, what: &'static str, line: u64) -> Result<u64, TransportError> {
+        if self.registers.is_some() {
+            return Ok(line);
+        }
         let page = self.pages.as_ref().and_then(|pages| pages.translate(line));
         page.ok_or(TransportError::PageFault { what, line })
     }
@@ -149,14 +159,15 @@ impl Software {
         let room = pointers::LINES.get(&pointers) as u64;
         let fits = self.layout.source_lines(count) + u64::from(map::DATA_LINE) <= room
             && self.layout.destination_lines(count) <= room;
-        let (error, counts) = if !fits {
-            (JobError::Room.code().into(), [0, 0, NONE])
+        let ended = if !fits {
+            Counted::failed(JobError::Room)
         } else if control::MODE.get(&control) != 0 {
-            (JobError::Mode.code().into(), [0, 0, NONE])
+            Counted::failed(JobError::Mode)
         } else if control::ABORT.get(&control) != 0 {
-            (JobError::Aborted.code().into(), [0, 0, NONE])
+            Counted::failed(JobError::Aborted)
         } else {
-            (0, self.compute(source + u64::from(map::DATA_LINE), destination, count)?)
+            let task = Task { destination_lines: room, ..Task::of_pairs(&self.layout, count as u32) };
+            self.run(source + u64::from(map::DATA_LINE), destination, &task)?
         };
 
         let mut line = [0; 16];
@@ -167,36 +178,63 @@ impl Software {
         self.write_dsm(map::PERFORMANCE_LINE, &line);
         let mut line = [0; 16];
         status::DONE.set(&mut line, 1);
-        status::ERROR.set(&mut line, error);
+        status::ERROR.set(&mut line, ended.error.into());
         status::SEQUENCE.set(&mut line, sequence.into());
-        status::CONTACTS.set(&mut line, counts[0]);
-        status::INVALID.set(&mut line, counts[1]);
-        status::FIRST_INVALID.set(&mut line, counts[2]);
+        status::CONTACTS.set(&mut line, ended.contacts.into());
+        status::INVALID.set(&mut line, ended.invalid.into());
+        status::FIRST_INVALID.set(&mut line, ended.first_invalid.into());
         status::VERSION.set(&mut line, map::VERSION.into());
         status::CAPABILITY.set(&mut line, self.capability.into());
         status::AFU_ID.set(&mut line, map::AFU_ID);
         self.write(context + u64::from(map::STATUS_LINE), &line)
     }
 
-    /// Reads pairs and writes contacts. Returns the numbers of contacts and invalid pairs, and the first invalid pair.
-    fn compute(&mut self, source: u64, destination: u64, count: u64) -> Result<[u128; 3], TransportError> {
-        let lines: Vec<Line> =
-            (0..self.layout.source_lines(count)).map(|line| self.read(source + line)).collect::<Result<_, _>>()?;
-        let records = self.reference.run_all(&unpack_pairs(&self.layout, &lines, count as usize));
-        for (number, line) in (destination..).zip(pack_contacts(&self.layout, &records)) {
-            self.write(number, &line)?;
+    /// Reads what the job's source holds, and writes its results.
+    fn run(&mut self, source: u64, destination: u64, task: &Task) -> Result<Counted, TransportError> {
+        let number = match self.jobs.source_lines(task) {
+            Ok(number) => number,
+            Err(error) => return Ok(Counted::failed(error)),
+        };
+        let lines: Vec<Line> = (source..source + number).map(|line| self.read(line)).collect::<Result<_, _>>()?;
+        let (results, mut ended) = self.jobs.run(task, &lines)?;
+        // Without hits there is a record per pair, and the AFU is not told of any room.
+        let has_room = self.layout.number_bits() == 0;
+        let room = if has_room { usize::MAX } else { task.destination_lines as usize };
+        for (number, line) in (destination..).zip(results.iter().take(room)) {
+            self.write(number, line)?;
         }
-        let is_invalid = |record: &crate::query::ContactRecord| record.flow() == Some(Flow::Invalid);
-        let first = records.iter().position(is_invalid).map_or(NONE, |number| number as u128);
-        let hits = records.iter().filter(|record| record.is_contact()).count();
-        let invalid = records.iter().filter(|record| is_invalid(record)).count();
-        Ok([hits as u128, invalid as u128, first])
+        if results.len() > room {
+            ended.error = JobError::Overflow.code();
+        }
+        Ok(ended)
     }
 }
 
 impl Transport for Software {
+    fn protocol(&self) -> Protocol {
+        if self.registers.is_some() { Protocol::Axi } else { Protocol::Spl2 }
+    }
+
+    fn read_csr(&mut self, byte_offset: u32) -> Result<u32, TransportError> {
+        let registers = self.registers.as_mut();
+        let refused = || TransportError::Device(format!("register {byte_offset:#x} cannot be read"));
+        Ok(registers.ok_or_else(refused)?.read(byte_offset))
+    }
+
+    fn interrupt(&self) -> bool {
+        self.registers.as_ref().is_some_and(Registers::interrupt)
+    }
+
     fn write_csr(&mut self, byte_offset: u32, value: u32) -> Result<(), TransportError> {
         self.cycle += self.link.session.csr_write.max(1);
+        if let Some(registers) = &mut self.registers {
+            let Some((source, destination, task)) = registers.write(byte_offset, value) else { return Ok(()) };
+            let ended = self.run(source, destination, &task)?;
+            if let Some(registers) = &mut self.registers {
+                registers.end(ended);
+            }
+            return Ok(());
+        }
         self.csrs.insert(byte_offset, value);
         if byte_offset == CsrOffset::Control as u32 {
             self.set_control(value)?;
