@@ -213,7 +213,7 @@ module afu_top_bench;
         if (status[11:8] != 4'd0) fault("the job ended with an error");
         if (status[95:64] != 32'd8) fault("another number of contacts");
         if (status[127:96] != 32'd2) fault("another number of invalid pairs");
-        if (status[159:128] != 32'd6) fault("another first invalid pair");
+        if (status[159:128] != 32'd6) fault("another first invalid number");
         if (written != EXPECTED_LINES) fault("another number of lines");
         check_lines;
       end

@@ -70,7 +70,7 @@ mod tests {
         let shells = [Shell::Line, Shell::Spl2, Shell::Axi];
         let direct = shells.into_iter().flat_map(|s| [(s, Results::All), (s, Results::Hits)]);
         let direct = direct.map(|(shell, results)| Config { shell, results, ..Config::default() });
-        let spheres = [Shell::Line, Shell::Axi].map(|shell| Config {
+        let spheres = shells.map(|shell| Config {
             shell,
             results: Results::Hits,
             contact: Fields::HIT,

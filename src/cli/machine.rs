@@ -45,8 +45,8 @@ pub struct Machine {
     /// What the AFU gets: direct (pairs, each with both bodies) or spheres, among which it finds those that touch
     /// [default: direct]
     ///
-    /// With `spheres` only the numbers of spheres that touch come back (--results hits, --contact hit), and the shell
-    /// is line or axi. Hits and shell line are then the defaults.
+    /// With `spheres` only the numbers of spheres that touch come back (--results hits, --contact hit). Hits and shell
+    /// line are then the defaults.
     #[arg(long, value_name = "KIND")]
     pub input: Option<Input>,
     /// Spheres that the table of the first set holds, for --input spheres: a power of two, 512 to 65536 [default:

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Config, Input, RecordFormat, Results, Shell};
+use super::{Config, Input, RecordFormat, Results};
 use crate::query::{Fields, Query};
 use crate::spheres::{BOX_BITS, BoundsRule, RefusedArithmetic};
 
@@ -65,9 +65,6 @@ pub enum SearchError {
         "input spheres with {0}: spheres would be rounded before their boxes are made; use wide, or at least 23 fraction bits"
     )]
     Short(super::Profile),
-    /// The shell does not carry spheres.
-    #[error("input spheres below shell {0}: not built yet; use shell axi or line")]
-    Shell(Shell),
     /// An option that the search does not have.
     #[error("input spheres with {0}: not possible; leave it out")]
     Option(&'static str),
@@ -110,9 +107,6 @@ impl Search {
         }
         if config.contact != Fields::HIT {
             return Err(SearchError::Contact(config.contact));
-        }
-        if config.shell == Shell::Spl2 {
-            return Err(SearchError::Shell(config.shell));
         }
         let options = [
             (config.interval != 1, "an interval"),

@@ -41,23 +41,25 @@ impl Run<'_> {
     where
         E: From<HostError> + From<DriveError> + From<LinkError>,
     {
+        let layout = self.expected.layout;
+        let numbers = |sets: &Spheres| [sets.first.len(), sets.second.as_ref().map_or(0, Vec::len)].map(|n| n as u64);
         Ok(match self.config.shell {
             Shell::Spl2 => {
                 let spl = Spl2::new(Spl2Model::default(), Link::new(link, self.seed)?, self.seed);
                 let device = spl2::Machine::new(afu, spl).map_err(HostError::from)?;
-                let pairs = if let Given::Pairs(pairs) = self.given { pairs.len() as u64 } else { 0 };
-                let workspace = Workspace::for_pairs(self.expected.layout, pairs, self.seed)?;
+                let workspace = match self.given {
+                    Given::Pairs(pairs) => Workspace::for_pairs(layout, pairs.len() as u64, self.seed)?,
+                    Given::Spheres { sets, contacts, .. } => {
+                        Workspace::for_spheres_below_spl2(layout, numbers(sets), contacts, self.seed)?
+                    }
+                };
                 self.through_a_host(device, workspace)?
             }
             Shell::Axi => {
                 let device = axi::Machine::new(afu, link, Handshake::Free, self.seed).map_err(HostError::from)?;
-                let layout = self.expected.layout;
                 let workspace = match self.given {
                     Given::Pairs(pairs) => Workspace::contiguous(layout, pairs.len() as u64)?,
-                    Given::Spheres { sets, contacts, .. } => {
-                        let second = sets.second.as_ref().map_or(0, Vec::len);
-                        Workspace::for_spheres(layout, [sets.first.len() as u64, second as u64], contacts)?
-                    }
+                    Given::Spheres { sets, contacts, .. } => Workspace::for_spheres(layout, numbers(sets), contacts)?,
                 };
                 self.through_a_host(device, workspace)?
             }

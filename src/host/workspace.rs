@@ -158,6 +158,24 @@ impl Workspace {
         Self::new(layout, pages_for(&layout, pairs), seed)
     }
 
+    /// The smallest workspace below SPL2 for jobs of these numbers of spheres, in the first set and in the second, with
+    /// room for `contacts` contacts. Both buffers are as long as the longer one must be; `seed` scatters the pages.
+    ///
+    /// # Errors
+    /// Returns [`HostError::Pages`] if 2 GB are not enough.
+    pub fn for_spheres_below_spl2(
+        layout: Layout,
+        spheres: [u64; 2],
+        contacts: u64,
+        seed: u64,
+    ) -> Result<Self, HostError> {
+        let source = spheres.map(sphere_lines).iter().sum::<u64>() + u64::from(map::DATA_LINE);
+        let lines = source.max(hit_lines(contacts));
+        let workspace = Self::new(layout, (2 * lines + CONTEXT_LINES).div_ceil(PAGE_LINES), seed)?;
+        // No more lines than 2 GB have.
+        workspace.with_buffers(CONTEXT_LINES, CONTEXT_LINES + lines, lines as u32)
+    }
+
     /// The number of pages.
     pub fn pages(&self) -> u64 {
         self.pages.count()

@@ -20,7 +20,7 @@ pub enum JobError {
     Overflow = 6,
     /// A response came that no request of this job waits for.
     Response = 7,
-    /// The job has more pairs than the host's buffers have lines; reported by a shell that knows their length.
+    /// The job takes more lines than the host's buffers have; reported by a shell that knows their length.
     Room = 8,
     /// The first set has more spheres than the table holds, or the second more than a hit's number counts.
     Table = 9,
@@ -61,6 +61,7 @@ impl JobError {
     pub const fn advice(self, shell: Shell, input: Input) -> &'static str {
         match (self, shell) {
             (Self::Mode, _) if matches!(input, Input::Spheres) => "use mode 0, 1 or 2",
+            (Self::Room, _) if matches!(input, Input::Spheres) => "send fewer spheres, or set up longer buffers",
             (Self::Read, Shell::Spl2) => {
                 "check that source and page table are where the context says, then send the transaction again"
             }
@@ -107,7 +108,7 @@ impl JobError {
                 "reset the AFU, then send the transaction again: the link answered a request twice or too late",
             ),
             Self::Room => (
-                "more pairs than the buffers have lines for",
+                "the job takes more lines than the buffers have",
                 "send fewer pairs, or set up the buffers for the AFU's own record layout",
             ),
             Self::Table => (

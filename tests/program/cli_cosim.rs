@@ -92,7 +92,6 @@ fn wrong_options_are_exit_2_before_anything_is_built() {
         (&["--spheres", "diamond:2"], "--spheres needs an AFU that takes spheres"),
         (&["--lanes", "32"], "lanes with input direct"),
         (&["--input", "spheres", "--pairs", "diamond:2"], "--pairs does not go with --input spheres"),
-        (&["--input", "spheres", "--shell", "spl2"], "below shell spl2: not built yet; use shell axi or line"),
         (&["--input", "spheres", "--profile", "paper"], "exponent bits"),
         (&["--input", "spheres", "--table", "1000"], "table 1000: expected a power of two"),
         (&["--input", "spheres", "--scpus", "3"], "use --deciders"),
@@ -111,7 +110,10 @@ fn spheres_that_touch_come_back_as_numbers() {
     fs::write(room.path().join("four.csv"), "x,y,z,r\n0,0,0,0.5\n5,0,0,0.5\n0,0,0,-1\n0,1,0,0.5\n").expect("written");
     let arguments =
         ["cosim", "--input", "spheres", "--spheres", "four.csv", "--json", "out.json", "--contacts", "out.csv"];
-    for shell in [&[][..], &["--shell", "axi", "--table", "512", "--deciders", "1", "--link", "zynqmp"]] {
+    let small = ["--table", "512", "--deciders", "1", "--link"];
+    let [axi, spl2] =
+        [["axi", "zynqmp"], ["spl2", "harp1"]].map(|[shell, link]| [&["--shell", shell], &small[..], &[link]].concat());
+    for shell in [&[][..], &axi, &spl2] {
         afu(room.path(), &[&arguments, shell].concat()).success();
         let report = json(room.path(), "out.json");
         let job = &report["jobs"][0];

@@ -75,6 +75,7 @@ fn configurations() -> Vec<Config> {
         spheres(Search { table: 65_536, lanes: 64, deciders: 8, box_bits: 18 }),
         spheres(Search { table: 512, lanes: 256, deciders: 16, ..Search::default() }),
         Config { shell: Shell::Axi, bus: 128, ..spheres(Search { table: 512, ..Search::default() }) },
+        Config { shell: Shell::Spl2, ..spheres(Search { table: 512, deciders: 1, ..Search::default() }) },
     ]
 }
 
@@ -309,7 +310,9 @@ fn icarus_gives_the_reference_bits_below_spl2() {
 #[test]
 fn icarus_finds_the_spheres_that_touch() {
     let small = spheres(Search { table: 512, lanes: 64, deciders: 2, box_bits: 10 });
-    for config in [spheres(Search::default()), small.clone(), Config { shell: Shell::Axi, bus: 256, ..small }] {
+    let below = |shell: Shell, bus: u32| Config { shell, bus, ..small.clone() };
+    let shells = [small.clone(), below(Shell::Axi, 256), below(Shell::Spl2, 512)];
+    for config in [spheres(Search::default())].into_iter().chain(shells) {
         let (afu, is_line) = (generate(config.clone()), config.shell == Shell::Line);
         let (folder, _) = write(&afu);
         let bench = folder.path().join("bench");

@@ -39,6 +39,7 @@ fn configurations() -> Vec<Config> {
         super::spheres(Search::default()),
         super::spheres(Search { table: 65_536, lanes: 256, deciders: 1, ..Search::default() }),
         Config { shell: Shell::Axi, ..super::spheres(Search::default()) },
+        Config { shell: Shell::Spl2, ..super::spheres(Search::default()) },
     ]
 }
 

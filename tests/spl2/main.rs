@@ -8,3 +8,4 @@ mod matrix;
 mod places;
 mod recovery;
 mod sequence;
+mod spheres;

@@ -2,6 +2,7 @@
 
 use super::Identity;
 use crate::afu::shell::spl2::map::{self, Csr, control, identity, latency, performance, status};
+use crate::config::Input;
 use crate::host::error::HostError;
 use crate::host::received::{Begin, Status};
 use crate::host::session::Session;
@@ -81,7 +82,7 @@ pub(in crate::host) fn status<T: Transport>(session: &Session<T>, begin: &Begin)
         error: of_status(status::ERROR) as u8,
         failure: None,
         contacts: of_status(status::CONTACTS),
-        candidates: None,
+        candidates: (session.input() == Input::Spheres).then(|| of_status(status::CANDIDATES)),
         invalid: of_status(status::INVALID),
         first_invalid: of_status(status::FIRST_INVALID),
         cycles_busy: word(performance::BUSY, &figures),
@@ -125,6 +126,8 @@ fn dsm<T: Transport>(session: &Session<T>, line: u32) -> Line {
 fn set_control<T: Transport>(session: &mut Session<T>, task: &Task, abort: bool) -> Result<(), HostError> {
     let mut line = [0; 16];
     control::COUNT.set(&mut line, task.count.into());
+    control::OTHERS.set(&mut line, task.others.into());
+    control::MODE.set(&mut line, task.mode.into());
     control::SEQUENCE.set(&mut line, session.sequence.into());
     control::ABORT.set(&mut line, abort.into());
     control::WATCHDOG.set(&mut line, session.watchdog.into());

@@ -73,6 +73,17 @@ impl Jobs {
         if is_too_large { Err(JobError::Table) } else { Ok(sphere_lines(first) + sphere_lines(second)) }
     }
 
+    /// The source lines with which SPL2's shell compares the buffers, in modes that do not exist too.
+    pub(super) fn lines_below_spl2(&self, task: &Task) -> u64 {
+        let [first, second] = [task.count, task.others].map(|spheres| sphere_lines(spheres.into()));
+        match (self.input, task.mode) {
+            (Input::Direct, _) => self.layout.source_lines(task.count.into()),
+            (Input::Spheres, 0) => first,
+            (Input::Spheres, 2) => second,
+            (Input::Spheres, _) => first + second,
+        }
+    }
+
     /// The lines of results of a job with these source lines, and its status.
     pub(super) fn run(&mut self, task: &Task, lines: &[Line]) -> Result<(Vec<Line>, Counted), TransportError> {
         match self.search {

@@ -155,19 +155,17 @@ impl Software {
         }
         self.job = Some(sequence);
 
-        let count = control::COUNT.get(&control) as u64;
         let room = pointers::LINES.get(&pointers) as u64;
-        let fits = self.layout.source_lines(count) + u64::from(map::DATA_LINE) <= room
-            && self.layout.destination_lines(count) <= room;
-        let ended = if !fits {
-            Counted::failed(JobError::Room)
-        } else if control::MODE.get(&control) != 0 {
-            Counted::failed(JobError::Mode)
-        } else if control::ABORT.get(&control) != 0 {
-            Counted::failed(JobError::Aborted)
-        } else {
-            let task = Task { destination_lines: room, ..Task::of_pairs(&self.layout, count as u32) };
-            self.run(source + u64::from(map::DATA_LINE), destination, &task)?
+        let word = |field: map::Field| field.get(&control) as u32;
+        let (count, others, mode) = (word(control::COUNT), word(control::OTHERS), word(control::MODE));
+        let task = Task { count, others, mode, destination_lines: room, ..Task::default() };
+        let fits = self.jobs.lines_below_spl2(&task) + u64::from(map::DATA_LINE) <= room
+            && (self.layout.number_bits() > 0 || self.layout.destination_lines(count.into()) <= room);
+        let ended = match self.jobs.source_lines(&task) {
+            _ if !fits => Counted::failed(JobError::Room),
+            Err(error) => Counted::failed(error),
+            Ok(_) if control::ABORT.get(&control) != 0 => Counted::failed(JobError::Aborted),
+            Ok(_) => self.run(source + u64::from(map::DATA_LINE), destination, &task)?,
         };
 
         let mut line = [0; 16];
@@ -183,6 +181,7 @@ impl Software {
         status::CONTACTS.set(&mut line, ended.contacts.into());
         status::INVALID.set(&mut line, ended.invalid.into());
         status::FIRST_INVALID.set(&mut line, ended.first_invalid.into());
+        status::CANDIDATES.set(&mut line, ended.candidates.into());
         status::VERSION.set(&mut line, map::VERSION.into());
         status::CAPABILITY.set(&mut line, self.capability.into());
         status::AFU_ID.set(&mut line, map::AFU_ID);

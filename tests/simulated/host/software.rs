@@ -173,7 +173,7 @@ fn an_error_of_the_device_says_what_to_do() {
     });
     let error = refused(&mut session(device, 1), &pairs(6));
     assert!(matches!(error, HostError::Job { code: 8, .. }), "{error}");
-    assert!(error.to_string().contains("more pairs than the buffers have lines for): send fewer pairs"), "{error}");
+    assert!(error.to_string().contains("the job takes more lines than the buffers have): send fewer pairs"), "{error}");
 }
 
 #[test]

@@ -6,7 +6,7 @@
 //   vvp -n bench
 //
 // The bench is host, SPL and memory: it resets the accelerator, writes its registers, waits for its identity, and runs a
-// job of @COUNT@ pairs twice, the second time into results that nobody has written. It compares every line written with the
+// job of @COUNT@ @WHAT@ twice, the second time into results that nobody has written. It compares every line written with the
 // reference kernel's, and ends with a line that begins with PASS or FAIL. Reads are answered in order after LATENCY
 // cycles, writes on either channel, almost-full rises at random.
 //
@@ -49,7 +49,7 @@ module @BENCH@;
   wire wr_is_fence = wr_hdr[55:52] == 4'd5;
 
   // ---- memory ----
-  // In `source_lines`, the control memory comes before the pairs.
+  // In `source_lines`, the control memory comes before the @WHAT@.
   reg [511:0] pointers;
   reg [511:0] identity;
   reg [511:0] status;
@@ -71,9 +71,7 @@ module @BENCH@;
   wire [17:0] rd_answer_hdr = {4'd4, rd_pipe_mdata[LATENCY-1]};
   wire [17:0] wr_answer_hdr = {4'd1, wr_pipe_mdata[LATENCY-1]};
 
-  @TOP@ #(
-    .SCPUS(SCPUS)
-  ) afu (
+  @TOP@@PARAMETERS@ afu (
     .clk                  (clk),
     .reset_n              (reset_n),
     .spl_enable           (spl_enable),
@@ -180,8 +178,9 @@ module @BENCH@;
       if (is_own) begin
         if (status[11:8] != 4'd0) fault("the job ended with an error");
         if (status[95:64] != 32'd@CONTACTS@) fault("another number of contacts");
-        if (status[127:96] != 32'd@INVALID@) fault("another number of invalid pairs");
-        if (status[159:128] != 32'd@FIRST_INVALID@) fault("another first invalid pair");
+        if (status[127:96] != 32'd@INVALID@) fault("another number of invalid @WHAT@");
+        if (status[159:128] != 32'd@FIRST_INVALID@) fault("another first invalid number");
+@CHECK_CANDIDATES@
         if (written != EXPECTED_LINES) fault("another number of lines");
         check_lines;
       end

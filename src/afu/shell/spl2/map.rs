@@ -9,6 +9,7 @@ use std::fmt::Write as _;
 use crate::afu::JobError;
 use crate::config::{Input, Shell};
 use crate::hdl::{Graph, Signal};
+use crate::spheres::ROW;
 
 /// Identity of the accelerator, in DSM line 0 and in the status. It never changes.
 pub const AFU_ID: u128 = 0xf885_f921_48fc_4b0b_8fd1_f127_a3a0_b8e2;
@@ -83,9 +84,29 @@ pub struct Field {
     pub name: &'static str,
     /// The content.
     pub meaning: &'static str,
+    /// The content if spheres come in, where it is another one.
+    of_spheres: Option<&'static str>,
+    /// The only input with which there is such a field; `None` if it is always there.
+    only: Option<Input>,
 }
 
 impl Field {
+    /// The field with another content if spheres come in.
+    const fn of_spheres(self, meaning: &'static str) -> Self {
+        Self { of_spheres: Some(meaning), ..self }
+    }
+
+    /// The field, if spheres come in.
+    const fn only_of_spheres(self) -> Self {
+        Self { only: Some(Input::Spheres), ..self }
+    }
+
+    /// What the field holds in an accelerator with this input; `None` if it has no such field.
+    fn meaning(&self, input: Input) -> Option<&'static str> {
+        let meaning = self.of_spheres.filter(|_| input == Input::Spheres).unwrap_or(self.meaning);
+        self.only.is_none_or(|only| only == input).then_some(meaning)
+    }
+
     /// The field's value in a line.
     pub fn get(&self, line: &[u32; 16]) -> u128 {
         let bit = |index: u32| u128::from(line[(index / 32) as usize] >> (index % 32) & 1);
@@ -124,7 +145,12 @@ pub(super) fn line<'g>(graph: &'g Graph, line_bits: u32, fields: &[(Field, Signa
 
 /// A field of `bits` bits that begins at dword `dword`.
 const fn field(dword: u32, bits: u32, name: &'static str, meaning: &'static str) -> Field {
-    Field { low: 32 * dword, bits, name, meaning }
+    bits_of(32 * dword, bits, name, meaning)
+}
+
+/// A field of `bits` bits that begins at this bit.
+const fn bits_of(low: u32, bits: u32, name: &'static str, meaning: &'static str) -> Field {
+    Field { low, bits, name, meaning, of_spheres: None, only: None }
 }
 
 /// DSM line 0.
@@ -166,10 +192,12 @@ pub mod performance {
         field(0, 64, "cycles_busy", "cycles of the job, from its start to its last acknowledgement");
     /// Cycles without pairs.
     pub(crate) const INPUT: Field =
-        field(2, 64, "cycles_input", "of these, cycles in which the SCPUs waited for pairs");
+        field(2, 64, "cycles_input", "of these, cycles in which the SCPUs waited for pairs")
+            .of_spheres("of these, cycles in which no line of spheres was there");
     /// Cycles without room.
     pub(crate) const OUTPUT: Field =
-        field(4, 64, "cycles_output", "of these, cycles in which pairs waited for room for their results");
+        field(4, 64, "cycles_output", "of these, cycles in which pairs waited for room for their results")
+            .of_spheres("of these, cycles in which hits waited for room in a line");
     /// The job.
     pub const SEQUENCE: Field = field(6, 32, "sequence", "of the job");
     /// All fields.
@@ -208,9 +236,13 @@ pub mod control {
     /// [`super::START_WORD`].
     pub const START: Field = field(0, 32, "start", "start word 0x406CCCFF: a job is here; written last");
     /// Pairs.
-    pub const COUNT: Field = field(1, 32, "count", "nCol: pairs of the job; 0 is a job");
+    pub const COUNT: Field = field(1, 32, "count", "nCol: pairs of the job; 0 is a job")
+        .of_spheres("spheres of the first set, at most as many as the table holds; 0 is a job");
     /// Mode.
-    pub const MODE: Field = field(2, 32, "mode", "0; anything else ends the job with error 5");
+    pub const MODE: Field = field(2, 32, "mode", "0; anything else ends the job with error 5").of_spheres(
+        "0: one set, each pair once; 1: the first set against the second; 2: the first set of the last job since SPL was \
+         enabled, which is still in the table, against the second; anything else ends the job with error 5",
+    );
     /// The job's number.
     pub const SEQUENCE: Field =
         field(3, 32, "sequence", "the job's number: one unlike the last job's makes it a new job");
@@ -224,37 +256,50 @@ pub mod control {
         "cycles without a response, while a request waits for one, that end the job with error 4; 0: never, but for an \
          aborted job, which ends after 65 536 such cycles",
     );
+    /// The second set.
+    pub const OTHERS: Field =
+        field(6, 32, "others", "spheres of the second set, at most 65 536; used in modes 1 and 2").only_of_spheres();
     /// All fields.
-    pub const FIELDS: [Field; 6] = [START, COUNT, MODE, SEQUENCE, ABORT, WATCHDOG];
+    pub const FIELDS: [Field; 7] = [START, COUNT, MODE, SEQUENCE, ABORT, WATCHDOG, OTHERS];
 }
 
 /// Context line 1.
 pub mod status {
-    use super::{Field, JobError, field};
+    use super::{Field, JobError, bits_of, field};
 
     /// The job has ended.
     pub const DONE: Field = field(0, 1, "done", "the job has ended");
     /// The error code.
-    pub const ERROR: Field =
-        Field { low: 8, bits: JobError::BITS, name: "error", meaning: "how: 0 well, else one of the errors below" };
+    pub const ERROR: Field = bits_of(8, JobError::BITS, "error", "how: 0 well, else one of the errors below");
     /// The job.
     pub const SEQUENCE: Field = field(1, 32, "sequence", "of the job that has ended");
     /// Contacts.
     pub(crate) const CONTACTS: Field = field(2, 32, "contacts", "contacts of the job");
     /// Invalid pairs.
-    pub(crate) const INVALID: Field = field(3, 32, "invalid", "invalid pairs of the job");
+    pub(crate) const INVALID: Field =
+        field(3, 32, "invalid", "invalid pairs of the job").of_spheres("invalid spheres of the job");
     /// Number of the first invalid pair.
-    pub(crate) const FIRST_INVALID: Field =
-        field(4, 32, "first_invalid", "number of the first invalid pair, all ones if there is none");
+    pub(crate) const FIRST_INVALID: Field = field(
+        4,
+        32,
+        "first_invalid",
+        "number of the first invalid pair, all ones if there is none",
+    )
+    .of_spheres(
+        "number of the first invalid sphere, counted through the sets that the job reads, all ones if there is none",
+    );
     /// [`super::VERSION`].
     pub const VERSION: Field = field(5, 32, "version", "of this map");
     /// The core's capability word.
     pub const CAPABILITY: Field = field(6, 64, "capability", "as in DSM line 0");
     /// [`super::AFU_ID`].
     pub const AFU_ID: Field = field(8, 128, "afu_id", "as in DSM line 0");
+    /// Candidates.
+    pub(crate) const CANDIDATES: Field =
+        field(12, 32, "candidates", "pairs of spheres of the job whose boxes meet").only_of_spheres();
     /// All fields.
-    pub const FIELDS: [Field; 9] =
-        [DONE, ERROR, SEQUENCE, CONTACTS, INVALID, FIRST_INVALID, VERSION, CAPABILITY, AFU_ID];
+    pub const FIELDS: [Field; 10] =
+        [DONE, ERROR, SEQUENCE, CONTACTS, INVALID, FIRST_INVALID, VERSION, CAPABILITY, AFU_ID, CANDIDATES];
 }
 
 /// The lines: name, writer, fields.
@@ -268,29 +313,46 @@ pub const LINES: [(&str, &str, &[Field]); 7] = [
     ("Source line 0: control memory", "host", &control::FIELDS),
 ];
 
-/// The steps of a job as Markdown.
-pub fn job() -> String {
+/// The steps of a job as Markdown, for an accelerator with this input.
+pub fn job(input: Input) -> String {
+    let (what, more) = match input {
+        Input::Direct => ("pairs", String::new()),
+        Input::Spheres => ("spheres", spheres()),
+    };
     format!(
         "## A job
 
-The records of pairs and contacts are in PORTS.md. Source line {DATA_LINE} is the first line of pairs; destination line 0 is the first line
+The records of {what} and contacts are in PORTS.md. Source line {DATA_LINE} is the first line of {what}; destination line 0 is the first line
 of contacts.
 
 1. Reset the AFU (`spl_reset`). Clear the DSM. Write its physical address to `dsm_base_high`, then to `dsm_base_low`: the AFU writes DSM
    line {IDENTITY_LINE}.
 2. Write context line {POINTERS_LINE}, clear source line {CONTROL_LINE}, and write the context's virtual address to `context_base_high`, then to
    `context_base_low`. Raise `spl_enable`.
-3. Write the pairs, then source line {CONTROL_LINE}, `start` last. The AFU reads that line {IDLE_POLL_CYCLES} cycles after its last answer, and every
+3. Write the {what}, then source line {CONTROL_LINE}, `start` last. The AFU reads that line {IDLE_POLL_CYCLES} cycles after its last answer, and every
    {RUNNING_POLL_CYCLES} cycles while a job runs.
 4. Wait until context line {STATUS_LINE} has `done` and the job's `sequence`: the contacts and DSM lines {LATENCY_LINE} and {PERFORMANCE_LINE} were
    written before it.
 5. For another job, clear `start` and go on with 3, with another `sequence`.
-"
+{more}"
     )
 }
 
-/// The map as Markdown: tables of the registers, of the lines' fields, and of the errors.
-pub fn markdown() -> String {
+/// What a job of spheres has beyond the steps.
+fn spheres() -> String {
+    format!(
+        "
+With n = `count` and m = `others`: mode 0 has ⌈n / {ROW}⌉ rows of spheres from source line {DATA_LINE} on, mode 1 these and then ⌈m / {ROW}⌉
+rows, mode 2 ⌈m / {ROW}⌉ rows. A row is {lines} lines. Error 6 says that the destination has no room for all contacts, of which
+`contacts` has the number. Mode 2 needs a last job that ended with error 0.
+",
+        lines = ROW / 4
+    )
+}
+
+/// The map as Markdown, for an accelerator with this input: tables of the registers, of the lines' fields, and of the
+/// errors.
+pub fn markdown(input: Input) -> String {
     let mut out = format!("AFU_ID `{AFU_ID:032x}`, version {VERSION} of this map.\n\n");
     out += "| CSR | name | meaning |\n|---|---|---|\n";
     for Csr { offset, name, meaning } in CSRS {
@@ -298,15 +360,16 @@ pub fn markdown() -> String {
     }
     out += "\n| line | written by | dword | bits | field | meaning |\n|---|---|---|---|---|---|\n";
     for (name, writer, fields) in LINES {
-        for Field { low, bits, name: field, meaning } in fields {
+        let told = fields.iter().filter_map(|field| Some((field, field.meaning(input)?)));
+        for (Field { low, bits, name: field, .. }, meaning) in told {
             let (dword, first) = (low / 32, low % 32);
             let last = first + bits - 1;
             let _ = writeln!(out, "| {name} | {writer} | {dword} | {last}:{first} | `{field}` | {meaning} |");
         }
     }
     out += "\n| error | what it is | what to do |\n|---|---|---|\n";
-    for error in JobError::of(Shell::Spl2, Input::Direct) {
-        let _ = writeln!(out, "| {} | {} | {} |", error.code(), error.what(), error.advice(Shell::Spl2, Input::Direct));
+    for error in JobError::of(Shell::Spl2, input) {
+        let _ = writeln!(out, "| {} | {} | {} |", error.code(), error.what(), error.advice(Shell::Spl2, input));
     }
     out
 }

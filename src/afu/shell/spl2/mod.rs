@@ -17,6 +17,7 @@ use std::sync::Arc;
 use super::{BenchText, ShellDesign};
 use crate::afu::port::{Ports, clock};
 use crate::afu::{Afu, Spec};
+use crate::config::Input;
 use crate::hdl::{BuildErrors, Module};
 pub(crate) use port::{SplInputs, SplOutputs};
 
@@ -46,13 +47,21 @@ impl ShellDesign for Spl2 {
         PROTOCOL.to_owned()
     }
 
-    fn bench(&self, _afu: &Afu) -> BenchText {
-        BenchText { text: include_str!("bench.v").to_owned(), first_line: map::DATA_LINE as usize }
+    fn bench(&self, afu: &Afu) -> BenchText {
+        // An AFU that takes spheres has no SCPUs, and a field more in its status.
+        let (passed, candidates) = match afu.spec().config.input {
+            Input::Direct => (" #(\n    .SCPUS(SCPUS)\n  )", ""),
+            Input::Spheres => {
+                ("", "        if (status[415:384] != 32'd@CANDIDATES@) fault(\"another number of candidates\");\n")
+            }
+        };
+        let text = include_str!("bench.v").replace("@PARAMETERS@", passed).replace("@CHECK_CANDIDATES@\n", candidates);
+        BenchText { text, first_line: map::DATA_LINE as usize }
     }
 
     fn files(&self, afu: &Afu) -> Vec<(String, String)> {
-        let title = format!("# Registers and lines of `{}`", afu.top_name());
-        vec![("REGISTERS.md".to_owned(), format!("{title}\n\n{}\n{}", map::markdown(), map::job()))]
+        let (title, input) = (format!("# Registers and lines of `{}`", afu.top_name()), afu.spec().config.input);
+        vec![("REGISTERS.md".to_owned(), format!("{title}\n\n{}\n{}", map::markdown(input), map::job(input)))]
     }
 }
 

@@ -3,8 +3,9 @@
 
 use std::sync::Arc;
 
-use crate::config::Results;
+use crate::config::{Input, Results};
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
+use crate::spheres::ROW;
 
 use super::map::{self, control, latency, performance, pointers, status};
 use super::registers::dsm_page_line;
@@ -14,6 +15,8 @@ use crate::afu::{ADDRESS_BITS, COUNT_BITS, JobError, Spec};
 
 /// Bits of a byte address within a line.
 const BYTE_BITS: u32 = 6;
+/// Spheres in a line.
+const SPHERES_PER_LINE: usize = 4;
 /// Bits of a 32-bit cycle count.
 const CYCLE_BITS: u32 = 32;
 
@@ -40,14 +43,15 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let core_error = graph.input("core_error", told.error.bits);
     let core_read = graph.input("core_read_answered", 1);
     let core_write = graph.input("core_write_asked", 1);
+    let candidates = told.candidates.map(|port| port.input(&graph));
     let core_words = [told.contacts, told.invalid, told.first_invalid].map(|port| port.input(&graph));
     let core_cycles = [told.cycles_busy, told.cycles_input, told.cycles_output].map(|port| port.input(&graph));
     let capability = told.capability.input(&graph);
 
     // The states of the sequence, in order. No context is known. The context is being read. The control memory is
-    // polled for a job. The job's lines are counted, and then compared with those of the buffers. The job is started if
-    // there are enough lines: a cycle later the core is told to. The core works, while the control memory is polled for
-    // an abort. DSM line 4, DSM line 5, the fence and the status are written.
+    // polled for a job. The job's lines are counted, those of two sets in two cycles, and then compared with those of
+    // the buffers. The job is started if there are enough lines: a cycle later the core is told to. The core works,
+    // while the control memory is polled for an abort. DSM line 4, DSM line 5, the fence and the status are written.
     let state = |name: &str| graph.register(name, 1, 0);
     let idle = graph.register("at_idle", 1, 1);
     let [context, poll, measure, compare, begin, run] =
@@ -109,8 +113,17 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let mode = control::MODE.of(response);
     let mode_bits = JobInputs::of(spec).mode.bits;
     let job_mode = graph.data_register("job_mode", mode_bits);
-    let folded = mode.low(mode_bits) | mode.drop_low(mode_bits).any().extend(mode_bits);
+    // A mode with a higher bit is an unknown one. Pairs have only mode 0.
+    let higher = mode.drop_low(mode_bits).any();
+    let takes_spheres = spec.config.input == Input::Spheres;
+    let unknown = if takes_spheres { higher.repeat(mode_bits) } else { higher.extend(mode_bits) };
+    let folded = mode.low(mode_bits) | unknown;
     job_mode.next_if(got_job, folded);
+    let job_others = JobInputs::of(spec).others.map(|_| {
+        let others = graph.data_register("job_others", COUNT_BITS);
+        others.next_if(got_job, control::OTHERS.of(response));
+        others.value()
+    });
     let job_watchdog = graph.data_register("job_watchdog", COUNT_BITS);
     job_watchdog.next_if(got_job, control::WATCHDOG.of(response));
     let abort = graph.register("abort", 1, 0);
@@ -131,14 +144,19 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
         let rounded = job_count.extend(COUNT_BITS + 1).plus(u128::from(per_line - 1));
         let rounded = rounded.named(&format!("count_to_{per_line}"));
         let needed = rounded.drop_low(per_line.ilog2()).extend(COUNT_BITS + 1).plus(more.into());
-        let needed = needed.delay(1).named(&format!("{buffer}_lines"));
-        needed.at_most(lines.extend(COUNT_BITS + 1)).delay(1).named(&format!("{buffer}_fits"))
+        fit(needed, *lines, buffer)
     };
-    let source_fits = fits(layout.pairs_per_line(), map::DATA_LINE, "source");
-    let destination_fits = fits(layout.contacts_per_line(), 0, "destination");
+    let source_fits = match job_others {
+        None => fits(layout.pairs_per_line(), map::DATA_LINE, "source"),
+        Some(others) => fit(lines_of_sets(*job_mode, *job_count, others), *lines, "source"),
+    };
     // The number of lines of hits is not known in advance; the core keeps to the available room.
     let only_hits = spec.config.results == Results::Hits;
-    let fits = if only_hits { source_fits } else { (source_fits & destination_fits).named("fits") };
+    let fits = if only_hits {
+        source_fits
+    } else {
+        (source_fits & fits(layout.contacts_per_line(), 0, "destination")).named("fits")
+    };
     let start = (at_start & fits).registered("start_job");
     let refused = graph.register("refused", 1, 0);
     let refuses = (at_start & !fits).named("refuses");
@@ -201,7 +219,10 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
             (status::VERSION, constant(32, map::VERSION.into()).gate(shows_status)),
             (status::CAPABILITY, capability.gate(shows_identity)),
             (status::AFU_ID, constant(128, map::AFU_ID).gate(shows_identity)),
-        ],
+        ]
+        .into_iter()
+        .chain(candidates.map(|candidates| (status::CANDIDATES, candidates.gate(shows_results))))
+        .collect::<Vec<_>>(),
     );
     let dsm = |line: u32| dsm_page_line(dsm_line, constant(6, line.into()));
     let status_address = context_line.plus(map::STATUS_LINE.into());
@@ -221,7 +242,8 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     context.next(reads_context | (at_context & !answered));
     poll.next(got_context | (at_status & written) | (at_poll & !got_job & !switches));
     measure.next(got_job);
-    compare.next(*measure);
+    // The sum of the lines of two sets takes a cycle more.
+    compare.next(if job_others.is_some() { measure.registered("at_sum") } else { *measure });
     begin.next(*compare);
     run.next(start | (at_run & !core_done));
     latencies.next(to_latency);
@@ -242,6 +264,9 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
         graph.output("destination_lines", lines.value());
     }
     graph.output("count", job_count.value());
+    if let Some(others) = job_others {
+        graph.output("others", others);
+    }
     graph.output("mode", job_mode.value());
     graph.output("watchdog", job_watchdog.value());
     graph.output("abort_job", abort.value());
@@ -251,6 +276,25 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     graph.output("wr_address", shows_dsm.select(dsm_address, status_address).delay(1));
     graph.output("wr_data", (latency_line | performance_line | status_line).delay(1));
     graph.finish()
+}
+
+/// Known a cycle later: whether a buffer of `lines` lines has those that are needed, which are registered first.
+fn fit<'g>(needed: Signal<'g>, lines: Signal<'g>, buffer: &str) -> Signal<'g> {
+    let needed = needed.delay(1).named(&format!("{buffer}_lines"));
+    needed.at_most(lines.extend(needed.width())).delay(1).named(&format!("{buffer}_fits"))
+}
+
+/// The source lines of a job of spheres, a cycle later, with those in front of them. Each set is a whole number of
+/// rows. Mode 0 has no second set, and mode 2 only that.
+fn lines_of_sets<'g>(mode: Signal<'g>, count: Signal<'g>, others: Signal<'g>) -> Signal<'g> {
+    let rows = |spheres: Signal<'g>, is_there: Signal<'g>, name: &str| {
+        let rounded = spheres.extend(COUNT_BITS + 1).plus(ROW as u128 - 1);
+        rounded.drop_low(ROW.ilog2()).gate(is_there).delay(1).named(name)
+    };
+    let (own, others) = (rows(count, !mode.is(2), "own_rows"), rows(others, mode.any(), "other_rows"));
+    let bits = own.width() + 1;
+    let lines = (own.extend(bits) + others.extend(bits)).append_zeros((ROW / SPHERES_PER_LINE).ilog2());
+    lines.extend(lines.width() + 1).plus(map::DATA_LINE.into())
 }
 
 /// A register that shows fields of a line from the next cycle on.

@@ -6,6 +6,7 @@ use super::words::{self, MDATA_BITS, is_core_s};
 use super::{SplInputs, SplOutputs, acknowledge, registers, sequence, transmit};
 use crate::afu::port::{JobInputs, JobOutputs, ReadInputs, ReadOutputs, WriteInputs, WriteOutputs, outputs};
 use crate::afu::{EPOCH_BITS, JobError, MAX_SCPUS, SCPU_BITS, Spec};
+use crate::config::Input;
 use crate::hdl::{BuildErrors, Graph, Module};
 
 /// The top's name.
@@ -15,7 +16,10 @@ pub(super) const NAME: &str = "afu_top";
 pub(super) fn afu_top(spec: &Spec, core: &Arc<Module>) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new(NAME);
     graph.about("collision-detection accelerator below SPL2 of Intel HARP v1");
-    graph.parameter("SCPUS", spec.config.scpus, 1..=MAX_SCPUS, SCPU_BITS);
+    // An AFU that takes spheres has no SCPUs.
+    if spec.config.input == Input::Direct {
+        graph.parameter("SCPUS", spec.config.scpus, 1..=MAX_SCPUS, SCPU_BITS);
+    }
     let slot_bits = spec.max_outstanding.ilog2();
 
     let spl = SplInputs::of(spec).map(|port| port.input(&graph));
@@ -50,8 +54,9 @@ pub(super) fn afu_top(spec: &Spec, core: &Arc<Module>) -> Result<Arc<Module>, Bu
     let (core_done, core_error) = (wire("core_done", 1), wire("core_error", told.error.bits));
     let (core_read, core_write) = (wire("core_read_answered", 1), wire("core_write_asked", 1));
     let counts =
-        [told.contacts, told.invalid, told.first_invalid, told.cycles_busy, told.cycles_input, told.cycles_output]
-            .map(|port| (port.name, wire(port.name, port.bits)));
+        [told.contacts, told.invalid, told.first_invalid, told.cycles_busy, told.cycles_input, told.cycles_output];
+    let counts: Vec<_> =
+        counts.into_iter().chain(told.candidates).map(|port| (port.name, wire(port.name, port.bits))).collect();
     let mut sequence_inputs = vec![
         ("dsm_line", registers.output("dsm_line")),
         ("dsm_valid", registers.output("dsm_valid")),
@@ -70,7 +75,7 @@ pub(super) fn afu_top(spec: &Spec, core: &Arc<Module>) -> Result<Arc<Module>, Bu
         ("core_write_asked", core_write),
         ("capability", capability),
     ];
-    sequence_inputs.extend(counts);
+    sequence_inputs.extend(counts.iter().copied());
     let sequence = graph.instance("sequencer", &sequence::sequence(spec)?, &sequence_inputs);
     start.drive(sequence.output("start"));
 
