@@ -7,6 +7,7 @@
 mod design;
 mod mutants;
 mod proofs;
+mod public;
 mod tools;
 
 use mutants::Mutant;

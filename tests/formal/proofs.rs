@@ -48,11 +48,11 @@ impl Proof {
         self.design.files(self.latency)
     }
 
-    const fn new(name: &'static str, harness: &'static str, latency: u32, method: Method) -> Self {
+    pub const fn new(name: &'static str, harness: &'static str, latency: u32, method: Method) -> Self {
         Self { name, design: Design::EachCycle, harness, latency, defines: &[], bound: None, method, is_short: false }
     }
 
-    const fn with(self, defines: &'static [&'static str]) -> Self {
+    pub const fn with(self, defines: &'static [&'static str]) -> Self {
         Self { defines, ..self }
     }
 
