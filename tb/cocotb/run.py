@@ -21,7 +21,9 @@ def main() -> int:
     os.environ["AFU_PORTS"] = str(folder / "PORTS.md")
     registers = folder / "REGISTERS.md"
     os.environ["AFU_REGISTERS"] = str(registers)
-    bench = "axi" if registers.exists() else "line_port"
+    bench = "line_port"
+    if registers.exists():
+        bench = "axi_spheres" if "`others`" in registers.read_text(encoding="utf-8") else "axi"
     simulator = sys.argv[2] if len(sys.argv) > 2 else "icarus"
     # The pin `interrupt` has the name of a word of C++ libraries.
     options = ["-Wno-SYMRSVDWORD"] if simulator == "verilator" else []

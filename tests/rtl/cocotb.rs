@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use contact_afu::config::{Config, RecordFormat, Results, Shell};
+use contact_afu::config::{Config, RecordFormat, Results, Search, Shell};
 
 use super::{generate, root, write};
 
@@ -70,6 +70,23 @@ fn registers_md_says_all_that_a_stranger_needs() {
         let output = bench_in(folder.path(), simulator);
         assert!(output.status.success(), "{simulator}, {config:?}\n{}", text(&output));
     }
+}
+
+/// Spheres too: one set, two, a second one against the table that stays, too little room, and what is no job.
+#[test]
+fn registers_md_says_how_spheres_are_sent() {
+    let search = Search { table: 512, deciders: 1, ..Search::default() };
+    let config = Config { shell: Shell::Axi, bus: 128, ..super::spheres(search) };
+    let (folder, _) = write(&generate(config));
+    let output = bench(folder.path());
+    assert!(output.status.success(), "{}", text(&output));
+    // The bench fails if REGISTERS.md is wrong.
+    let path = folder.path().join("REGISTERS.md");
+    let whole = fs::read_to_string(&path).unwrap();
+    assert_eq!(whole.matches("| 0x30 | 32 | `others`").count(), 1);
+    fs::write(&path, whole.replace("| 0x30 | 32 | `others`", "| 0x34 | 32 | `others`")).unwrap();
+    let output = bench(folder.path());
+    assert_eq!(output.status.code(), Some(1), "{}", text(&output));
 }
 
 /// The bench fails if the hardware is wrong or REGISTERS.md is.
