@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::hdl::verilog::{self, Style};
 use crate::hdl::{BuildErrors, Module};
 use crate::pipeline::{Settings, contact_kernel};
+use crate::query::Fields;
 use crate::record::Layout;
 
 use super::scpu::scpu;
@@ -51,17 +52,9 @@ impl Afu {
     /// Returns an error if a value in `spec` is out of range, or if the generator has a fault.
     pub fn generate(spec: Spec) -> Result<Self, BuildError> {
         spec.check()?;
-        let kernel = contact_kernel(&Settings {
-            query: spec.config.query,
-            arithmetic: spec.config.profile.arithmetic(),
-            record: spec.config.profile.arithmetic().record(spec.config.record.format()),
-            fields: spec.config.contact,
-            radius: spec.config.radius.map(|radius| spec.config.record.round(radius)),
-            clock_mhz: spec.config.cut_mhz(),
-            interval: spec.config.interval,
-            valid_is_late: spec.config.interval <= 1 && spec.config.input == Input::Direct,
-            model: spec.model(),
-        })?;
+        let is_direct = spec.config.input == Input::Direct || spec.config.contact != Fields::HIT;
+        let valid_is_late = spec.config.interval <= 1 && is_direct;
+        let kernel = contact_kernel(&Settings { valid_is_late, ..settings(&spec) })?;
         Self::around(spec, kernel)
     }
 
@@ -79,7 +72,8 @@ impl Afu {
         }
         let core = match spec.config.input {
             Input::Direct => line_top(&spec, &scpu(&spec, &kernel)?)?,
-            Input::Spheres => spheres_top(&spec, &kernel)?,
+            Input::Spheres if spec.config.contact == Fields::HIT => spheres_top(&spec, &kernel, None)?,
+            Input::Spheres => spheres_top(&spec, &decision(&spec)?, Some(&scpu(&spec, &kernel)?))?,
         };
         let shell = shell::of(spec.config.shell);
         let top = shell.top(&spec, &core)?;
@@ -167,6 +161,32 @@ impl Afu {
         ));
         header
     }
+}
+
+/// The kernel of a specification.
+fn settings(spec: &Spec) -> Settings {
+    let arithmetic = spec.config.profile.arithmetic();
+    Settings {
+        query: spec.config.query,
+        arithmetic,
+        record: arithmetic.record(spec.config.record.format()),
+        fields: spec.config.contact,
+        radius: spec.config.radius.map(|radius| spec.config.record.round(radius)),
+        clock_mhz: spec.config.cut_mhz(),
+        interval: spec.config.interval,
+        valid_is_late: false,
+        model: spec.model(),
+    }
+}
+
+/// The kernel that decides among spheres whether two touch.
+pub(super) fn decision(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
+    let settings = Settings { fields: Fields::HIT, interval: 1, ..settings(spec) };
+    let mut kernel = contact_kernel(&settings)?;
+    if let Some(kernel) = Arc::get_mut(&mut kernel) {
+        kernel.name = "sphere_decision".to_owned();
+    }
+    Ok(kernel)
 }
 
 /// A line of a header, broken before an option where it would be too long.

@@ -43,6 +43,7 @@ pub use files::file_list;
 pub use generate::{Afu, BuildError, top_name};
 pub use package::{Package, PackageError};
 pub use spec::{Spec, SpecError};
+pub use spheres::{PredictError, Predicted, SearchModel};
 pub use timing::Timing;
 
 /// Bits of a line address: 64-byte lines of a 64-bit byte address space.

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::config::{Input, RecordFormat, Results};
-use crate::query::{ContactRecord, Flow, GROUPS, Rule};
+use crate::query::{ContactRecord, DEPTH, FLAGS, Fields, Flow, GROUPS, Rule};
 
 use super::spheres::SPHERE_BITS;
 use super::{Afu, JobError};
@@ -57,18 +57,12 @@ impl Afu {
         if number > 0 {
             let _ = writeln!(out, "| {} | `number` | number of the pair, from 0 |", bits_of(0, number));
         }
-        let words = layout.contact_words();
-        if words.is_empty() && number == 0 {
+        if layout.contact_words().is_empty() && number == 0 {
             out += "| 0 | `hit` | 1: contact |\n";
         }
-        let meanings: Vec<&str> =
-            GROUPS.iter().flat_map(|group| group.words.iter().map(|_| group.meaning)).chain(["see below"]).collect();
-        for (place, &index) in (0..).zip(&words) {
-            let (name, meaning) = (ContactRecord::NAMES[index], meanings[index]);
-            let _ = writeln!(out, "| {} | `{name}` | {meaning} |", bits_of(number + place * word, word));
-        }
+        self.words(&mut out);
         rest(&mut out, layout.used_bits(), bits, "zero");
-        if !words.is_empty() {
+        if !layout.contact_words().is_empty() {
             out += &self.flags();
         }
         let has_lengths = shape.inputs.iter().any(|input| input.rule == Rule::NotNegative);
@@ -83,10 +77,26 @@ impl Afu {
         out
     }
 
+    /// Rows of a table: the words of a contact in its record.
+    fn words(&self, out: &mut String) {
+        let layout = self.layout();
+        let (number, word) = (layout.number_bits(), layout.word_bits());
+        let meanings: Vec<&str> =
+            GROUPS.iter().flat_map(|group| group.words.iter().map(|_| group.meaning)).chain(["see below"]).collect();
+        for (place, &index) in (0..).zip(&layout.contact_words()) {
+            let (name, meaning) = (ContactRecord::NAMES[index], meanings[index]);
+            let sign = index == DEPTH && layout.sign_is_flow();
+            let sign = if sign { "; its sign bit is set if the centres coincide" } else { "" };
+            let _ = writeln!(out, "| {} | `{name}` | {meaning}{sign} |", bits_of(number + place * word, word));
+        }
+    }
+
     /// The same for an AFU that takes spheres.
     fn spheres(&self) -> String {
-        let search = self.spec().config.search;
-        format!(
+        let (config, layout) = (&self.spec().config, self.layout());
+        let search = config.search;
+        let (bits, per_line) = (layout.contact_bits(), layout.contacts_per_line());
+        let mut out = format!(
             "## Records\n\nNumbers are IEEE 754 binary32. Bits of a record are counted from its lowest bit.\n\n\
              **Spheres.** A sphere is {SPHERE_BITS} bits; a source line holds four. Sphere s of a set is in line s / 4 of the \
              set, from bit {SPHERE_BITS} · (s mod 4) on. A set takes a whole number of rows of {ROW} spheres, which are {} \
@@ -99,9 +109,9 @@ impl Afu {
              A sphere with a NaN, an infinity or a negative radius is invalid (−0 is a valid radius): it is counted, and \
              touches none.\n\n\
              **Contacts.** Every two spheres that touch have a record: within one set each pair once, of two sets each \
-             sphere of the first with each of the second. A record is 32 bits; a destination line holds 16. Record i is in \
-             line i / 16 of the destination, from bit 32 · (i mod 16) on. The job writes ⌈`contacts` / 16⌉ lines and \
-             nothing after them. What the last line holds after the last record is zero. The order is: row of the second \
+             sphere of the first with each of the second. A record is {bits} bits; a destination line holds {per_line}. Record i \
+             is in line i / {per_line} of the destination, from bit {bits} · (i mod {per_line}) on. The job writes ⌈`contacts` \
+             / {per_line}⌉ lines and nothing after them. What the last line holds after the last record is zero. The order is: row of the second \
              sphere, row of the first, second sphere, first sphere.\n\n\
              | bits of a record | word | meaning |\n|---|---|---|\n\
              | 15:0 | `first` | number of the first sphere in its set, from 0; within one set the lower of both |\n\
@@ -109,7 +119,17 @@ impl Afu {
             ROW / 4,
             search.table,
             JobError::Table.code()
-        )
+        );
+        self.words(&mut out);
+        rest(&mut out, layout.used_bits(), bits, "zero");
+        let has_flags = layout.contact_words().contains(&FLAGS);
+        if has_flags {
+            out += &self.flags();
+        }
+        if config.contact != Fields::HIT {
+            let _ = write!(out, "\n**What is computed.** {}\n", config.query.shape().computes);
+        }
+        out
     }
 
     /// The possible values of the word `flags`.

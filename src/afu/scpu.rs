@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
-use crate::query::{ContactRecord, FLAGS, Fields, Flow, Rule};
+use crate::query::{ContactRecord, DEPTH, FLAGS, Fields, Flow, Rule};
 
 use super::Spec;
 
@@ -69,11 +69,16 @@ pub(super) fn scpu(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>, Bui
         let flow = no_flow.select(code(Flow::Invalid), hit.select(touching(), code(Flow::Fake)));
         let flags: Vec<_> = unsettled.into_iter().chain([invalid, flow.named("flow"), hit]).collect();
         let flags = Signal::join(&flags).extend(bits).named("flags");
-        let mut words: Vec<Signal<'_>> = layout
-            .contact_words()
-            .into_iter()
-            .map(|word| if word == FLAGS { flags } else { kernel.output(ContactRecord::NAMES[word]) })
-            .collect();
+        let number = |word: usize| kernel.output(ContactRecord::NAMES[word]);
+        let of_word = |word: usize| match word {
+            FLAGS => flags,
+            // Without flags the depth's sign, which is otherwise 0, says which way the pair went.
+            DEPTH if layout.sign_is_flow() => {
+                coincident.map_or(number(word), |coincident| coincident.concat(number(word).low(bits - 1)))
+            }
+            _ => number(word),
+        };
+        let mut words: Vec<Signal<'_>> = layout.contact_words().into_iter().map(of_word).collect();
         words.reverse();
         Some(Signal::join(&words).extend(layout.result_bits()))
     };

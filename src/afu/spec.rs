@@ -1,9 +1,10 @@
 //! The specification of an accelerator: the configuration, and options that only proofs and integrators change.
 
-use crate::config::{Config, INTERVALS, Multipliers};
+use crate::config::{Config, INTERVALS, Input, Multipliers};
 use crate::count::counted;
 use crate::hdl::verilog::Memories;
 use crate::hdl::{DelayModel, Reset};
+use crate::query::Fields;
 
 use super::EPOCH_BITS;
 use crate::record::{COUNT_BITS, LINE_BITS, Layout};
@@ -98,6 +99,8 @@ impl Spec {
     pub fn scpus_in_turn(&self, interval: u32) -> u32 {
         let whole = self.lanes() * interval;
         match self.config.scpus {
+            // Of spheres that touch, one contact per cycle is computed.
+            scpus if self.config.input == Input::Spheres => scpus.min(interval.max(1)),
             scpus if interval > 1 && scpus > whole => scpus / whole * whole,
             scpus => scpus,
         }
@@ -114,6 +117,15 @@ impl Spec {
     pub fn unused_scpus(&self) -> Option<String> {
         let Config { scpus, interval, .. } = self.config;
         let built = self.scpus_in_turn(interval);
+        if self.config.input == Input::Spheres {
+            return (built < scpus && self.config.contact != Fields::HIT).then(|| {
+                format!(
+                    "{} at interval {interval}: {built} of them compute one contact per cycle, and the rest are not \
+                     built. Use at most {built}",
+                    counted(scpus.into(), "SCPU")
+                )
+            });
+        }
         let multiple = self.full_rate().filter(|_| built < scpus)?;
         Some(format!(
             "{} at interval {interval}: {built} of them can take turns, and the rest are not built. Use at most {multiple} \

@@ -1,7 +1,6 @@
 //! `afu cosim --input spheres`: spheres through the simulated AFU, every contact compared with the software.
 
 use contact_afu::pairs::check_name;
-use contact_afu::query::{ContactRecord, FLAGS, Flow};
 use contact_afu::report::cosim::{Run, SpheresJob};
 use contact_afu::spheres::{self, Hit, Spheres as Sets};
 use contact_afu::tools;
@@ -46,10 +45,8 @@ pub fn run(options: &Cosim) -> Result<(), Failure> {
         let job = job(options, &bench, name, &sets, &link)?;
         job.failures().iter().for_each(|failure| eprintln!("{name}: {failure}"));
         if let (Some(path), Ok(verdict)) = (&options.contacts, &job.verdict) {
-            // The AFU says no more than that they touch.
-            let mut contact = ContactRecord::default();
-            contact.0[FLAGS] = Flow::Real.flags();
-            let hits: Vec<_> = verdict.hits.iter().map(|&spheres| Hit { spheres, contact }).collect();
+            let both = verdict.hits.iter().zip(&verdict.contacts);
+            let hits: Vec<_> = both.map(|(&spheres, &contact)| Hit { spheres, contact }).collect();
             spheres::write_hits(path, &hits)?;
         }
         done.push(job);

@@ -45,8 +45,8 @@ pub struct Machine {
     /// What the AFU gets: direct (pairs, each with both bodies) or spheres, among which it finds those that touch
     /// [default: direct]
     ///
-    /// With `spheres` only the numbers of spheres that touch come back (--results hits, --contact hit). Hits and shell
-    /// line are then the defaults.
+    /// With `spheres` only those that touch come back (--results hits): their numbers, and the fields of --contact.
+    /// Hits, contact hit and shell line are then the defaults.
     #[arg(long, value_name = "KIND")]
     pub input: Option<Input>,
     /// Spheres that the table of the first set holds, for --input spheres: a power of two, 512 to 65536 [default:
@@ -224,12 +224,18 @@ impl One {
 
     fn with(&self, mut config: Config, link: &str, unsaid: &str) -> Result<Config, Failure> {
         if config.input == Input::Spheres
+            && config.contact == Fields::HIT
             && let Some(scpus) = self.scpus
         {
-            let message = format!("--scpus {scpus} with --input spheres: it has deciders; use --deciders");
+            let message = format!(
+                "--scpus {scpus} with --input spheres and --contact hit: deciders decide what touches; use --deciders"
+            );
             return Err(Failure::new(Kind::Usage, message));
         }
-        set(&mut config.scpus, &self.scpus);
+        set(
+            &mut config.scpus,
+            &self.scpus.or((config.input == Input::Spheres && config.contact != Fields::HIT).then_some(1)),
+        );
         let unsaid = if self.machine.config.is_none() { Some(unsaid) } else { None };
         match self.interval.as_deref().or(unsaid) {
             None => {}

@@ -6,6 +6,7 @@ use clap::{Args, ValueEnum};
 use contact_afu::afu::{Afu, BuildError, Package, PackageError, Spec};
 use contact_afu::config::Input;
 use contact_afu::hdl::Reset;
+use contact_afu::query::Fields;
 use contact_afu::report::folder::{self, Folder};
 use contact_afu::report::table::counted;
 use contact_afu::synth::Target;
@@ -117,7 +118,8 @@ pub fn run(options: &Rtl) -> Result<(), Failure> {
     warn_of_unused_scpus(config);
     let (unit, number) = match config.input {
         Input::Direct => ("SCPU", config.scpus),
-        Input::Spheres => ("decider", config.search.deciders),
+        Input::Spheres if config.contact == Fields::HIT => ("decider", config.search.deciders),
+        Input::Spheres => ("SCPU", config.scpus.min(config.interval)),
     };
     let article = if unit == "SCPU" { "an" } else { "a" };
     let text = format!(

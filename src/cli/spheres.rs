@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use contact_afu::config::Profile;
+use contact_afu::afu::SearchModel;
+use contact_afu::config::{self, Config, Input, Profile, Results, Shell, TABLES};
 use contact_afu::pairs::check_name;
 use contact_afu::query::Fields;
 use contact_afu::report::table::{counted, grouped, table};
@@ -48,6 +49,12 @@ pub struct Spheres {
     /// File to write the spheres that touch to, .csv or .npy: the numbers of both, and their contact
     #[arg(long, value_name = "FILE")]
     hits: Option<PathBuf>,
+    /// Predict how fast hardware of several sizes finds what touches; nothing else is written
+    ///
+    /// A model counts the cycles of `--input spheres` for each number of --lanes and --deciders, with a table that
+    /// holds the first set, at 200 MHz and behind a link that does not limit it.
+    #[arg(long, conflicts_with_all = ["out", "hits", "json"])]
+    plan: bool,
     /// Arithmetic that decides: wide, exact, or eXfY with at least 10 exponent bits
     #[arg(long, value_name = "NAME|eXfY", default_value = "wide")]
     profile: Profile,
@@ -97,6 +104,7 @@ pub fn run(options: &Spheres) -> Result<(), Failure> {
     }
     match &options.out {
         Some(out) => write(options, out, &sets),
+        None if options.plan => plan(options, &sets),
         None => search(options, &sets),
     }
 }
@@ -112,6 +120,43 @@ pub(super) fn load(source: &str, seed: u64) -> Result<Sets, Failure> {
 
 pub(super) fn sorted(spheres: &[Sphere]) -> Vec<Sphere> {
     reorder(spheres, &hilbert_order(spheres))
+}
+
+/// The lanes and the deciders that a plan compares.
+const PLANNED: [(u32, u32); 8] = [(16, 1), (16, 4), (32, 4), (64, 4), (64, 8), (128, 8), (256, 8), (256, 16)];
+
+fn plan(options: &Spheres, sets: &Sets) -> Result<(), Failure> {
+    let table_of = sets.first.len().next_power_of_two().try_into().unwrap_or(u32::MAX).max(*TABLES.start());
+    if table_of > *TABLES.end() {
+        let message =
+            format!("{}: {} spheres; the largest table holds {}", options.source, sets.first.len(), TABLES.end());
+        return Err(Failure::new(Kind::Usage, message));
+    }
+    let config = |lanes, deciders| {
+        let search = config::Search { table: table_of, lanes, deciders, box_bits: options.box_bits };
+        let base = Config { input: Input::Spheres, results: Results::Hits, shell: Shell::Line, ..Config::default() };
+        Config { profile: options.profile.clone(), contact: Fields::HIT, search, ..base }
+    };
+    let model = SearchModel::new(&config(16, 1), sets).map_err(|error| Failure::new(Kind::Usage, error.to_string()))?;
+    let count = (sets.first.len() + sets.second.as_ref().map_or(0, Vec::len)).max(1) as f64;
+    let mut rows = Vec::new();
+    for (lanes, deciders) in PLANNED {
+        let config = config(lanes, deciders);
+        config.check()?;
+        let predicted = model.predict(&config).map_err(|error| Failure::new(Kind::Usage, error.to_string()))?;
+        let per_sphere = predicted.cycles as f64 / count;
+        rows.push(vec![
+            lanes.to_string(),
+            deciders.to_string(),
+            grouped(predicted.cycles),
+            format!("{per_sphere:.2}"),
+            format!("{:.1}", per_sphere * config.cycle_ns()),
+            predicted.slowest().to_owned(),
+        ]);
+    }
+    let head = ["lanes", "deciders", "cycles", "per sphere", "ns per sphere", "slowest stage"];
+    let title = format!("{}: predicted, table of {}, 200 MHz", options.source, grouped(table_of.into()));
+    output::show(&format!("{title}\n{}", table(&head, rows)), false)
 }
 
 fn write(options: &Spheres, out: &Path, sets: &Sets) -> Result<(), Failure> {

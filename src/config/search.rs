@@ -57,9 +57,6 @@ pub enum SearchError {
     /// Only hits are written.
     #[error("input spheres with results all: only spheres that touch come back; use results hits")]
     Results,
-    /// Only the numbers of spheres come back.
-    #[error("input spheres with contact {0}: only the numbers of the spheres come back; use contact hit")]
-    Contact(Fields),
     /// The kernel rounds spheres to a shorter format first.
     #[error(
         "input spheres with {0}: spheres would be rounded before their boxes are made; use wide, or at least 23 fraction bits"
@@ -105,11 +102,9 @@ impl Search {
         if config.results == Results::All {
             return Err(SearchError::Results);
         }
-        if config.contact != Fields::HIT {
-            return Err(SearchError::Contact(config.contact));
-        }
         let options = [
-            (config.interval != 1, "an interval"),
+            (config.interval != 1 && config.contact == Fields::HIT, "an interval and contact hit"),
+            (config.profile.is_exact(), "profile exact"),
             (config.query != Query::SphereSphere, "another query than sphere-sphere"),
             (config.radius.is_some(), "radius"),
             (config.record != RecordFormat::F32, "record"),

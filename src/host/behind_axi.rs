@@ -13,7 +13,10 @@ use crate::record::Capability;
 
 impl From<MachineError> for TransportError {
     fn from(error: MachineError) -> Self {
-        Self::Device(error.to_string())
+        match error {
+            MachineError::Protocol { cycle, what } => Self::Axi { cycle, what },
+            error => Self::Device(error.to_string()),
+        }
     }
 }
 

@@ -8,7 +8,7 @@ use crate::config::Input;
 use crate::link::{LINE_BYTES, Traffic};
 use crate::outcome::{Failure, Outcome};
 use crate::query::{ContactRecord, Flow};
-use crate::record::{Contacts, Layout, hit_lines};
+use crate::record::{Contacts, Layout};
 
 /// The state at the start of a job: the cycle of its start word, and the link's traffic and the device's writes until
 /// then.
@@ -50,7 +50,7 @@ pub(super) fn outcome<T: Transport>(session: &Session<T>, begin: &Begin, task: &
     let mut results = workspace.limits(task).results;
     if task.input == Input::Spheres {
         // There may be room for far more.
-        results.end = results.end.min(results.start + hit_lines(end.contacts.into()));
+        results.end = results.end.min(results.start + workspace.layout().destination_lines(end.contacts.into()));
     }
     let stored = |line: u64| transport.line(workspace.physical(line * LINE_BYTES)?);
     let sent = |line: u64| Some(transport.sent(line)?.saturating_sub(begin.cycle));

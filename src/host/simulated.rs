@@ -10,7 +10,7 @@ use crate::link::axi::Handshake;
 use crate::link::spl2::{Spl2, Spl2Model};
 use crate::link::{Link, LinkError, LinkModel, Traffic};
 use crate::query::PairRecord;
-use crate::record::{HITS_PER_LINE, hit_lines, pack, pack_spheres};
+use crate::record::{pack, pack_spheres};
 use crate::spheres::Spheres;
 
 /// What a job is given.
@@ -97,10 +97,10 @@ impl Run<'_> {
             Given::Spheres { sets, contacts, search } => {
                 let others = sets.second.as_deref();
                 source = [pack_spheres(&sets.first), pack_spheres(others.unwrap_or_default())].concat();
-                job = Job::new(&source, sets.first.len() as u32, hit_lines(contacts));
+                job = Job::new(&source, sets.first.len() as u32, layout.destination_lines(contacts));
                 job.others = others.map_or(0, |others| others.len() as u32);
                 job.mode = others.is_some().into();
-                job.hits_per_line = Some(HITS_PER_LINE);
+                job.hits_per_line = Some(layout.contacts_per_line());
                 job.search = search;
             }
         }

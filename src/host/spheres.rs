@@ -9,7 +9,8 @@ use super::transaction::{Done, Loaded, Pointed, Retrieved, Transaction};
 use super::transport::Transport;
 use crate::config::Input;
 use crate::outcome::Outcome;
-use crate::record::{HITS_PER_LINE, SetTooLarge, numbers_of, pack_spheres, sphere_lines};
+use crate::query::ContactRecord;
+use crate::record::{Contacts, Layout, SetTooLarge, numbers_of, pack_spheres, sphere_lines};
 use crate::spheres::{Counts, ROW, Sphere, Spheres};
 
 /// Cycles that a row takes besides its comparisons, at most.
@@ -30,6 +31,8 @@ pub struct SpheresResults {
     /// The numbers of every two spheres that touch, from 0, as [`Hit::spheres`](crate::spheres::Hit::spheres), and in
     /// the order of [`Candidates::pairs`](crate::spheres::Candidates::pairs).
     pub hits: Vec<[u32; 2]>,
+    /// The contact of each of them, with the fields of the AFU. Other fields are zero.
+    pub contacts: Vec<ContactRecord>,
     /// The number of pairs of spheres whose boxes meet, as the AFU counted them.
     pub candidates: u32,
     /// The number of invalid spheres that the AFU counted.
@@ -212,9 +215,10 @@ impl<T: Transport> Open<'_, T> {
     /// The hits of a job that ended well, and what the job took.
     fn hits(&mut self, job: &SpheresJob, outcome: &Outcome) -> Result<SpheresResults, HostError> {
         self.check_end(outcome)?;
-        let hits = hits(job, outcome)?;
+        let (hits, contacts) = hits(job, self.session.workspace.layout(), outcome)?;
         Ok(SpheresResults {
             hits,
+            contacts,
             candidates: outcome.candidates.unwrap_or(0),
             invalid: outcome.invalid,
             first_invalid: outcome.first_invalid,
@@ -223,16 +227,16 @@ impl<T: Transport> Open<'_, T> {
     }
 }
 
-/// The hits in the destination, which must be pairs of these sets in the order of the search.
-fn hits(job: &SpheresJob, outcome: &Outcome) -> Result<Vec<[u32; 2]>, HitError> {
+/// The hits in the destination, which must be pairs of these sets in the order of the search, and their contacts.
+fn hits(job: &SpheresJob, layout: &Layout, outcome: &Outcome) -> Result<(Vec<[u32; 2]>, Vec<ContactRecord>), HitError> {
     let (count, row) = (outcome.contacts, ROW as u32);
     let seconds = job.second.unwrap_or(job.first);
-    let mut hits = Vec::new();
+    let stored = Contacts::new(layout, &outcome.lines);
+    let (mut hits, mut contacts) = (Vec::new(), Vec::new());
     let mut before = None;
     for index in 0..count as usize {
-        let line = outcome.lines.get(index / HITS_PER_LINE as usize).copied().flatten();
-        let Some(line) = line else { return Err(HitError::Unwritten { index, count }) };
-        let [first, second] = numbers_of(line[index % HITS_PER_LINE as usize]);
+        let Some((numbers, contact)) = stored.hit(index) else { return Err(HitError::Unwritten { index, count }) };
+        let [first, second] = numbers_of(numbers);
         let place = [second / row, first / row, second, first];
         let exists = first < job.first && second < seconds && (job.second.is_some() || first < second);
         if !exists || before >= Some(place) {
@@ -240,8 +244,9 @@ fn hits(job: &SpheresJob, outcome: &Outcome) -> Result<Vec<[u32; 2]>, HitError> 
         }
         before = Some(place);
         hits.push([first, second]);
+        contacts.push(contact);
     }
-    Ok(hits)
+    Ok((hits, contacts))
 }
 
 /// More cycles than a search takes: every comparison and every hit by itself, and what a row takes besides.
@@ -273,12 +278,24 @@ fn most_steps_of(first: u64, second: u64) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::Profile;
-    use crate::query::Fields;
-    use crate::spheres::Search;
+    use crate::config::{Config, Profile, Results};
+    use crate::query::{Fields, Flow};
+    use crate::spheres::{Hit, Search};
+
+    fn layout() -> Layout {
+        let config =
+            Config { input: Input::Spheres, results: Results::Hits, contact: Fields::HIT, ..Config::default() };
+        Layout::of(512, &config)
+    }
+
+    fn numbers(job: &SpheresJob, outcome: &Outcome) -> Result<Vec<[u32; 2]>, HitError> {
+        hits(job, &layout(), outcome).map(|(hits, _)| hits)
+    }
 
     fn outcome(hits: &[[u32; 2]]) -> Outcome {
-        let lines = crate::record::pack_numbers(hits).into_iter().map(Some).collect();
+        let contact = ContactRecord::of_flags(Flow::Real.flags());
+        let all: Vec<_> = hits.iter().map(|&spheres| Hit { spheres, contact }).collect();
+        let lines = crate::record::pack_hits(&layout(), &all).into_iter().map(Some).collect();
         Outcome {
             cycles: 0,
             error: 0,
@@ -303,8 +320,8 @@ mod tests {
     fn hits_that_cannot_be_right_are_refused() {
         let (one, two) = (SpheresJob { first: 40, second: None }, SpheresJob { first: 40, second: Some(20) });
         let right = [[0, 3], [2, 3], [1, 4], [1, 17], [17, 18]];
-        assert_eq!(hits(&one, &outcome(&right)), Ok(right.to_vec()));
-        assert_eq!(hits(&two, &outcome(&[[39, 0], [3, 19]])), Ok(vec![[39, 0], [3, 19]]));
+        assert_eq!(numbers(&one, &outcome(&right)), Ok(right.to_vec()));
+        assert_eq!(numbers(&two, &outcome(&[[39, 0], [3, 19]])), Ok(vec![[39, 0], [3, 19]]));
         // The other way round, twice, a sphere with itself or with one before it, and one that does not exist.
         for (job, wrong) in [
             (one, [[2, 3], [0, 3]]),
@@ -315,12 +332,12 @@ mod tests {
             (two, [[2, 3], [2, 20]]),
             (two, [[17, 3], [2, 4]]),
         ] {
-            let error = hits(&job, &outcome(&wrong)).expect_err("wrong");
+            let error = numbers(&job, &outcome(&wrong)).expect_err("wrong");
             assert!(matches!(error, HitError::Spheres { index: 1, .. }), "{wrong:?}: {error}");
         }
         let mut lost = outcome(&right);
         lost.lines[0] = None;
-        assert_eq!(hits(&one, &lost), Err(HitError::Unwritten { index: 0, count: 5 }));
+        assert_eq!(numbers(&one, &lost), Err(HitError::Unwritten { index: 0, count: 5 }));
     }
 
     /// No search takes more than what is waited for, not even one in which every sphere touches every other.

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::handshake::Protocol;
+use crate::link::axi::AxiError;
 use crate::link::spl2::{DeviceWrite, Limits, Spl2Error, Spl2Model};
 use crate::link::{Line, LinkModel, Traffic};
 use crate::patience::{self, Patience, Work};
@@ -114,6 +115,14 @@ pub enum TransportError {
         cycle: u64,
         /// The error.
         what: Spl2Error,
+    },
+    /// The device broke a rule of AXI4 or AXI4-Lite.
+    #[error("protocol broken in cycle {cycle}: {what}")]
+    Axi {
+        /// The cycle, counted from the start of the device.
+        cycle: u64,
+        /// The rule.
+        what: AxiError,
     },
     /// Another error.
     #[error("the device: {0}")]

@@ -14,7 +14,7 @@ use super::task::Task;
 use crate::afu::shell::spl2::map::{self, pointers};
 use crate::link::spl2::{Limits, MAX_PAGES, PAGE_BYTES, PAGE_LINES, Pages};
 use crate::link::{LINE_BYTES, Line};
-use crate::record::{Layout, hit_lines, sphere_lines};
+use crate::record::{Layout, sphere_lines};
 
 /// The virtual byte address of a workspace.
 const BASE: u64 = 0x0000_7F12_3460_0000;
@@ -103,7 +103,7 @@ impl Workspace {
     /// Returns [`HostError::Pages`] if 2 GB are not enough.
     pub fn for_spheres(layout: Layout, spheres: [u64; 2], contacts: u64) -> Result<Self, HostError> {
         let lines = spheres.map(sphere_lines).iter().sum::<u64>();
-        let (destination, room) = (lines.next_multiple_of(BURST_LINES), hit_lines(contacts));
+        let (destination, room) = (lines.next_multiple_of(BURST_LINES), layout.destination_lines(contacts));
         let pages = contiguous_pages(destination + room)?;
         Ok(Self { lines, destination, room, ..Self::physical_from(CONTIGUOUS, pages, layout, lines) })
     }
@@ -170,7 +170,7 @@ impl Workspace {
         seed: u64,
     ) -> Result<Self, HostError> {
         let source = spheres.map(sphere_lines).iter().sum::<u64>() + u64::from(map::DATA_LINE);
-        let lines = source.max(hit_lines(contacts));
+        let lines = source.max(layout.destination_lines(contacts));
         let workspace = Self::new(layout, (2 * lines + CONTEXT_LINES).div_ceil(PAGE_LINES), seed)?;
         // No more lines than 2 GB have.
         workspace.with_buffers(CONTEXT_LINES, CONTEXT_LINES + lines, lines as u32)
@@ -299,6 +299,7 @@ pub(super) fn pages_for(layout: &Layout, pairs: u64) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::config::{Config, Input, Results};
     use crate::query::Fields;
 
     fn layout() -> Layout {
@@ -350,8 +351,16 @@ mod tests {
 
     #[test]
     fn buffers_of_spheres_are_as_long_as_they_must_be() {
-        for (spheres, contacts, source, room) in [([20, 0], 160, 8, 10), ([17, 1], 17, 12, 2), ([0, 0], 0, 0, 0)] {
-            let workspace = Workspace::for_spheres(layout(), spheres, contacts).unwrap();
+        let numbers =
+            Config { input: Input::Spheres, results: Results::Hits, contact: Fields::HIT, ..Config::default() };
+        let all = Config { contact: Fields::ALL, ..numbers.clone() };
+        for (config, spheres, contacts, source, room) in [
+            (&numbers, [20, 0], 160, 8, 10),
+            (&numbers, [17, 1], 17, 12, 2),
+            (&numbers, [0, 0], 0, 0, 0),
+            (&all, [17, 1], 17, 12, 9),
+        ] {
+            let workspace = Workspace::for_spheres(Layout::of(512, config), spheres, contacts).unwrap();
             assert_eq!((workspace.source_room(), workspace.destination_room()), (source, room));
             assert!((workspace.destination() - workspace.source()) / 64 >= source);
             assert!([workspace.source(), workspace.destination()].iter().all(|at| at.is_multiple_of(4096)));

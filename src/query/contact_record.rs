@@ -36,6 +36,9 @@ pub const GROUPS: [Group; 3] = [
 pub const NUMBERS: usize = GROUPS[0].words.len() + GROUPS[1].words.len() + GROUPS[2].words.len();
 /// The index of the word after them: the [flags](Flow::flags).
 pub const FLAGS: usize = NUMBERS;
+
+/// The index of the depth.
+pub const DEPTH: usize = NUMBERS - 1;
 /// The number of words in a contact.
 pub const CONTACT_WORDS: usize = NUMBERS + 1;
 

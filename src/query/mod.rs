@@ -9,7 +9,7 @@ mod shape;
 mod sphere_plane;
 mod sphere_sphere;
 
-pub use contact_record::{CONTACT_WORDS, ContactRecord, FLAGS, GROUPS, Group, NUMBERS};
+pub use contact_record::{CONTACT_WORDS, ContactRecord, DEPTH, FLAGS, GROUPS, Group, NUMBERS};
 pub use fields::{Fields, FieldsError};
 pub use flow::Flow;
 pub use pair_record::{PAIR_WORDS, PairRecord};

@@ -2,9 +2,9 @@
 //! lines hold the layout's number format, from which the words are widened.
 
 use super::Layout;
-use super::pack::{DWORD, Line, get};
+use super::pack::{DWORD, Line, SIGN, get};
 use crate::kernel::widen;
-use crate::query::{ContactRecord, FLAGS, Flow};
+use crate::query::{ContactRecord, DEPTH, FLAGS, Flow};
 
 /// Destination lines, read as records.
 pub(crate) struct Contacts<'a> {
@@ -58,6 +58,11 @@ impl<'a> Contacts<'a> {
             let short = get(line, first + number_bits as usize + slot * bits as usize, bits);
             record.0[word] = if word == FLAGS { short } else { widen(short, self.layout.record().format()) };
         }
+        if self.layout.sign_is_flow() {
+            let flow = if record.0[DEPTH] & SIGN == 0 { Flow::Real } else { Flow::Coincident };
+            record.0[DEPTH] &= !SIGN;
+            record.0[FLAGS] = flow.flags();
+        }
         Some((number, record))
     }
 
@@ -65,7 +70,9 @@ impl<'a> Contacts<'a> {
     #[cfg_attr(not(feature = "cosim"), allow(dead_code))] // for `verify` alone
     pub(crate) fn as_stored(&self, record: ContactRecord) -> ContactRecord {
         let mut stored = ContactRecord::default();
-        if self.words.is_empty() {
+        if self.layout.sign_is_flow() {
+            stored.0[FLAGS] = record.flags();
+        } else if self.words.is_empty() {
             stored.0[FLAGS] = if record.is_contact() { Flow::Real } else { Flow::Fake }.flags();
         }
         for &word in &self.words {

@@ -1,13 +1,17 @@
 //! Where records lie in lines: computed once, and used by hardware, host and files.
 
-use crate::config::{Config, RecordFormat, Results};
-use crate::query::{ContactRecord, Fields, Input, PairRecord, Query};
+use crate::config::{self, Config, RecordFormat, Results};
+use crate::query::{ContactRecord, FLAGS, Fields, Input, PairRecord, Query};
 
 use super::COUNT_BITS;
 
 /// The record layout of a configuration. A record is its words in use, padded to a power of two; a line holds as many
 /// records as fit. If no field is asked for, a contact is one bit. With `Results::Hits` each record begins with the
 /// 32-bit index of its pair; without fields it is that index only.
+///
+/// If spheres come in and contacts with their depth go out, the numbers of the two spheres stand in the place of the
+/// index, and the depth's sign bit, which is otherwise 0, in the place of the flags: it is set if the centres
+/// coincide. So a contact with all fields has eight words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout {
     line_bits: u32,
@@ -18,6 +22,8 @@ pub struct Layout {
     word_bits: u32,
     fields: Fields,
     results: Results,
+    /// True if the depth's sign bit says what the flags would.
+    sign_is_flow: bool,
     /// The word of all radii if records have no radii.
     radius: Option<u32>,
 }
@@ -49,7 +55,9 @@ impl Layout {
     pub fn of(line_bits: u32, config: &Config) -> Self {
         let Config { query, record, results, contact: fields, .. } = *config;
         let (inputs, radius) = (query.shape().inputs, config.radius.map(f32::to_bits));
-        Self { line_bits, query, inputs, record, word_bits: record.format().width(), fields, results, radius }
+        let sign_is_flow = config.input == config::Input::Spheres && fields.depth;
+        let word_bits = record.format().width();
+        Self { line_bits, query, inputs, record, word_bits, fields, results, sign_is_flow, radius }
     }
 
     /// The kind of pair.
@@ -128,7 +136,12 @@ impl Layout {
 
     /// The words of a [`ContactRecord`] that are in the record, in order; empty if only the hit is asked for.
     pub fn contact_words(&self) -> Vec<usize> {
-        ContactRecord::words(self.fields).collect()
+        ContactRecord::words(self.fields).filter(|&word| !(self.sign_is_flow && word == FLAGS)).collect()
+    }
+
+    /// True if there are no flags, because the depth's sign bit is set if the centres of a contact coincide.
+    pub(crate) fn sign_is_flow(&self) -> bool {
+        self.sign_is_flow
     }
 
     /// Bits of a record before the words of its contact: the index of its pair with `Results::Hits`, else 0.

@@ -16,9 +16,7 @@ pub use job_error::JobError;
 pub use layout::{Layout, OtherRadius};
 pub(crate) use pack::{Line, pack, pack_contacts, unpack_pairs};
 pub use spheres::SetTooLarge;
-pub(crate) use spheres::{
-    HITS_PER_LINE, hit_lines, numbers_of, pack_numbers, pack_spheres, sphere_lines, unpack_spheres,
-};
+pub(crate) use spheres::{numbers_of, pack_hits, pack_spheres, sphere_lines, unpack_spheres};
 
 /// Bits of a line of memory.
 pub(crate) const LINE_BITS: u32 = 512;

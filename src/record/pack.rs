@@ -2,12 +2,15 @@
 //! layout's number format, to which the words are rounded.
 
 use crate::kernel::{narrow, widen};
-use crate::query::{ContactRecord, FLAGS, PairRecord};
+use crate::query::{ContactRecord, DEPTH, FLAGS, Flow, PairRecord};
 
 use super::Layout;
 
 /// A line's dwords, the lowest first.
 pub(crate) type Line = [u32; 16];
+
+/// The sign bit of a binary32 number.
+pub(super) const SIGN: u32 = 1 << 31;
 
 /// Bits of a dword of a line.
 pub(super) const DWORD: usize = 32;
@@ -57,11 +60,17 @@ pub(crate) fn unpack_pairs(layout: &Layout, lines: &[Line], count: usize) -> Vec
 /// The destination lines of the contacts; with `Results::Hits` only those of pairs that touch. The padding of the last
 /// line is zero.
 pub(crate) fn pack_contacts(layout: &Layout, records: &[ContactRecord]) -> Vec<Line> {
+    let is_there = |record: &ContactRecord| layout.number_bits() == 0 || record.is_contact();
+    let there: Vec<_> = (0..).zip(records.iter().copied()).filter(|(_, record)| is_there(record)).collect();
+    pack_records(layout, &there)
+}
+
+/// The destination lines of records, each with its number, which is in the record with `Results::Hits`. The padding of
+/// the last line is zero.
+pub(crate) fn pack_records(layout: &Layout, records: &[(u32, ContactRecord)]) -> Vec<Line> {
     let (words, bits, numbers) = (layout.contact_words(), layout.contact_bits() as usize, layout.record().format());
     let number_bits = layout.number_bits();
-    let is_there = |record: &ContactRecord| number_bits == 0 || record.is_contact();
-    let there: Vec<_> = (0..).zip(records).filter(|(_, record)| is_there(record)).collect();
-    let line = |records: &[(u32, &ContactRecord)]| {
+    let line = |records: &[(u32, ContactRecord)]| {
         let mut line: Line = [0; 16];
         for (place, (number, record)) in records.iter().enumerate() {
             let at = place * bits;
@@ -71,12 +80,15 @@ pub(crate) fn pack_contacts(layout: &Layout, records: &[ContactRecord]) -> Vec<L
                 put(&mut line, at, 1, record.is_contact().into());
             }
             for (slot, &word) in words.iter().enumerate() {
-                let short = if word == FLAGS { record.0[word] } else { narrow(record.0[word], numbers) };
+                let mut short = if word == FLAGS { record.0[word] } else { narrow(record.0[word], numbers) };
+                if word == DEPTH && layout.sign_is_flow() && record.flags() == Flow::Coincident.flags() {
+                    short |= SIGN;
+                }
                 let at = at + number_bits as usize + slot * layout.word_bits() as usize;
                 put(&mut line, at, layout.word_bits(), short);
             }
         }
         line
     };
-    there.chunks(layout.contacts_per_line() as usize).map(line).collect()
+    records.chunks(layout.contacts_per_line() as usize).map(line).collect()
 }

@@ -1,14 +1,13 @@
 //! Spheres in lines, four each: a set begins at a row of 16, which is four lines.
 
-use super::pack::Line;
-use crate::spheres::{ROW, Sphere};
+use super::Layout;
+use super::pack::{Line, pack_records};
+use crate::spheres::{Hit, ROW, Sphere};
 
 /// Words of a sphere.
 const WORDS: usize = 4;
 /// Spheres in a line.
 const PER_LINE: usize = 16 / WORDS;
-/// Hits in a line.
-pub(crate) const HITS_PER_LINE: u32 = 16;
 /// The spheres of a second set, at most: as many as the 16 bits of a hit's number count.
 const MOST_OTHERS: usize = 1 << 16;
 
@@ -51,11 +50,6 @@ pub(crate) fn sphere_lines(spheres: u64) -> u64 {
     spheres.div_ceil(ROW as u64) * (ROW / PER_LINE) as u64
 }
 
-/// Lines of hits.
-pub(crate) fn hit_lines(hits: u64) -> u64 {
-    hits.div_ceil(HITS_PER_LINE.into())
-}
-
 /// The lines of a set. The padding of its last row is zero.
 pub(crate) fn pack_spheres(spheres: &[Sphere]) -> Vec<Line> {
     let mut lines = vec![[0; 16]; sphere_lines(spheres.len() as u64) as usize];
@@ -66,15 +60,11 @@ pub(crate) fn pack_spheres(spheres: &[Sphere]) -> Vec<Line> {
     lines
 }
 
-/// The lines of hits, each the number of the first sphere below that of the second, 16 bits each. The padding of the
-/// last line is zero.
-pub(crate) fn pack_numbers(hits: &[[u32; 2]]) -> Vec<Line> {
-    let line = |hits: &[[u32; 2]]| {
-        let mut line: Line = [0; 16];
-        line.iter_mut().zip(hits).for_each(|(word, [first, second])| *word = second << 16 | first);
-        line
-    };
-    hits.chunks(16).map(line).collect()
+/// The lines of hits: each begins with the number of the first sphere below that of the second, 16 bits each. The
+/// padding of the last line is zero.
+pub(crate) fn pack_hits(layout: &Layout, hits: &[Hit]) -> Vec<Line> {
+    let record = |hit: &Hit| (hit.spheres[1] << 16 | hit.spheres[0], hit.contact);
+    pack_records(layout, &hits.iter().map(record).collect::<Vec<_>>())
 }
 
 /// The spheres of a set of `count` spheres, from its lines.
@@ -83,7 +73,7 @@ pub(crate) fn unpack_spheres(lines: &[Line], count: usize) -> Vec<Sphere> {
     words.take(count).map(|words| Sphere(*words)).collect()
 }
 
-/// The two numbers in a word of hits.
+/// The two numbers in the word that a hit begins with.
 pub(crate) fn numbers_of(word: u32) -> [u32; 2] {
     [word & 0xFFFF, word >> 16]
 }
@@ -91,6 +81,9 @@ pub(crate) fn numbers_of(word: u32) -> [u32; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::config::{Config, Input, Results};
+    use crate::query::{ContactRecord, Flow};
+    use crate::record::Contacts;
 
     #[test]
     fn a_set_ends_with_a_row() {
@@ -106,10 +99,31 @@ mod tests {
     }
 
     #[test]
-    fn a_hit_is_two_numbers() {
-        let lines = pack_numbers(&[[7, 65_535]; 17]);
+    fn a_hit_begins_with_two_numbers() {
+        let layout = |contact: &str| {
+            let contact = contact.parse().expect("fields");
+            Layout::of(512, &Config { input: Input::Spheres, results: Results::Hits, contact, ..Config::default() })
+        };
+        let contact = |flow: Flow| ContactRecord([1, 2, 3, 4, 5, 6, 7, flow.flags()]);
+        let hit = |flow| Hit { spheres: [7, 65_535], contact: contact(flow) };
+        let lines = pack_hits(&layout("hit"), &[hit(Flow::Real); 17]);
         assert_eq!((lines.len(), lines[0][15], lines[1][0], lines[1][1]), (2, 0xFFFF_0007, 0xFFFF_0007, 0));
-        assert_eq!((numbers_of(lines[0][15]), hit_lines(17)), ([7, 65_535], 2));
+        assert_eq!(numbers_of(lines[0][15]), [7, 65_535]);
+        // All fields fit into half a line, because the depth's sign says whether the centres coincide.
+        let hits = [hit(Flow::Real), hit(Flow::Coincident), hit(Flow::Real)];
+        let all = layout("hit,depth,normal,position");
+        let lines = pack_hits(&all, &hits);
+        assert_eq!(lines[0], [0xFFFF_0007, 1, 2, 3, 4, 5, 6, 7, 0xFFFF_0007, 1, 2, 3, 4, 5, 6, 7 | 1 << 31]);
+        for contact in ["hit", "depth", "normal", "position", "hit,depth,normal,position"] {
+            let layout = layout(contact);
+            let lines: Vec<_> = pack_hits(&layout, &hits).into_iter().map(Some).collect();
+            assert_eq!(lines.len() as u64, layout.destination_lines(3), "{contact}");
+            let stored = Contacts::new(&layout, &lines);
+            for (place, hit) in hits.iter().enumerate() {
+                assert_eq!(stored.hit(place), Some((0xFFFF_0007, stored.as_stored(hit.contact))), "{contact}");
+            }
+            assert!(stored.rest_is_zero(3), "{contact}");
+        }
     }
 
     #[test]

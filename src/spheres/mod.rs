@@ -15,6 +15,7 @@ mod rows;
 mod search;
 mod set;
 mod sphere;
+mod trace;
 
 pub use bounds::{BOX_BITS, Bounds, BoundsRule, RefusedArithmetic};
 pub use file::{LoadError, load, read_spheres, write_hits, write_spheres};
@@ -23,3 +24,4 @@ pub use rows::{ROW, Rows};
 pub use search::{Candidates, Counts, Found, Hit, Search};
 pub use set::{SphereSet, SphereSetError, Spheres};
 pub use sphere::Sphere;
+pub(crate) use trace::{GroupTrace, MemberTrace, RowTrace};

@@ -190,17 +190,21 @@ pub fn rtl_sha256(config: &Config) -> Result<String, VerifyError> {
     Ok(generated(config)?.sha256())
 }
 
-/// The Verilog of a configuration. The number of SCPUs remains a parameter, so that models share their code.
+/// The Verilog of a configuration. The number of SCPUs remains a parameter, so that models share their code, unless
+/// spheres come in.
 fn generated(config: &Config) -> Result<Source, VerifyError> {
     let scpus = Config::default().scpus;
     Spec::from(config.clone()).check().map_err(crate::afu::BuildError::from)?;
     // A prefix does not change the behaviour, so a model without a prefix serves every prefix.
-    let plain = Config { scpus, prefix: None, ..config.clone() };
+    let built = if config.input == config::Input::Spheres { config.scpus } else { scpus };
+    let plain = Config { scpus: built, prefix: None, ..config.clone() };
     let afu = Afu::generate(Spec::from(plain))?;
     let files = afu.verilog().into_iter().map(|(name, text)| File { name, text }).collect();
     Ok(with_scpus(Source::new(&afu.top_name(), files), config, scpus))
 }
 
 fn with_scpus(source: Source, config: &Config, default: u32) -> Source {
-    if config.scpus == default { source } else { source.parameter(SCPUS, config.scpus.into()) }
+    // With spheres as input the number is no parameter.
+    let is_fixed = config.input == config::Input::Spheres;
+    if config.scpus == default || is_fixed { source } else { source.parameter(SCPUS, config.scpus.into()) }
 }

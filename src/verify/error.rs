@@ -77,7 +77,11 @@ impl VerifyError {
             Self::Drive(DriveError::TimedOut { .. } | DriveError::Protocol { .. })
                 | Self::Host(
                     HostError::NoStatus { .. }
-                        | HostError::Transport(TransportError::PageFault { .. } | TransportError::Protocol { .. })
+                        | HostError::Transport(
+                            TransportError::PageFault { .. }
+                                | TransportError::Protocol { .. }
+                                | TransportError::Axi { .. }
+                        )
                 )
         )
     }

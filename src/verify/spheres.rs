@@ -9,15 +9,17 @@ use crate::cosim::{CosimError, Outcome};
 use crate::host::simulated::{Given, Run};
 use crate::host::spheres::steps;
 use crate::link::LinkModel;
-use crate::query::Fields;
-use crate::record::{SetTooLarge, numbers_of, sphere_lines};
-use crate::spheres::{Counts, Search, Spheres};
+use crate::query::ContactRecord;
+use crate::record::{Contacts, SetTooLarge, numbers_of, sphere_lines};
+use crate::spheres::{Counts, Hit, Search, Spheres};
 
 /// The verdict on a job of spheres.
 #[derive(Clone, Debug)]
 pub struct SpheresVerdict {
     /// The spheres that touch, as they lie in memory: the number of the first, and of the second.
     pub hits: Vec<[u32; 2]>,
+    /// The contact of each of them, with the fields of the configuration. Other fields are zero.
+    pub contacts: Vec<ContactRecord>,
     /// Spheres of both sets.
     pub spheres: u64,
     /// The comparisons that the same search takes in software.
@@ -58,9 +60,9 @@ impl Bench {
         let others = second.unwrap_or_default();
         SetTooLarge::check(first.len(), others.len(), config.search.table)?;
         let search = Search::new(config.profile.arithmetic(), config.search.box_bits)?;
-        let mut reference = config.profile.reference(Fields::HIT);
+        let mut reference = config.reference();
         let found = search.find(&mut reference, first, second).map_err(VerifyError::Reference)?;
-        let expected: Vec<_> = found.hits.iter().map(|hit| hit.spheres).collect();
+        let expected = &found.hits;
 
         let contacts = expected.len() as u64;
         let lines = sphere_lines(first.len() as u64) + sphere_lines(others.len() as u64);
@@ -79,25 +81,35 @@ impl Bench {
         closed.map_err(CosimError::from)?;
         let seconds = begun.elapsed().as_secs_f64();
 
-        let words: Vec<u32> = outcome.lines.iter().flat_map(|line| line.unwrap_or([u32::MAX; 16])).collect();
-        let hits: Vec<_> = words.iter().take(expected.len()).map(|word| numbers_of(*word)).collect();
+        let layout = self.expected.layout;
+        let stored = Contacts::new(&layout, &outcome.lines);
+        let hit = |index: usize| {
+            let (numbers, contact) = stored.hit(index)?;
+            Some(Hit { spheres: numbers_of(numbers), contact })
+        };
+        let hits: Vec<_> = (0..expected.len()).map(hit).collect();
         let mut failed_checks = Vec::new();
         if let Some(error) = outcome.job_error() {
             failed_checks.push(format!("the job ended with error {} ({error:?})", outcome.error));
         }
-        let differing: Vec<_> = (0..expected.len()).filter(|&hit| hits.get(hit) != expected.get(hit)).collect();
+        let wanted = |hit: &Hit| Hit { contact: stored.as_stored(hit.contact), ..*hit };
+        let differing: Vec<_> = (0..expected.len()).filter(|&hit| hits[hit] != Some(wanted(&expected[hit]))).collect();
         if let Some(&hit) = differing.first() {
-            let text = |hit: Option<&[u32; 2]>| hit.map_or("nothing".to_owned(), |[i, j]| format!("{i} and {j}"));
+            let text = |hit: Option<Hit>| {
+                hit.map_or("nothing".to_owned(), |Hit { spheres: [i, j], contact }| {
+                    format!("{i} and {j} with {:08x?}", contact.0)
+                })
+            };
             failed_checks.push(format!(
                 "{} of {} hits differ; the first is hit {hit}: expected spheres {}, found {}",
                 differing.len(),
                 expected.len(),
-                text(expected.get(hit)),
-                text(hits.get(hit))
+                text(Some(wanted(&expected[hit]))),
+                text(hits[hit])
             ));
         }
-        if words.get(expected.len()..).is_some_and(|rest| rest.iter().any(|word| *word != 0)) {
-            failed_checks.push("unused bits of the last line are not zero".to_owned());
+        if !stored.rest_is_zero(expected.len()) {
+            failed_checks.push("unused bits of a line are not zero".to_owned());
         }
         let valid = |sphere: &crate::spheres::Sphere| !sphere.is_valid();
         let first_invalid = first.iter().chain(others).position(valid).map(|place| place as u64);
@@ -117,7 +129,8 @@ impl Bench {
             }
         }
         Ok(SpheresVerdict {
-            hits,
+            hits: hits.iter().flatten().map(|hit| hit.spheres).collect(),
+            contacts: hits.iter().flatten().map(|hit| hit.contact).collect(),
             spheres: (first.len() + others.len()) as u64,
             counts: found.counts,
             mismatches: differing.len() as u64,

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use contact_afu::afu::{Afu, Spec};
+use contact_afu::afu::{Afu, SearchModel, Spec};
 use contact_afu::config::{Config, Input, Results, Search, Shell};
 use contact_afu::cosim::Trace;
 use contact_afu::link::LinkModel;
@@ -70,7 +70,15 @@ fn any_size_of_the_search_gives_the_same() {
     let mut found: Vec<Vec<_>> = vec![Vec::new(); sets.len()];
     for (lanes, deciders, box_bits) in [(16, 1, 24), (64, 8, 18), (256, 16, 32)] {
         let search = Search { table: 2048, lanes, deciders, box_bits };
-        let bench = Bench::new(&config(search)).unwrap();
+        let config = config(search);
+        let bench = Bench::new(&config).unwrap();
+        // The model's cycles are those of the RTL, to 3 %.
+        for set in [sorted(set("gas:2000:0.3")), sorted(set("diamond:11")), set("probes:2000:2000")] {
+            let verdict = run(&bench, &set, "ideal", 1).unwrap();
+            let model = SearchModel::new(&config, &set).unwrap().predict(&config).unwrap();
+            let ratio = model.cycles as f64 / verdict.outcome.cycles as f64;
+            assert!((ratio - 1.0).abs() < 0.03, "{search:?}: {} cycles, predicted {model:?}", verdict.outcome.cycles);
+        }
         for (spheres, found) in sets.iter().zip(&mut found) {
             let verdict = run(&bench, spheres, "hostile", 2).unwrap();
             assert!(verdict.is_good(), "{search:?}: {:?}", verdict.failed_checks);
@@ -89,11 +97,39 @@ fn too_many_spheres_are_told_before_anything_runs() {
     assert!(error.contains("513 spheres") && error.contains("--table"), "{error}");
 }
 
+/// A configuration whose SCPUs compute every field of a contact.
+fn with_contacts(search: Search, scpus: u32, interval: u32) -> Config {
+    Config { contact: Fields::ALL, scpus, interval, ..config(search) }
+}
+
+#[test]
+fn contacts_come_with_all_their_fields() {
+    let search = Search { table: 2048, lanes: 64, deciders: 8, ..Search::default() };
+    for (search, scpus, interval) in [(search, 1, 1), (Search { lanes: 16, ..search }, 2, 5)] {
+        let bench = Bench::new(&with_contacts(search, scpus, interval)).unwrap();
+        let crowd = Spheres { first: vec![Sphere::new([1.0, 2.0, 3.0, 0.5]); 50], second: None };
+        for link in ["ideal", "hostile"] {
+            for spheres in [&sorted(set("gas:700:0.3")), &set("probes:100:300"), &tangents(), &crowd] {
+                let verdict = run(&bench, spheres, link, 4).unwrap();
+                assert!(verdict.is_good(), "{link}: {:?}", verdict.failed_checks);
+                assert_eq!(verdict.contacts.len(), verdict.hits.len());
+                assert!(verdict.contacts.iter().all(|contact| contact.is_contact() && contact.depth() >= 0.0));
+            }
+        }
+    }
+}
+
 /// Faults planted in the Verilog: what it is, the file, a text in it, and what stands there instead.
-const FAULTS: [(&str, &str, &str, &str); 8] = [
+const FAULTS: [(&str, &str, &str, &str); 9] = [
     ("a box is one unit too small", "sphere_box.v", "{1'b0, r[30:0]} + 32'd2", "{1'b0, r[30:0]} + 32'd1"),
     ("a lane is not wired", "contact_afu_near.v", "meets_3 <= &meets_3_by_side;", "meets_3 <= 1'b0;"),
     ("a comparison too few", "contact_afu_candidates.v", "meets_0_7 <= &meets_0_7_by_side;", "meets_0_7 <= 1'b0;"),
+    (
+        "a place by the wrong rank",
+        "bit_of_rank.v",
+        "6'd16: part_and_rank_word = 2'd2;",
+        "6'd16: part_and_rank_word = 2'd1;",
+    ),
     ("the last row is left out", "contact_afu_rows.v", "table_rows - 13'd1;", "table_rows - 13'd2;"),
     (
         "answers of another decider",
@@ -104,21 +140,42 @@ const FAULTS: [(&str, &str, &str, &str); 8] = [
     (
         "numbers of another row",
         "contact_afu_decider.v",
-        "about <= shares_oldest[19:8];",
-        "about <= shares_oldest[19:8] ^ 12'd1;",
+        "about <= shares_oldest[20:8];",
+        "about <= shares_oldest[20:8] ^ 13'd1;",
     ),
-    ("rows are kept too short", "contact_afu_loader.v", "~rows_inside[3])", "1'b1)"),
-    ("a queue has room that it has not", "queue_16x34_slack_8.v", "words_inside < 5'd7", "words_inside < 5'd17"),
+    ("rows are kept too short", "contact_afu_loader.v", "~rows_inside[4])", "1'b1)"),
+    ("a queue has room that it has not", "queue_32x50_slack_8.v", "words_inside < 6'd23", "words_inside < 6'd63"),
 ];
 
-/// Each fault is found in one of three jobs, by the hits, by the counts, or because the job does not end.
+/// The same where contacts come back.
+const FAULTS_OF_CONTACTS: [(&str, &str, &str, &str); 2] = [
+    (
+        "the two spheres are exchanged",
+        "contact_afu_resolver.v",
+        "{kept_spheres_word, table_spheres_word}",
+        "{table_spheres_word, kept_spheres_word}",
+    ),
+    (
+        "a contact more than there are SCPUs for",
+        "contact_afu.v",
+        "contact_queue_has_room & resolver_may_come",
+        "contact_queue_has_room",
+    ),
+];
+
+/// Each fault is found in one of four jobs, by the hits, by the counts, or because the job does not end.
 #[test]
 fn planted_faults_are_found() {
     let search = Search { table: 512, lanes: 16, deciders: 2, box_bits: 32 };
-    let afu = Afu::generate(Spec::from(config(search))).unwrap();
+    found(&config(search), &FAULTS);
+    found(&with_contacts(search, 1, 4), &FAULTS_OF_CONTACTS);
+}
+
+fn found(config: &Config, faults: &[(&str, &str, &str, &str)]) {
+    let afu = Afu::generate(Spec::from(config.clone())).unwrap();
     let crowd = Spheres { first: vec![Sphere::new([1.0, 2.0, 3.0, 0.5]); 300], second: None };
     let sets = [sorted(set("gas:500:0.4")), tangents(), set("probes:100:300"), crowd];
-    for (what, file, old, new) in FAULTS {
+    for &(what, file, old, new) in faults {
         let folder = tempfile::tempdir().unwrap();
         for (name, text) in afu.files() {
             let path = folder.path().join(&name);

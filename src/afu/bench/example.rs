@@ -2,8 +2,8 @@
 
 use crate::afu::Afu;
 use crate::config::Input;
-use crate::query::{Fields, Flow, PairRecord};
-use crate::record::{Line, pack, pack_contacts, pack_numbers, pack_spheres, unpack_pairs};
+use crate::query::{Flow, PairRecord};
+use crate::record::{Line, pack, pack_contacts, pack_hits, pack_spheres, unpack_pairs};
 use crate::spheres::{Search, Sphere};
 
 /// Spheres of which some touch, with an invalid one, in more than one row.
@@ -67,14 +67,13 @@ impl Example {
         let spheres = SPHERES.map(Sphere::new);
         // A configuration that is generated has a search, and the reference decides every pair.
         let search = Search::new(config.profile.arithmetic(), config.search.box_bits);
-        let found = search.map(|search| search.find(&mut config.profile.reference(Fields::HIT), &spheres, None));
+        let found = search.map(|search| search.find(&mut config.reference(), &spheres, None));
         let found = found.map(Result::unwrap_or_default).unwrap_or_default();
-        let hits: Vec<_> = found.hits.iter().map(|hit| hit.spheres).collect();
         Self {
             source: pack_spheres(&spheres),
-            expected: pack_numbers(&hits),
+            expected: pack_hits(&afu.layout(), &found.hits),
             count: spheres.len(),
-            contacts: hits.len(),
+            contacts: found.hits.len(),
             candidates: found.counts.candidates,
             invalid: spheres.iter().filter(|sphere| !sphere.is_valid()).count(),
             first_invalid: spheres.iter().position(|sphere| !sphere.is_valid()),

@@ -57,7 +57,7 @@ interface! {
         contacts: T => COUNT_BITS, match spec.config.results {
             Results::All => "contacts of the job so far",
             Results::Hits if spec.config.input == Input::Spheres => {
-                "contacts of the job so far: as many records, each the numbers of two spheres"
+                "contacts of the job so far: as many records, each beginning with the numbers of two spheres"
             }
             Results::Hits => "contacts of the job so far: as many records, each beginning with its pair's number",
         };

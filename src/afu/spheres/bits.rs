@@ -1,5 +1,6 @@
 //! Choosing among bits: the lowest set one, its number, how many there are.
 
+use super::ROW_BITS;
 use crate::hdl::Signal;
 
 /// Values that are chosen among, and bits that are counted, at once.
@@ -43,14 +44,27 @@ pub(super) fn every(all: Signal<'_>, from: u32, step: u32) -> Signal<'_> {
     Signal::join(&bits.into_iter().rev().collect::<Vec<_>>())
 }
 
-/// One of equally wide `values`, by a one-hot choice; zero if no bit is set. Parts of it have names.
+/// The place in its row of one of the spheres that are compared side by side. `places` are those of all, `None` if the
+/// whole row is compared; `sphere` says which one it is.
+pub(super) fn place_of<'g>(name: &str, places: Option<Signal<'g>>, sphere: Signal<'g>) -> Signal<'g> {
+    let Some(places) = places else { return sphere };
+    if places.width() == ROW_BITS {
+        return places;
+    }
+    let all: Vec<_> = (0..places.width() / ROW_BITS).map(|index| places.slice(index * ROW_BITS, ROW_BITS)).collect();
+    chosen(name, sphere.one_hot(), &all)
+}
+
+/// One of equally wide `values`, by a one-hot choice; zero if no bit is set. It and its parts have names.
 pub(super) fn chosen<'g>(name: &str, choice: Signal<'g>, values: &[Signal<'g>]) -> Signal<'g> {
     let mut parts: Vec<_> = values.iter().zip(0..).map(|(value, place)| value.gate(choice.bit(place))).collect();
     while parts.len() > 1 {
+        let is_one = parts.len() <= OF_A_GROUP as usize;
         let groups = parts.chunks(OF_A_GROUP as usize).enumerate().map(|(group, parts)| match parts {
             [only] => *only,
             [first, rest @ ..] => {
-                rest.iter().fold(*first, |all, part| all | *part).named(&format!("{name}_group_{group}"))
+                let name = if is_one { name.to_owned() } else { format!("{name}_group_{group}") };
+                rest.iter().fold(*first, |all, part| all | *part).named(&name)
             }
             [] => choice,
         });

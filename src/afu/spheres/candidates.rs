@@ -3,116 +3,146 @@
 
 use std::sync::Arc;
 
-use super::bits::{chosen, count, every, number};
+use super::bits::{count, every, number};
 use super::bounds::{CYCLES_TO_MEET, meet};
+use super::nth::{count_up_to_slices, cycles_to_count, cycles_to_nth, nth};
 use super::store::{CYCLES_TO_WORD, Store};
 use super::walk::{Item, later, walk};
-use super::{KEPT_ROWS, ROW, ROW_BITS, ROW_NUMBER_BITS, Sizes};
+use super::{KEPT_ROWS, ROW, ROW_BITS, ROW_NUMBER_BITS, SLACK, Sizes};
 use crate::afu::{COUNT_BITS, Spec};
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
-/// Cycles from a step to what it found.
-pub(super) const CYCLES: u32 = CYCLES_TO_WORD + CYCLES_TO_MEET + 1;
+/// Steps that are on the way when the queue behind has no room left still fit into it.
+const _: () = assert!(cycles_to_nth(1) + CYCLES_TO_WORD + CYCLES_TO_MEET < SLACK);
 
 /// Builds the module `contact_afu_candidates`.
 ///
-/// A step takes a chunk of the row that is searched: 1 to 16 spheres, side by side. What comes out is the number of
-/// the chunk, the other row, and a bit for each pair: 16 for each sphere of the chunk.
+/// A step takes some spheres of the row that is searched, 1 to 16 side by side: the next ones that are near the other
+/// row. What comes out is their places, the other row, and a bit for each pair: 16 for each of these spheres.
 pub(super) fn candidates(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new("contact_afu_candidates");
     graph.about("compares boxes of spheres with the boxes of a row");
     let compared = sizes.compared;
-    let chunks = ROW / compared;
     let box_bits = sizes.box_bits();
     let start = graph.input("start", 1);
     let run = graph.input("run", 1);
     let may_step = graph.input("may_step", 1);
-    let near = graph.input("item_mask", ROW);
+    let near = graph.input("item_near", ROW);
     let row = graph.input("item_row", ROW_NUMBER_BITS);
     let other = graph.input("item_other", sizes.row_bits);
     let last = graph.input("item_last", 1);
-    // A chunk is looked at if any sphere of it is near.
-    let looked_at = (0..chunks).rev().map(|chunk| near.slice(chunk * compared, compared).any()).collect::<Vec<_>>();
     let item = Item {
         valid: graph.input("item_valid", 1),
-        mask: Signal::join(&looked_at),
+        mask: graph.input("item_mask", sizes.turns()),
         about: Signal::join(&[near, row, other, last]),
     };
     let walk = walk(&graph, start, &item, may_step);
-    let other = walk.about.slice(1, sizes.row_bits).named("other_row");
-    let row = walk.about.slice(1 + sizes.row_bits, ROW_NUMBER_BITS).named("row_in_hand");
     let near = walk.about.high(ROW).named("near_spheres");
 
-    // The boxes of the chunk: a memory for each place in it.
+    // The places of the next spheres; all of a row stand side by side if so many are compared.
+    let is_row = sizes.places_bits() == 0;
+    let cycles_to_places = if is_row { 0 } else { cycles_to_nth(1) };
+    let cycles = cycles_to_places + CYCLES_TO_WORD + CYCLES_TO_MEET;
+    let places = if is_row {
+        (0..ROW).map(|place| graph.constant(ROW_BITS, place.into())).collect()
+    } else {
+        let turn = if sizes.turns() > 1 { number(walk.bit) } else { graph.constant(1, 0) };
+        let lanes = compared.ilog2();
+        let ranks: Vec<_> = (0..compared)
+            .map(|lane| if lanes == 0 { turn } else { turn.concat(graph.constant(lanes, lane.into())) })
+            .collect();
+        nth(&graph, "near", near, &[], &ranks)?
+    };
+    let near_count = count_up_to_slices("near_now", near)[0];
+    let turn = walk.bit.delay(cycles_to_count(1)).named("turn_counted");
+    let are_near: Vec<_> = (0..compared)
+        .map(|lane| {
+            if is_row {
+                return near.bit(lane).delay(cycles).named(&format!("is_near_{lane}"));
+            }
+            let reaches = (0..sizes.turns()).map(|turn_now| {
+                let rank = turn_now * compared + lane;
+                turn.bit(turn_now) & near_count.greater_than(near_count.same(rank.into()))
+            });
+            let reaches: Vec<_> = reaches.collect();
+            let there = Signal::join(&reaches).any().named(&format!("has_sphere_{lane}"));
+            there.delay(cycles - cycles_to_count(1)).named(&format!("is_near_{lane}"))
+        })
+        .collect();
+    let other = walk.about.slice(1, sizes.row_bits).delay(cycles_to_places).named("other_row");
+    let row = walk.about.slice(1 + sizes.row_bits, ROW_NUMBER_BITS).delay(cycles_to_places).named("row_in_hand");
+
+    // The boxes of these spheres: a memory for each.
     let kept = KEPT_ROWS.ilog2();
-    let (chunk_bits, place_bits) = (sizes.chunk_bits(), ROW_BITS - sizes.chunk_bits());
-    let column = graph.input("write_column", ROW_BITS);
+    let column = graph.input("write_column", sizes.loaded_bits());
     let write_own = graph.input("write_own", 1);
     let write_row = graph.input("write_row", ROW_NUMBER_BITS);
-    let write_box = graph.input("write_box", box_bits);
-    let chunk_in_hand = (chunk_bits > 0).then(|| number(walk.bit).named("chunk_in_hand"));
-    let place = with_chunk(row.low(kept), chunk_in_hand);
-    let write_place = with_chunk(write_row.low(kept), (chunk_bits > 0).then(|| column.high(chunk_bits)));
-    let own = Store::new(spec, kept + chunk_bits);
+    let write_boxes = sizes.of_loaded("write_box");
+    let write_boxes: Vec<_> = write_boxes.iter().map(|name| graph.input(name, box_bits)).collect();
+    let own = Store::new(spec, kept);
+    let own_columns = Store::new(spec, kept + sizes.loaded_bits());
     let mut mine = Vec::new();
-    for sphere in 0..compared {
-        let is_it = if place_bits == 0 { write_own } else { write_own & column.low(place_bits).is(sphere.into()) };
-        let write = is_it.named(&format!("writes_own_{sphere}"));
-        mine.push(own.column(&graph, &format!("own_{sphere}"), [write, write_place, write_box], place)?);
+    for (sphere, place) in (0..compared).zip(&places) {
+        let name = format!("own_{sphere}");
+        let (kept_row, write_kept) = (row.low(kept), write_row.low(kept));
+        mine.push(if is_row {
+            let (is_loaded, side) = sizes.is_loaded(column, sphere);
+            let write = (write_own & is_loaded).named(&format!("writes_own_{sphere}"));
+            own.column(&graph, &name, [write, write_kept, write_boxes[side]], kept_row)?
+        } else {
+            let place = (kept_row, *place);
+            own_columns.sides(&graph, &name, (write_own, write_kept.concat(column)), &write_boxes, place)?
+        });
     }
     let store = Store::new(spec, sizes.row_bits);
-    let write = column.one_hot().gate(graph.input("write", 1)).named("writes_column");
+    let write = graph.input("write", 1);
     let mut others = Vec::new();
-    for column in 0..ROW {
-        let name = format!("column_{column}");
-        others.push(store.column(
-            &graph,
-            &name,
-            [write.bit(column), write_row.low(sizes.row_bits), write_box],
-            other,
-        )?);
+    for place in 0..ROW {
+        let (is_loaded, side) = sizes.is_loaded(column, place);
+        let write = (write & is_loaded).named(&format!("writes_column_{place}"));
+        let writes = [write, write_row.low(sizes.row_bits), write_boxes[side]];
+        others.push(store.column(&graph, &format!("column_{place}"), writes, other)?);
     }
 
     // Within a row each pair comes once: the first sphere is the one with the lower number.
     let one_set = graph.input("one_set", 1);
-    let same = (one_set & other.equals(row.low(sizes.row_bits))).delay(CYCLES - 1).named("is_same_row");
-    let bit_late = walk.bit.delay(CYCLES - 1).named("chunk_compared");
-    let near_late = near.delay(CYCLES - 1).named("near_compared");
+    let compared_cycles = CYCLES_TO_WORD + CYCLES_TO_MEET;
+    let same = (one_set & other.equals(row.low(sizes.row_bits))).delay(compared_cycles).named("is_same_row");
+    let places: Vec<_> = places
+        .iter()
+        .zip(0..)
+        .map(
+            |(place, lane)| {
+                if is_row { *place } else { place.delay(compared_cycles).named(&format!("place_compared_{lane}")) }
+            },
+        )
+        .collect();
     let mut pairs = Vec::new();
     for sphere in 0..compared {
-        let bounds = mine[sphere as usize];
+        let (bounds, place) = (mine[sphere as usize], places[sphere as usize]);
         let meets =
             (0..ROW).rev().map(|column| meet(bounds, others[column as usize], &format!("meets_{sphere}_{column}")));
         let meets = Signal::join(&meets.collect::<Vec<_>>());
         // The sphere's place in its row decides which columns of the same row are before it.
-        let before = chosen(
-            &format!("before_{sphere}"),
-            bit_late,
-            &(0..chunks)
-                .map(|chunk| {
-                    let place = chunk * compared + sphere;
-                    graph.constant(ROW, (1_u128 << place) - 1)
-                })
-                .collect::<Vec<_>>(),
-        );
-        let near: Vec<_> = (0..chunks).map(|chunk| near_late.bit(chunk * compared + sphere)).collect();
-        let is_near = chosen(&format!("is_near_{sphere}"), bit_late, &near);
+        let before: Vec<_> = (0..ROW).rev().map(|column| place.greater_than(place.same(column.into()))).collect();
+        let before = Signal::join(&before).named(&format!("before_{sphere}"));
         let allowed = before | (!same).repeat(ROW);
-        pairs.push((meets & allowed).gate(is_near).named(&format!("candidates_{sphere}")));
+        pairs.push((meets & allowed).gate(are_near[sphere as usize]).named(&format!("candidates_{sphere}")));
     }
     pairs.reverse();
     let pairs = Signal::join(&pairs).named("candidates");
-    let stepped = later(start, walk.steps, CYCLES - 1, "stepped");
-    let ends = (walk.is_last & walk.about.bit(0)).delay(CYCLES - 1).named("ends_row");
+    let stepped = later(start, walk.steps, cycles, "stepped");
+    let ends = (walk.is_last & walk.about.bit(0)).delay(cycles).named("ends_row");
     let puts = (stepped & (pairs.any() | ends)).named("puts");
     let put = (puts & !start).registered("put");
     let pairs = pairs.delay(1).named("pairs");
     graph.output("takes", walk.takes);
     graph.output("put", put);
-    graph.output("row", row.delay(CYCLES).named("row"));
-    graph.output("other", other.delay(CYCLES).named("other"));
-    if let Some(chunk) = chunk_in_hand {
-        graph.output("chunk", chunk.delay(CYCLES).named("chunk"));
+    graph.output("row", row.delay(compared_cycles + 1).named("row"));
+    graph.output("other", other.delay(compared_cycles + 1).named("other"));
+    if !is_row {
+        let places: Vec<_> = places.iter().rev().map(|place| place.delay(1)).collect();
+        graph.output("places", Signal::join(&places).named("places"));
     }
     graph.output("last", ends.delay(1).named("last"));
     // Column j belongs to decider j mod D.
@@ -133,9 +163,4 @@ pub(super) fn candidates(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, Buil
     total.next(start.select(total.same(0), total.value() + found.extend(COUNT_BITS)));
     graph.output("candidates", total.value());
     graph.finish()
-}
-
-/// The place of a chunk of a row; there may be one alone.
-fn with_chunk<'g>(row: Signal<'g>, chunk: Option<Signal<'g>>) -> Signal<'g> {
-    chunk.map_or(row, |chunk| row.concat(chunk))
 }

@@ -3,38 +3,38 @@
 
 use std::sync::Arc;
 
-use super::bits::number;
+use super::bits::{number, place_of};
 use super::bounds::SPHERE_BITS;
 use super::queue::queue;
 use super::store::{CYCLES_TO_WORD, Store};
 use super::walk::{Item, later, walk};
-use super::{KEPT_ROWS, ROW_BITS, SLACK, Sizes, UNDECIDED};
+use super::{KEPT_ROWS, SLACK, Sizes};
 use crate::afu::Spec;
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
 use crate::query::Query;
 
 /// Builds the module `contact_afu_decider` around a kernel of `--contact hit`.
 ///
-/// A share is a bit for each pair of a sphere of the chunk with a column of this decider. The answer to a share that
-/// is not zero comes in the order of the shares.
+/// A share is a bit for each pair of a sphere that was compared with a column of this decider. The answer to a
+/// share that is not zero comes in the order of the shares.
 pub(super) fn decider(spec: &Spec, sizes: &Sizes, kernel: &Arc<Module>) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new("contact_afu_decider");
     graph.about("decides which candidates touch: those with the columns of this decider");
-    let (share_bits, column_bits, chunk_bits) = (sizes.share(), sizes.column_bits(), sizes.chunk_bits());
+    let (share_bits, column_bits, places_bits) = (sizes.share(), sizes.column_bits(), sizes.places_bits());
     let start = graph.input("start", 1);
     let kept_bits = KEPT_ROWS.ilog2();
     let put = graph.input("put", 1);
     let share = graph.input("share", share_bits);
     let kept = graph.input("kept", kept_bits);
     let row = graph.input("row", sizes.row_bits);
-    let chunk = (chunk_bits > 0).then(|| graph.input("chunk", chunk_bits));
-    let about: Vec<_> = [kept].into_iter().chain(chunk).chain([row]).collect();
+    let places = (places_bits > 0).then(|| graph.input("places", places_bits));
+    let about: Vec<_> = [kept].into_iter().chain(places).chain([row]).collect();
     let about = Signal::join(&about);
     let about_bits = about.width();
 
     // Shares wait here. There are never more than steps that are not joined yet.
     let always = graph.constant(1, 1);
-    let shares = queue(UNDECIDED, share_bits + about_bits, SLACK)?;
+    let shares = queue(sizes.undecided, share_bits + about_bits, SLACK)?;
     let takes = graph.wire("takes", 1);
     let inputs = [("start", start), ("put", put), ("word", about.concat(share)), ("take", takes)];
     let waiting = graph.instance("shares", &shares, &inputs);
@@ -48,29 +48,23 @@ pub(super) fn decider(spec: &Spec, sizes: &Sizes, kernel: &Arc<Module>) -> Resul
     let bit = number(walk.bit).named("candidate");
     let own_row = walk.about.low(sizes.row_bits);
     let other = if column_bits > 0 { own_row.concat(bit.low(column_bits)) } else { own_row };
-    let mut place: Vec<Signal<'_>> = vec![walk.about.high(kept_bits)];
-    if chunk_bits > 0 {
-        place.push(walk.about.slice(sizes.row_bits, chunk_bits));
-    }
-    if sizes.compared > 1 {
-        place.push(bit.slice(column_bits, ROW_BITS - chunk_bits));
-    }
-    let own = Signal::join(&place);
-    let sphere = graph.input("write_sphere", SPHERE_BITS);
-    let column = graph.input("write_column", ROW_BITS);
+    let places = (places_bits > 0).then(|| walk.about.slice(sizes.row_bits, places_bits));
+    let sphere = if sizes.compared > 1 { bit.drop_low(column_bits) } else { bit };
+    let place = place_of("place", places, sphere);
+    let spheres = sizes.of_loaded("write_sphere");
+    let spheres: Vec<_> = spheres.iter().map(|name| graph.input(name, SPHERE_BITS)).collect();
+    let of_columns = graph.input("write_sphere_of_column", SPHERE_BITS);
+    let column = graph.input("write_column", sizes.loaded_bits());
     let [write_table, write_kept] = ["write_table", "write_kept"].map(|name| graph.input(name, 1));
     let write_row = graph.input("write_row", sizes.row_bits);
     let write_place = if column_bits > 0 { write_row.concat(column.high(column_bits)) } else { write_row };
     let table = Store::new(spec, sizes.decider_bits());
-    let first = table.column(&graph, "columns", [write_table, write_place, sphere], other.named("place_in_table"))?;
+    let first =
+        table.column(&graph, "columns", [write_table, write_place, of_columns], other.named("place_in_table"))?;
     let write_own = graph.input("write_kept_row", kept_bits).concat(column);
-    let own_bits = kept_bits + ROW_BITS;
-    let second = Store::new(spec, own_bits).column(
-        &graph,
-        "rows",
-        [write_kept, write_own, sphere],
-        own.named("place_in_rows"),
-    )?;
+    let rows = Store::new(spec, kept_bits + sizes.loaded_bits());
+    let own = (walk.about.high(kept_bits).named("row_in_hand"), place.named("place_in_row"));
+    let second = rows.sides(&graph, "rows", (write_kept, write_own), &spheres, own)?;
 
     // The pair of both, and the decision.
     let word_bits = SPHERE_BITS / 4;
@@ -96,7 +90,7 @@ pub(super) fn decider(spec: &Spec, sizes: &Sizes, kernel: &Arc<Module>) -> Resul
     let hits_now = fresh.select(bit_then.gate(hit), now).named("answer_now");
     hits.next_if(decided, hits_now);
     fresh.next(start | decided.select(is_last, *fresh));
-    let answers = queue(UNDECIDED, share_bits, SLACK)?;
+    let answers = queue(sizes.undecided, share_bits, SLACK)?;
     let inputs = [
         ("start", start),
         ("put", (ends & !start).registered("answer_comes")),

@@ -1,16 +1,16 @@
-//! The loader: takes spheres from lines, one per cycle, and gives each its box. A row that is searched begins only
-//! where fewer rows are inside than can be kept.
+//! The loader: takes spheres from lines, one or two per cycle, and gives each its box. A row that is searched
+//! begins only where fewer rows are inside than can be kept.
 
 use std::sync::Arc;
 
-use super::bits::chosen;
+use super::bits::{chosen, count as number_of};
 use super::bounds::{SPHERE_BITS, sphere_box};
 use super::walk::later;
 use super::{KEPT_ROWS, ROW_BITS, ROW_NUMBER_BITS, Sizes};
 use crate::afu::counter::{up_down, waiting};
 use crate::afu::lines::CYCLES_TO_WORD;
 use crate::afu::{COUNT_BITS, Spec};
-use crate::hdl::{BuildErrors, Graph, Module};
+use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
 /// Builds the module `contact_afu_loader`.
 pub(super) fn loader(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, BuildErrors> {
@@ -39,7 +39,7 @@ pub(super) fn loader(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, BuildErr
     let second = graph.register("is_second_set", 1, 0);
     let left = graph.register("spheres_left", COUNT_BITS, 0);
     let row = graph.register("row_now", ROW_NUMBER_BITS, 0);
-    let column = graph.register("column_now", ROW_BITS, 0);
+    let column = graph.register("column_now", sizes.loaded_bits(), 0);
     let any_left = left.any().named("any_left");
     let searched = (!has_others | *second).named("is_searched");
     // A row that is searched needs a place among the rows that are kept.
@@ -49,7 +49,7 @@ pub(super) fn loader(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, BuildErr
     let goes = (run & *line_waits & any_left & (column.any() | may_begin)).named("goes");
     let begins = (goes & searched & !column.any()).named("row_begins");
     let row_loaded = (goes & column.all()).named("row_loaded");
-    let per_line_bits = per_line.ilog2();
+    let per_line_bits = (per_line / sizes.loaded).ilog2();
     line_ends.drive(goes & column.low(per_line_bits).all());
     up_down(inside, start, begins, row_ends);
     column.next_if(start | goes, start.select(column.same(0), column.plus(1)));
@@ -61,27 +61,37 @@ pub(super) fn loader(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, BuildErr
     left.next_if(start | row_loaded | turns, start.select(first_left, turns.select(others, behind_row)));
     second.next(start.select(keeps_table, *second | turns));
     row.next_if(start | row_loaded | turns, (start | turns).select(row.same(0), row.plus(1)));
-    let present = (more | left.low(ROW_BITS).greater_than(column.value())).named("is_present");
+    let present: Vec<_> = (0..sizes.loaded)
+        .zip(sizes.of_loaded("is_present"))
+        .map(|(side, name)| {
+            let place = if sizes.loaded == 1 { column.value() } else { column.concat(graph.constant(1, side.into())) };
+            (more | left.low(ROW_BITS).greater_than(place)).named(&name)
+        })
+        .collect();
 
     // The line in the collector's memory.
     let head = graph.register("head", slot_bits, 0);
     head.next_if(start | line_ends, start.select(head.same(0), head.plus(1)));
     let word = column.low(per_line_bits).delay(CYCLES_TO_WORD).named("word");
-    let parts: Vec<_> = (0..per_line).map(|part| line.slice(part * SPHERE_BITS, SPHERE_BITS)).collect();
-    let sphere = chosen("sphere", word.one_hot(), &parts).delay(1).named("sphere_now");
-    let cycles = CYCLES_TO_WORD + 1;
-    let bounds = graph.instance(
-        "unit",
-        &unit,
-        &[("sphere", sphere), ("present", present.delay(cycles).named("sphere_is_present"))],
-    );
+    let together = sizes.loaded * SPHERE_BITS;
+    let parts: Vec<_> = (0..per_line / sizes.loaded).map(|part| line.slice(part * together, together)).collect();
+    let spheres_now = chosen("sphere", word.one_hot(), &parts).delay(1).named("spheres_now");
+    let to_unit = CYCLES_TO_WORD + 1;
+    let cycles = to_unit + unit.latency;
+    let mut invalid = Vec::new();
+    for (side, present) in (0..sizes.loaded).zip(&present) {
+        let name = |name: &str| sizes.of_loaded(name).swap_remove(side as usize);
+        let sphere = spheres_now.slice(side * SPHERE_BITS, SPHERE_BITS);
+        let there = present.delay(to_unit).named(&name("sphere_is_present"));
+        let bounds = graph.instance(&name("unit"), &unit, &[("sphere", sphere), ("present", there)]);
+        graph.output(&name("box"), bounds.output("box"));
+        graph.output(&name("sphere"), sphere.delay(unit.latency).named(&name("sphere_then")));
+        invalid.push(bounds.output("invalid"));
+    }
 
     // All that belongs to a sphere arrives with its box.
-    let cycles = cycles + unit.latency;
     let valid = later(start, goes, cycles, "on_the_way");
     graph.output("valid", valid);
-    graph.output("box", bounds.output("box"));
-    graph.output("sphere", sphere.delay(unit.latency).named("sphere_then"));
     graph.output("column", column.delay(cycles).named("column_then"));
     graph.output("row", row.delay(cycles).named("row_then"));
     graph.output("searched", searched.delay(cycles).named("searched_then"));
@@ -91,21 +101,33 @@ pub(super) fn loader(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, BuildErr
     graph.output("taken", taken);
 
     // The status.
-    let invalid = (run & valid & bounds.output("invalid")).named("is_invalid");
+    let told = (run & valid).named("tells");
+    let are_invalid = Signal::join(&invalid.iter().rev().copied().collect::<Vec<_>>()).gate(told).named("are_invalid");
     let count = graph.register("invalid_count", COUNT_BITS, 0);
     let passed = graph.register("spheres_passed", COUNT_BITS, 0);
     let first = graph.register("first_invalid_sphere", COUNT_BITS, u128::from(u32::MAX));
     let none_yet = graph.register("none_invalid", 1, 1);
-    let counted = (run & valid & present.delay(cycles)).named("is_counted");
-    passed.next_if(start | counted, start.select(passed.same(0), passed.plus(1)));
-    count.next_if(start | invalid, start.select(count.same(0), count.plus(1)));
-    first.next_if(start | (invalid & *none_yet), start.select(first.same(u128::from(u32::MAX)), passed.value()));
+    let present: Vec<_> = present.iter().rev().map(|present| present.delay(cycles)).collect();
+    let counted = Signal::join(&present).gate(told).named("are_counted");
+    passed.next_if(
+        start | told,
+        start.select(passed.same(0), passed.value() + number_of("passing_now", counted).extend(COUNT_BITS)),
+    );
+    count.next_if(
+        start | told,
+        start.select(count.same(0), count.value() + number_of("invalid_now", are_invalid).extend(COUNT_BITS)),
+    );
+    let invalid = are_invalid.any().named("any_invalid");
+    // The first of two is not the invalid one if its bit is not set.
+    let place =
+        if sizes.loaded == 1 { passed.value() } else { passed.value() + (!are_invalid.bit(0)).extend(COUNT_BITS) };
+    first.next_if(start | (invalid & *none_yet), start.select(first.same(u128::from(u32::MAX)), place));
     none_yet.next(start | (*none_yet & !invalid));
     graph.output("invalid", count.value());
     graph.output("first_invalid", first.value());
     let set_ended = (!any_left & (!has_others | *second)).named("set_ended");
     // The last sphere is still on its way to its box, and then to its row, for a few cycles.
-    let passing = later(start, goes, cycles + 4, "passing");
+    let passing = later(start, goes, cycles + 3 + sizes.loaded, "passing");
     let on_the_way = graph.register("spheres_on_the_way", COUNT_BITS.ilog2() + 1, 0);
     up_down(on_the_way, start, goes, passing);
     let ended = set_ended & !inside.any() & !on_the_way.any() & !goes;

@@ -1,9 +1,11 @@
 //! Spheres in, contacts out: the search of [`crate::spheres`] in hardware.
 //!
 //! Data flows one way: collector → loader (spheres, their boxes) → rows (the boxes of a row, of 16 rows) → groups →
-//! rows of groups → near (each sphere of the row against another row's box) → candidates (box against box) → deciders
-//! (the kernel) → hits. Between two stages there is a queue. A row ends with a token in order through all of them.
+//! rows of groups → near (each sphere of the row against another row's box) → candidates (box against box) →
+//! deciders (the kernel) → hits → resolver (contacts, if they are asked for). Between two stages there is a queue.
+//! A row ends with a token in order through all of them.
 
+mod between;
 mod bits;
 mod bounds;
 mod candidates;
@@ -11,8 +13,11 @@ mod decider;
 mod hits;
 mod level;
 mod loader;
+mod model;
 mod near;
+mod nth;
 mod queue;
+mod resolver;
 mod rows;
 mod store;
 #[cfg(test)]
@@ -21,9 +26,11 @@ mod top;
 mod walk;
 
 pub(super) use bounds::SPHERE_BITS;
+pub use model::{PredictError, Predicted, SearchModel};
 pub(super) use top::spheres_top;
 
 use crate::config::Config;
+use crate::hdl::Signal;
 use crate::spheres::{BoundsRule, ROW as ROW_LENGTH, RefusedArithmetic};
 
 /// Spheres of a row, rows of a group, boxes of a word.
@@ -35,13 +42,13 @@ const NUMBER_BITS: u32 = 16;
 /// Bits of the number of a row.
 const ROW_NUMBER_BITS: u32 = NUMBER_BITS - ROW_BITS;
 /// Rows that are searched or wait for it, at most: their spheres are kept beside the deciders.
-const KEPT_ROWS: u32 = 8;
+const KEPT_ROWS: u32 = 16;
 /// Words of a queue between two stages of the search.
 const QUEUE: u32 = 16;
+/// Words of a queue before a stage whose steps find little for some items and much for others.
+const LONG_QUEUE: u32 = 32;
 /// Of these, as many as can come after a stage was told to stop.
 const SLACK: u32 = 8;
-/// Steps of the last stage whose decisions are not joined yet, at most.
-const UNDECIDED: u32 = 32;
 
 /// Widths and numbers of the parts.
 #[derive(Clone, Copy, Debug)]
@@ -56,7 +63,17 @@ struct Sizes {
     /// Spheres whose boxes are compared with those of a row in a cycle.
     compared: u32,
     deciders: u32,
+    /// Spheres that are loaded in a cycle, side by side: 1 or 2.
+    loaded: u32,
+    /// Steps of the last comparison whose decisions are not joined yet, at most. So many even out how many candidates
+    /// the deciders get.
+    undecided: u32,
 }
+
+/// With so many lanes, two spheres are loaded in a cycle.
+const LANES_FOR_TWO: u32 = 64;
+/// Least and most steps that are not decided. A decision takes some 35 cycles.
+const UNDECIDED: std::ops::RangeInclusive<u32> = 64..=256;
 
 impl Sizes {
     fn of(config: &Config) -> Result<Self, RefusedArithmetic> {
@@ -71,6 +88,9 @@ impl Sizes {
             top_bits: above(group_bits),
             compared: config.search.lanes / ROW,
             deciders: config.search.deciders,
+            // Few lanes are slower than one sphere per cycle, and one decider has the spheres of all columns.
+            loaded: if config.search.lanes >= LANES_FOR_TWO && config.search.deciders > 1 { 2 } else { 1 },
+            undecided: (4 * config.search.lanes).clamp(*UNDECIDED.start(), *UNDECIDED.end()),
         })
     }
 
@@ -79,9 +99,33 @@ impl Sizes {
         6 * self.rule.bits()
     }
 
-    /// Bits of the number of a part of a row that is compared in a cycle; 0 if it is the whole row.
-    fn chunk_bits(&self) -> u32 {
-        (ROW / self.compared).ilog2()
+    /// The names of what belongs to each sphere that is loaded in a cycle.
+    fn of_loaded(&self, name: &str) -> Vec<String> {
+        if self.loaded == 1 {
+            vec![name.to_owned()]
+        } else {
+            (0..self.loaded).map(|side| format!("{name}_{side}")).collect()
+        }
+    }
+
+    /// Bits of the number of the column, or the two columns side by side, that are loaded in a cycle.
+    fn loaded_bits(&self) -> u32 {
+        ROW_BITS - self.loaded.ilog2()
+    }
+
+    /// Whether `column` is among those of the number `loaded`, and which of them it is.
+    fn is_loaded<'g>(&self, loaded: Signal<'g>, column: u32) -> (Signal<'g>, usize) {
+        (loaded.is((column / self.loaded).into()), (column % self.loaded) as usize)
+    }
+
+    /// Bits of the places in their row of the spheres that are compared in a cycle; 0 if these are all.
+    fn places_bits(&self) -> u32 {
+        if self.compared == ROW { 0 } else { self.compared * ROW_BITS }
+    }
+
+    /// Steps that compare the spheres of a row, at most.
+    fn turns(&self) -> u32 {
+        ROW / self.compared
     }
 
     /// Bits of a sphere's place in the memory of its decider.

@@ -18,12 +18,25 @@ pub(super) fn rows(sizes: &Sizes) -> Result<Arc<Module>, BuildErrors> {
     let start = graph.input("start", 1);
     let keeps_table = graph.input("keeps_table", 1);
     let has_others = graph.input("has_others", 1);
-    let valid = graph.input("valid", 1);
-    let bounds = graph.input("box", sizes.box_bits());
-    let column = graph.input("column", ROW_BITS);
-    let row = graph.input("row", ROW_NUMBER_BITS);
-    let searched = graph.input("searched", 1);
-    let to_table = graph.input("to_table", 1);
+    let boxes: Vec<_> = sizes.of_loaded("box").iter().map(|name| graph.input(name, sizes.box_bits())).collect();
+    let [valid, searched, to_table] = ["valid", "searched", "to_table"].map(|name| graph.input(name, 1));
+    let of_boxes = [valid, graph.input("column", sizes.loaded_bits()), graph.input("row", ROW_NUMBER_BITS)];
+    // Two boxes are joined a cycle before the row takes them in.
+    let [valid, column, row, searched, to_table, bounds] = match *boxes {
+        [first, second] => {
+            let both = Edges::of(first).around(Edges::of(second), valid.same(0)).delay(1).named("around_two");
+            let [_, column, row] = of_boxes;
+            [
+                later(start, valid, 1, "two_come"),
+                column.delay(1).named("column_of_two"),
+                row.delay(1).named("row_of_two"),
+                searched.delay(1).named("two_are_searched"),
+                to_table.delay(1).named("two_are_of_table"),
+                both,
+            ]
+        }
+        _ => [valid, of_boxes[1], of_boxes[2], searched, to_table, boxes[0]],
+    };
 
     let around = graph.data_register("around", sizes.box_bits());
     let is_first = (!column.any()).named("is_first_column");

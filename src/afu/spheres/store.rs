@@ -58,4 +58,25 @@ impl<'a> Store<'a> {
             Access { write, write_index: write_place, line: word, read: always, read_index: place, advance: always };
         line_memory(graph, self.spec, name, self.depth, &access)
     }
+
+    /// A memory of the spheres of rows, which are written side by side where `writes` (enable, place) says: the word of
+    /// the sphere at `place` (row, column) two cycles ago.
+    pub(super) fn sides<'g>(
+        &self,
+        graph: &'g Graph,
+        name: &str,
+        (write, write_place): (Signal<'g>, Signal<'g>),
+        words: &[Signal<'g>],
+        (row, column): (Signal<'g>, Signal<'g>),
+    ) -> Result<Signal<'g>, BuildErrors> {
+        let [_, _] = words else {
+            return self.column(graph, name, [write, write_place, words[0]], row.concat(column));
+        };
+        let place = row.concat(column.drop_low(1));
+        let mut sides = Vec::new();
+        for (word, side) in words.iter().zip(["even", "odd"]) {
+            sides.push(self.column(graph, &format!("{name}_{side}"), [write, write_place, *word], place)?);
+        }
+        Ok(column.bit(0).delay(CYCLES_TO_WORD).named(&format!("{name}_is_odd")).select(sides[1], sides[0]))
+    }
 }

@@ -5,7 +5,8 @@ use std::collections::VecDeque;
 use super::super::{Afu, Spec};
 use crate::config::{Config, Input, Results, Search as Sizes, Shell};
 use crate::hdl::Evaluator;
-use crate::query::Fields;
+use crate::query::{ContactRecord, Fields};
+use crate::record::{Contacts, Layout, Line};
 use crate::spheres::{Search, Sphere, SphereSet, Spheres, hilbert_order, reorder};
 
 fn config(search: Sizes) -> Config {
@@ -23,6 +24,8 @@ fn config(search: Sizes) -> Config {
 #[derive(Debug, Default, PartialEq, Eq)]
 struct Outcome {
     hits: Vec<[u32; 2]>,
+    /// The contacts, as far as the configuration has them.
+    contacts: Vec<ContactRecord>,
     candidates: u64,
     invalid: u64,
     first_invalid: u32,
@@ -39,6 +42,7 @@ enum Stop {
 /// A core with memory at its line port: lines are answered after a few cycles.
 struct Bench {
     unit: Evaluator,
+    layout: Layout,
     epoch: u128,
     /// Stages, and the cycles in which each had something to do and no room for it.
     waits: Vec<(&'static str, u64)>,
@@ -49,7 +53,8 @@ struct Bench {
 impl Bench {
     fn new(config: &Config) -> Self {
         let afu = Afu::generate(Spec::from(config.clone())).expect("an AFU");
-        Self { unit: Evaluator::new(afu.top(), &[]).expect("an evaluator"), epoch: 0, waits: Vec::new(), write_pace: 1 }
+        let unit = Evaluator::new(afu.top(), &[]).expect("an evaluator");
+        Self { unit, layout: afu.layout(), epoch: 0, waits: Vec::new(), write_pace: 1 }
     }
 
     fn run(&mut self, mode: u128, first: &[Sphere], second: &[Sphere]) -> Outcome {
@@ -145,12 +150,17 @@ impl Bench {
             assert_eq!(counts.map(|port| unit.get(port)), told, "a job that has ended counts nothing");
             return Outcome { error, ..Outcome::default() };
         }
-        let words = written.iter().flatten().flat_map(|word| [*word as u32, (*word >> 32) as u32]);
-        let words: Vec<u32> = words.collect();
-        assert_eq!(words.len(), contacts.div_ceil(16) * 16);
-        assert!(words[contacts..].iter().all(|word| *word == 0), "a last line ends with zeros");
+        let line = |words: &Vec<u64>| -> Option<Line> {
+            Some(std::array::from_fn(|place| (words[place / 2] >> (32 * (place % 2))) as u32))
+        };
+        let lines: Vec<_> = written.iter().map(line).collect();
+        assert_eq!(lines.len() as u64, self.layout.destination_lines(contacts as u64));
+        let stored = Contacts::new(&self.layout, &lines);
+        assert!(stored.rest_is_zero(contacts), "a last line ends with zeros");
+        let (numbers, contacts): (Vec<_>, Vec<_>) = (0..contacts).map(|hit| stored.hit(hit).expect("a hit")).unzip();
         Outcome {
-            hits: words[..contacts].iter().map(|word| [word & 0xFFFF, word >> 16]).collect(),
+            hits: numbers.into_iter().map(|numbers| [numbers & 0xFFFF, numbers >> 16]).collect(),
+            contacts,
             candidates: unit.get("candidates") as u64,
             invalid: unit.get("invalid") as u64,
             first_invalid: unit.get("first_invalid") as u32,
@@ -162,11 +172,13 @@ impl Bench {
 /// What the software finds.
 fn expected(config: &Config, first: &[Sphere], second: Option<&[Sphere]>) -> Outcome {
     let search = Search::new(config.profile.arithmetic(), config.search.box_bits).expect("a search");
-    let found = search.find(&mut config.profile.reference(Fields::HIT), first, second).expect("found");
+    let found = search.find(&mut config.profile.reference(config.contact), first, second).expect("found");
+    let layout = Spec::from(config.clone()).layout();
     let all = first.iter().chain(second.unwrap_or_default());
     let invalid = all.clone().position(|sphere| !sphere.is_valid());
     Outcome {
         hits: found.hits.iter().map(|hit| hit.spheres).collect(),
+        contacts: found.hits.iter().map(|hit| Contacts::new(&layout, &[]).as_stored(hit.contact)).collect(),
         candidates: found.counts.candidates,
         invalid: found.counts.invalid,
         first_invalid: invalid.map_or(u32::MAX, |place| place as u32),
@@ -176,7 +188,13 @@ fn expected(config: &Config, first: &[Sphere], second: Option<&[Sphere]>) -> Out
 
 fn check(bench: &mut Bench, config: &Config, first: &[Sphere], second: Option<&[Sphere]>) {
     let got = bench.run(second.is_some().into(), first, second.unwrap_or_default());
-    assert_eq!(got, expected(config, first, second));
+    let want = expected(config, first, second);
+    let differs = got.hits.iter().zip(&want.hits).position(|(got, want)| got != want);
+    assert_eq!((got.hits.len(), differs), (want.hits.len(), None), "the first hit that differs");
+    let differs = got.contacts.iter().zip(&want.contacts).position(|(got, want)| got != want);
+    let both = differs.map(|hit| (hit, want.hits[hit], got.contacts[hit], want.contacts[hit]));
+    assert_eq!(both, None, "the first contact that differs, of contact {}", config.contact);
+    assert_eq!(got, want);
 }
 
 fn sorted(spheres: Spheres) -> Spheres {
@@ -196,6 +214,38 @@ fn a_set_is_searched_as_the_software_does() {
     }
 }
 
+/// Contacts beside the numbers: with SCPUs for one per cycle, for fewer, and for those that share operators.
+#[test]
+fn contacts_are_resolved_in_the_order_of_their_hits() {
+    for (contact, lanes, deciders, scpus, interval) in [
+        ("hit,depth,normal,position", 16, 4, 1, 1),
+        ("depth", 64, 2, 10, 3),
+        ("normal", 16, 1, 1, 4),
+        ("depth", 32, 4, 2, 2),
+        ("hit,depth,normal,position", 256, 16, 2, 5),
+    ] {
+        let config = Config {
+            contact: contact.parse().expect("fields"),
+            scpus,
+            interval,
+            ..config(Sizes { table: 512, lanes, deciders, ..Sizes::default() })
+        };
+        let mut bench = Bench::new(&config);
+        for pace in [1, 9] {
+            bench.write_pace = pace;
+            check(&mut bench, &config, &odd(300, 1), None);
+            // Every pair touches, and half of the centres coincide.
+            check(&mut bench, &config, &[Sphere::new([1.0, 2.0, 3.0, 0.5]); 40], None);
+            check(&mut bench, &config, &odd(200, 2), Some(&odd(150, 3)));
+        }
+        // What a job leaves behind when it is stopped does not come out in the next one.
+        for cycle in (0..900).step_by(97) {
+            bench.run_until(0, &odd(200, 4), &[], Some(Stop::Abort(cycle)));
+            check(&mut bench, &config, &odd(60, 5), None);
+        }
+    }
+}
+
 /// Spheres at random, some of them invalid, some infinite in size, some in one place.
 fn odd(count: usize, seed: u64) -> Vec<Sphere> {
     use rand::{Rng, SeedableRng};
@@ -211,41 +261,57 @@ fn odd(count: usize, seed: u64) -> Vec<Sphere> {
     (0..count).map(&mut sphere).collect()
 }
 
+/// With one and with two spheres that are loaded in a cycle.
+const BOTH_LOADERS: [(u32, u32); 2] = [(32, 2), (64, 4)];
+
 #[test]
 fn small_odd_and_full_sets_come_out_right() {
-    let config = config(Sizes { table: 512, lanes: 32, deciders: 2, ..Sizes::default() });
-    let mut bench = Bench::new(&config);
-    for count in [0, 1, 15, 16, 17, 40, 255, 256, 257, 300, 511, 512] {
-        check(&mut bench, &config, &odd(count, count as u64), None);
+    for (lanes, deciders) in BOTH_LOADERS {
+        let config = config(Sizes { table: 512, lanes, deciders, ..Sizes::default() });
+        let mut bench = Bench::new(&config);
+        for count in [0, 1, 15, 16, 17, 40, 255, 256, 257, 300, 511, 512] {
+            check(&mut bench, &config, &odd(count, count as u64), None);
+        }
+        // The first invalid sphere is any of a row.
+        for place in 0..16 {
+            let mut set = [Sphere::new([1.0, 2.0, 3.0, 0.5]); 20];
+            set[place] = Sphere::new([f32::NAN; 4]);
+            check(&mut bench, &config, &set, None);
+        }
+        // Every pair touches.
+        check(&mut bench, &config, &[Sphere::new([1.0, 2.0, 3.0, 0.5]); 70], None);
+        check(&mut bench, &config, &[Sphere::new([0.0, 0.0, 0.0, f32::MAX]); 33], None);
+        // None does.
+        let apart: Vec<_> = (0..100).map(|place| Sphere::new([place as f32, 0.0, 0.0, 0.25])).collect();
+        check(&mut bench, &config, &apart, None);
     }
-    // Every pair touches.
-    check(&mut bench, &config, &[Sphere::new([1.0, 2.0, 3.0, 0.5]); 70], None);
-    check(&mut bench, &config, &[Sphere::new([0.0, 0.0, 0.0, f32::MAX]); 33], None);
-    // None does.
-    let apart: Vec<_> = (0..100).map(|place| Sphere::new([place as f32, 0.0, 0.0, 0.25])).collect();
-    check(&mut bench, &config, &apart, None);
 }
 
 #[test]
 fn two_sets_are_compared_and_the_table_stays() {
-    let config = config(Sizes { table: 512, lanes: 16, deciders: 8, ..Sizes::default() });
-    let mut bench = Bench::new(&config);
+    for (lanes, deciders) in [(16, 8), (64, 2)] {
+        two_sets(&config(Sizes { table: 512, lanes, deciders, ..Sizes::default() }));
+    }
+}
+
+fn two_sets(config: &Config) {
+    let mut bench = Bench::new(config);
     for (first, second) in [(0, 0), (0, 20), (20, 0), (1, 1), (16, 33), (17, 16), (300, 200), (512, 700)] {
         let (first, second) = (odd(first, 3), odd(second, 4));
-        check(&mut bench, &config, &first, Some(&second));
+        check(&mut bench, config, &first, Some(&second));
         // The second set alone is sent; the first is still there.
         for seed in [5, 6] {
             let probes = odd(50, seed);
             let got = bench.run(2, &[], &probes);
-            let want = expected(&config, &first, Some(&probes));
+            let want = expected(config, &first, Some(&probes));
             assert_eq!((got.hits, got.candidates), (want.hits, want.candidates));
         }
     }
     // A set by itself empties the table of the one before.
     let set = odd(100, 9);
-    check(&mut bench, &config, &set, None);
+    check(&mut bench, config, &set, None);
     let got = bench.run(2, &[], &set);
-    assert_eq!(got.hits, expected(&config, &set, Some(&set)).hits);
+    assert_eq!(got.hits, expected(config, &set, Some(&set)).hits);
 }
 
 #[test]
@@ -257,7 +323,10 @@ fn slow_writes_hold_everything_back_and_lose_nothing() {
         bench.write_pace = pace;
         check(&mut bench, &config, &set, None);
     }
-    // Writes that are slower than all else hold every stage back whose queue can be filled by eight rows.
+    // Writes that are slower than all else hold every stage back whose queue the rows inside can fill: with few lanes,
+    // because then a row takes many steps.
+    let config = self::config(Sizes { table: 512, lanes: 16, deciders: 4, ..Sizes::default() });
+    let mut bench = Bench { write_pace: 40, ..Bench::new(&config) };
     bench.waits = ["group_rows", "near", "box_pairs", "hits"].map(|stage| (stage, 0)).to_vec();
     check(&mut bench, &config, &[Sphere::new([1.0, 2.0, 3.0, 0.5]); 512], None);
     assert!(bench.waits.iter().all(|(_, cycles)| *cycles > 100), "{:?}", bench.waits);

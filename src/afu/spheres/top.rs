@@ -2,22 +2,29 @@
 
 use std::sync::Arc;
 
+use super::between::{Parts, named, parts, stage_queue, word_of};
 use super::level::{Level, level};
 use super::queue::queue;
 use super::{
-    KEPT_ROWS, QUEUE, ROW, ROW_BITS, ROW_NUMBER_BITS, SLACK, Sizes, candidates, decider, hits, loader, near, rows,
+    KEPT_ROWS, LONG_QUEUE, QUEUE, ROW, ROW_BITS, Sizes, candidates, decider, hits, loader, near, resolver, rows,
 };
 use crate::afu::control::control;
+use crate::afu::counter::up_down;
 use crate::afu::port::{JobInputs, JobOutputs, ReadInputs, ReadOutputs, WriteInputs, WriteOutputs, outputs};
 use crate::afu::{Spec, collector, dispatcher, packer};
-use crate::hdl::{BuildErrors, Error, Graph, Instantiated, Module, Signal};
+use crate::hdl::{BuildErrors, Error, Graph, Module, Signal};
 use crate::record::Capability;
 
 /// Lines that the dispatcher holds.
 const LINES: u32 = 32;
 
-/// The top over the plain line port, around a kernel of `--contact hit`.
-pub(in crate::afu) fn spheres_top(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>, BuildErrors> {
+/// The top over the plain line port, around a kernel of `--contact hit` that decides, and the SCPU that computes the
+/// contacts; `None` if only their numbers come back.
+pub(in crate::afu) fn spheres_top(
+    spec: &Spec,
+    kernel: &Arc<Module>,
+    scpu: Option<&Arc<Module>>,
+) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new("contact_afu");
     graph.about("collision-detection accelerator: spheres in, the numbers of those that touch out");
     let sizes = Sizes::of(&spec.config).map_err(|refused| {
@@ -83,13 +90,20 @@ pub(in crate::afu) fn spheres_top(spec: &Spec, kernel: &Arc<Module>) -> Result<A
     );
     taken.drive(loader.output("taken"));
     head.drive(loader.output("head"));
-    let of_sphere = ["valid", "box", "column", "row", "searched", "to_table"].map(|name| (name, loader.output(name)));
-    let [(_, valid), (_, bounds), (_, column), (_, row), (_, searched), (_, to_table)] = of_sphere;
+    let of_sphere = ["valid", "column", "row", "searched", "to_table"].map(|name| (name, loader.output(name)));
+    let [(_, valid), (_, column), (_, row), (_, searched), (_, to_table)] = of_sphere;
+    // What belongs to each sphere that is loaded in a cycle, as inputs of this name.
+    let each = |output: &str, input: &str| -> Vec<(String, Signal<'_>)> {
+        let outputs = sizes.of_loaded(output);
+        outputs.iter().map(|name| loader.output(name)).zip(sizes.of_loaded(input)).map(|(s, name)| (name, s)).collect()
+    };
+    let boxes = each("box", "box");
     let table_row = row.low(sizes.row_bits);
     let write_own = (valid & searched).named("keeps_sphere");
     let write_table = (valid & to_table).named("puts_sphere_into_table");
     let mut inputs = vec![("start", start), ("keeps_table", keeps_table), ("has_others", has_others)];
     inputs.extend(of_sphere);
+    inputs.extend(named(&boxes));
     let rows = graph.instance("rows", &rows::rows(&sizes)?, &inputs);
 
     let one_set = !has_others;
@@ -99,7 +113,7 @@ pub(in crate::afu) fn spheres_top(spec: &Spec, kernel: &Arc<Module>) -> Result<A
     let words = stage_queue(
         &graph,
         start,
-        "row_queue",
+        ("row_queue", QUEUE),
         rows.output("launches"),
         &[rows.output("launched_row"), rows.output("words"), one],
         groups_takes,
@@ -134,9 +148,9 @@ pub(in crate::afu) fn spheres_top(spec: &Spec, kernel: &Arc<Module>) -> Result<A
     let level_queue = stage_queue(
         &graph,
         start,
-        "group_queue",
+        ("group_queue", QUEUE),
         groups.output("put"),
-        &parts(&groups, (sizes.group_bits > ROW_BITS).then_some("place")),
+        &parts(&groups, if sizes.group_bits > ROW_BITS { &["place"] } else { &[] }),
         level_takes,
     )?;
     groups_may.drive(level_queue.output("has_room"));
@@ -164,9 +178,9 @@ pub(in crate::afu) fn spheres_top(spec: &Spec, kernel: &Arc<Module>) -> Result<A
     let near_queue = stage_queue(
         &graph,
         start,
-        "near_queue",
+        ("near_queue", LONG_QUEUE),
         group_rows.output("put"),
-        &parts(&group_rows, Some("place")),
+        &parts(&group_rows, &["place"]),
         near_takes,
     )?;
     level_may.drive(near_queue.output("has_room"));
@@ -185,8 +199,9 @@ pub(in crate::afu) fn spheres_top(spec: &Spec, kernel: &Arc<Module>) -> Result<A
         ("write_column", column),
         ("write_own", write_own),
         ("write_own_row", row),
-        ("write_own_box", bounds),
     ];
+    let own_boxes = each("box", "write_own_box");
+    inputs.extend(named(&own_boxes));
     inputs.extend(item.place.map(|place| ("item_place", place)));
     let near = graph.instance("near", &near::near(spec, &sizes)?, &inputs);
     near_takes.drive(near.output("takes"));
@@ -196,13 +211,13 @@ pub(in crate::afu) fn spheres_top(spec: &Spec, kernel: &Arc<Module>) -> Result<A
     let queue_of_near = stage_queue(
         &graph,
         start,
-        "candidate_queue",
+        ("candidate_queue", LONG_QUEUE),
         near.output("put"),
-        &parts(&near, Some("other")),
+        &parts(&near, &["other", "spheres"]),
         candidates_take,
     )?;
     near_may.drive(queue_of_near.output("has_room"));
-    let item = Parts::of(&queue_of_near);
+    let item = Parts::new(&queue_of_near, sizes.turns());
     let mut inputs = vec![
         ("start", start),
         ("run", run),
@@ -215,38 +230,48 @@ pub(in crate::afu) fn spheres_top(spec: &Spec, kernel: &Arc<Module>) -> Result<A
         ("write_own", write_own),
         ("write_column", column),
         ("write_row", row),
-        ("write_box", bounds),
         ("one_set", one_set),
     ];
-    inputs.extend(item.place.map(|place| ("item_other", place)));
+    let table_boxes = each("box", "write_box");
+    inputs.extend(named(&table_boxes));
+    inputs.extend(item.place.map(|place| ("item_other", place.drop_low(ROW))));
+    inputs.extend(item.place.map(|place| ("item_near", place.low(ROW))));
     let candidates = graph.instance("box_pairs", &candidates::candidates(spec, &sizes)?, &inputs);
     candidates_take.drive(candidates.output("takes"));
     let put = candidates.output("put");
 
     // The deciders, and what joins their answers.
     let own_row = candidates.output("row");
-    let chunk = (sizes.chunk_bits() > 0).then(|| ("chunk", candidates.output("chunk")));
+    let places = (sizes.places_bits() > 0).then(|| ("places", candidates.output("places")));
     let names = |prefix: &str| -> Vec<String> { (0..sizes.deciders).map(|d| format!("{prefix}_{d}")).collect() };
     let takes: Vec<_> = names("take_answer").iter().map(|name| graph.wire(name, 1)).collect();
     let decider = decider::decider(spec, &sizes, kernel)?;
+    // Numbers go into lines as soon as there is room; contacts wait for it behind their SCPU.
+    let line_has_room = (accepts & run).registered("line_has_room");
+    let (_, may_resolve) = wire("may_resolve", 1);
     let mut hits_inputs = vec![
         ("start", begin("hits")),
-        ("may_leave", (accepts & run).registered("hits_may_leave")),
+        ("run", run),
+        ("may_leave", if scpu.is_some() { may_resolve } else { line_has_room }),
         ("put", put),
         ("own_row", own_row),
         ("row", candidates.output("other")),
         ("last", candidates.output("last")),
         ("all_ended", loader.output("all_ended")),
     ];
-    hits_inputs.extend(chunk);
+    hits_inputs.extend(places);
     let (asks, valids, answers) = (names("asks"), names("answer_valid"), names("answer"));
+    let spheres = each("sphere", "write_sphere");
     let kept_bits = KEPT_ROWS.ilog2();
     let column_low = sizes.deciders.ilog2();
     for number in 0..sizes.deciders {
         let index = number as usize;
         let share = candidates.output(&format!("share_{number}"));
         let is_asked = share.any().named(&format!("asked_{number}"));
-        let is_mine = if column_low == 0 { one } else { column.low(column_low).is(number.into()) };
+        // Of two spheres side by side, a decider has columns of one side.
+        let side = (number % sizes.loaded) as usize;
+        let low = column_low - sizes.loaded.ilog2();
+        let is_mine = if low == 0 { one } else { column.low(low).is((number / sizes.loaded).into()) };
         let is_mine = (valid & is_mine).named(&format!("sphere_for_{number}"));
         let mut inputs = vec![
             ("start", begin("deciders")),
@@ -255,32 +280,68 @@ pub(in crate::afu) fn spheres_top(spec: &Spec, kernel: &Arc<Module>) -> Result<A
             ("kept", own_row.low(kept_bits)),
             ("row", candidates.output("other")),
             ("take_answer", takes[index]),
-            ("write_sphere", loader.output("sphere")),
+            ("write_sphere_of_column", spheres[side].1),
             ("write_column", column),
             ("write_table", is_mine & to_table),
             ("write_kept", write_own),
             ("write_row", table_row),
             ("write_kept_row", row.low(kept_bits)),
         ];
-        inputs.extend(chunk);
+        inputs.extend(places);
+        inputs.extend(named(&spheres));
         let unit = graph.instance(&format!("decider_{number}"), &decider, &inputs);
         hits_inputs.push((&asks[index], is_asked));
         hits_inputs.push((&valids[index], unit.output("answer_valid")));
         hits_inputs.push((&answers[index], unit.output("answer")));
     }
-    let hits = graph.instance("hits", &hits::hits(&sizes)?, &hits_inputs);
+    let lanes = if scpu.is_some() { 1 } else { hits::LANES };
+    let hits = graph.instance("hits", &hits::hits(&sizes, lanes)?, &hits_inputs);
     for (take, name) in takes.into_iter().zip(names("take_answer")) {
         take.drive(hits.output(&name));
     }
     has_room.drive(hits.output("has_room"));
     row_ends.drive(hits.output("row_ends"));
 
-    // Hits into lines, lines into memory.
-    let records: Vec<_> = (0..hits::LANES).map(|lane| format!("record_{lane}")).collect();
-    let mut inputs =
-        vec![("start", begin("packer")), ("carries", hits.output("carries")), ("all_out", hits.output("all_out"))];
-    inputs.extend(records.iter().map(|name| (name.as_str(), hits.output(name))));
-    let packer = graph.instance("packer", &packer::of_pairs(spec, hits::LANES)?, &inputs);
+    // The contacts, in the order of their hits.
+    let mut packer_inputs = vec![("start", begin("packer"))];
+    let records: Vec<_> = (0..lanes).map(|lane| format!("record_{lane}")).collect();
+    if let Some(scpu) = scpu {
+        let mut inputs = vec![
+            ("start", begin("hits")),
+            ("carries", hits.output("carries")),
+            ("numbers", hits.output("record_0")),
+            ("write_column", column),
+            ("write_table", write_table),
+            ("write_table_row", table_row),
+            ("write_kept", write_own),
+            ("write_kept_row", row.low(kept_bits)),
+        ];
+        inputs.extend(named(&spheres));
+        let to_numbers = hits::cycles_to_numbers(sizes.compared);
+        let resolver = resolver::resolver(spec, &sizes, scpu, to_numbers - 1)?;
+        let resolver = graph.instance("resolver", &resolver, &inputs);
+        // A contact may be anywhere between the step of its hit and the queue when this is full.
+        let on_the_way = to_numbers + resolver::latency(spec, scpu) + 2;
+        let (take, depth) = (graph.wire("contact_leaves", 1), (2 * on_the_way).next_power_of_two());
+        let record = resolver.output("record");
+        let inputs = [("start", start), ("put", resolver.output("put")), ("word", record), ("take", take)];
+        let contacts = graph.instance("contact_queue", &queue(depth, record.width(), on_the_way)?, &inputs);
+        take.drive(contacts.output("valid") & line_has_room);
+        may_resolve
+            .drive((contacts.output("has_room") & resolver.output("may_come") & run).registered("hit_may_leave"));
+        let inside = graph.register("contacts_inside", depth.ilog2() + 1, 0);
+        up_down(inside, start, hits.output("carries"), take);
+        let all_out = (hits.output("all_out") & !inside.any() & !start).registered("contacts_all_out");
+        packer_inputs.extend([("carries", take), ("all_out", all_out)]);
+        packer_inputs.push(("record_0", contacts.output("oldest").delay(1).named("contact")));
+    } else {
+        may_resolve.drive(one);
+        packer_inputs.extend([("carries", hits.output("carries")), ("all_out", hits.output("all_out"))]);
+        packer_inputs.extend(records.iter().map(|name| (name.as_str(), hits.output(name))));
+    }
+
+    // Records into lines, lines into memory.
+    let packer = graph.instance("packer", &packer::of_pairs(spec, lanes)?, &packer_inputs);
     let mut inputs = writes.named();
     inputs.extend([
         ("start", begin("dispatcher")),
@@ -326,52 +387,4 @@ pub(in crate::afu) fn spheres_top(spec: &Spec, kernel: &Arc<Module>) -> Result<A
     outputs(&graph, ReadOutputs::of(spec).map(|port| collector.output(port.name)).named());
     outputs(&graph, WriteOutputs::of(spec).map(|port| dispatcher.output(port.name)).named());
     graph.finish()
-}
-
-/// A queue between two stages.
-fn stage_queue<'g>(
-    graph: &'g Graph,
-    start: Signal<'g>,
-    name: &str,
-    put: Signal<'g>,
-    parts: &[Signal<'g>],
-    take: Signal<'g>,
-) -> Result<Instantiated<'g>, BuildErrors> {
-    let word = Signal::join(parts);
-    let module = queue(QUEUE, word.width(), SLACK)?;
-    Ok(graph.instance(name, &module, &[("start", start), ("put", put), ("word", word), ("take", take)]))
-}
-
-/// What a stage puts into its queue: the row that is searched, a place of this name, 16 bits, and whether it is the
-/// last of its row.
-fn parts<'g>(stage: &Instantiated<'g>, place: Option<&str>) -> Vec<Signal<'g>> {
-    ["row"].into_iter().chain(place).chain(["mask", "last"]).map(|part| stage.output(part)).collect()
-}
-
-/// The number of the word that a group is in.
-fn word_of(group: Signal<'_>, top_bits: u32) -> Signal<'_> {
-    group.extend(top_bits + ROW_BITS).drop_low(ROW_BITS)
-}
-
-/// What stands at the output of a queue between two stages.
-struct Parts<'g> {
-    valid: Signal<'g>,
-    row: Signal<'g>,
-    place: Option<Signal<'g>>,
-    mask: Signal<'g>,
-    last: Signal<'g>,
-}
-
-impl<'g> Parts<'g> {
-    fn of(queue: &Instantiated<'g>) -> Self {
-        let word = queue.output("oldest");
-        let place_bits = word.width() - 1 - ROW - ROW_NUMBER_BITS;
-        Self {
-            valid: queue.output("valid"),
-            row: word.high(ROW_NUMBER_BITS),
-            place: (place_bits > 0).then(|| word.slice(1 + ROW, place_bits)),
-            mask: word.slice(1, ROW),
-            last: word.bit(0),
-        }
-    }
 }

@@ -6,8 +6,8 @@ use crate::host::task::Task;
 use crate::host::transport::TransportError;
 use crate::kernel::Reference;
 use crate::link::Line;
-use crate::query::{Fields, Flow};
-use crate::record::{Layout, SetTooLarge, pack_contacts, pack_numbers, sphere_lines, unpack_pairs, unpack_spheres};
+use crate::query::Flow;
+use crate::record::{Layout, SetTooLarge, pack_contacts, pack_hits, sphere_lines, unpack_pairs, unpack_spheres};
 use crate::spheres::{Search, Sphere};
 
 /// The status of a job that has ended.
@@ -52,7 +52,7 @@ impl Jobs {
         Self {
             layout,
             input: config.input,
-            reference: if takes_spheres { config.profile.reference(Fields::HIT) } else { config.reference() },
+            reference: config.reference(),
             search: search.filter(|_| takes_spheres),
             table_size: config.search.table,
             table: Vec::new(),
@@ -114,16 +114,15 @@ impl Jobs {
         let others = (task.mode != 0).then(|| unpack_spheres(of_second, task.others as usize));
         let found = search.find(&mut self.reference, &self.table, others.as_deref());
         let found = found.map_err(|error| TransportError::Device(error.to_string()))?;
-        let hits: Vec<_> = found.hits.iter().map(|hit| hit.spheres).collect();
         let read = self.table.iter().filter(|_| !keeps_table).chain(others.iter().flatten());
         let invalid: Vec<usize> = (0..).zip(read).filter(|(_, sphere)| !sphere.is_valid()).map(|(at, _)| at).collect();
         let ended = Counted {
-            contacts: hits.len() as u32,
+            contacts: found.hits.len() as u32,
             candidates: found.counts.candidates as u32,
             invalid: invalid.len() as u32,
             first_invalid: invalid.first().map_or(u32::MAX, |&number| number as u32),
             ..Counted::nothing()
         };
-        Ok((pack_numbers(&hits), ended))
+        Ok((pack_hits(&self.layout, &found.hits), ended))
     }
 }

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use super::map::{self, AFU_ID, Access, VERSION, registers};
 use crate::afu::JobError;
 use crate::config::{Input, Shell};
+use crate::record::Layout;
 use crate::spheres::ROW;
 
 /// The map as Markdown, of an accelerator with this input: tables of the registers, of their fields, and of the errors.
@@ -35,7 +36,7 @@ pub fn markdown(input: Input) -> String {
 }
 
 /// The steps of a job as Markdown.
-pub fn job(input: Input) -> String {
+pub fn job(input: Input, layout: &Layout) -> String {
     let at = |register: map::Register| format!("`{}` ({:#04X})", register.name, register.offset);
     let what = match input {
         Input::Direct => "pairs",
@@ -85,12 +86,12 @@ watchdog's time, memory owes a response that will not come: reset the interconne
         address = at(map::FAILURE_ADDRESS),
         reset = at(map::SOFT_RESET),
         unasked = at(map::UNASKED),
-        more = if input == Input::Spheres { spheres() } else { String::new() },
+        more = if input == Input::Spheres { spheres(layout) } else { String::new() },
     )
 }
 
 /// What a job of spheres has beyond the steps.
-fn spheres() -> String {
+fn spheres(layout: &Layout) -> String {
     let at = |register: map::Register| format!("`{}` ({:#04X})", register.name, register.offset);
     format!(
         "
@@ -104,9 +105,9 @@ Each set begins with a row of {ROW} spheres, which is {lines} lines. With n = `c
 | 1 | which of n spheres touch which of m others | ⌈n / {ROW}⌉ rows, then ⌈m / {ROW}⌉ rows |
 | 2 | which of the first set of the last job touch which of m others | ⌈m / {ROW}⌉ rows |
 
-For 20 spheres at 0x10000 with room for 160 contacts at 0x20000: write 0x10000 to {source}, 0x20000 to {destination}, 10
+For 20 spheres at 0x10000 with room for {room} contacts at 0x20000: write 0x10000 to {source}, 0x20000 to {destination}, 10
 to {lines_of_results}, 20 to {count} and 0 to {mode}, and start the job. It reads 8 lines. When it has ended, `contacts`
-({contacts:#04X}) records are at 0x20000, 16 in a line of 64 bytes.
+({contacts:#04X}) records are at 0x20000, {per_line} in a line of 64 bytes.
 
 - {candidates} has the pairs whose boxes met, and {invalid} the spheres that touch nothing because they are no spheres.
 - Error 6 says that there was no room for all contacts. `contacts` has counted all: give `destination` room for them, and
@@ -114,6 +115,8 @@ to {lines_of_results}, 20 to {count} and 0 to {mode}, and start the job. It read
 - Mode 2 needs a last job that ended with error 0.
 ",
         lines = ROW / 4,
+        per_line = layout.contacts_per_line(),
+        room = 10 * layout.contacts_per_line(),
         source = at(map::SOURCE),
         destination = at(map::DESTINATION),
         lines_of_results = at(map::DESTINATION_LINES),

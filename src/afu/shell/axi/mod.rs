@@ -87,7 +87,10 @@ impl ShellDesign for Axi {
         let title = format!("# Registers of `{}`", afu.top_name());
         let (input, prefix) = (afu.spec().config.input, afu.spec().config.prefixed("contact_afu"));
         vec![
-            ("REGISTERS.md".to_owned(), format!("{title}\n\n{}\n{}", document::markdown(input), document::job(input))),
+            (
+                "REGISTERS.md".to_owned(),
+                format!("{title}\n\n{}\n{}", document::markdown(input), document::job(input, &afu.layout())),
+            ),
             (format!("{prefix}_regs.h"), document::header(&prefix, input, &afu.origin())),
         ]
     }
