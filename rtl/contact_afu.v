@@ -65,7 +65,7 @@ module contact_afu #(
   wire control_begin_packer;
   wire control_begin_dispatcher;
   wire control_run;
-  wire control_given_up;
+  wire control_drops_requests;
   wire [57:0] control_job_source;
   wire [57:0] control_job_destination;
   wire [31:0] control_job_count;
@@ -78,7 +78,7 @@ module contact_afu #(
   wire line_left;
   wire write_answered;
   wire write_failed;
-  wire write_unexpected;
+  wire write_responded;
   wire write_idle;
   wire dispatched;
   wire may_enter;
@@ -88,7 +88,7 @@ module contact_afu #(
   wire [511:0] collector_line;
   wire read_answered;
   wire read_failed;
-  wire read_unexpected;
+  wire read_responded;
   wire read_idle;
   wire [1:0] entered;
   wire [1:0] feeder_carries;
@@ -137,10 +137,10 @@ module contact_afu #(
     .filled           (filled),
     .read_failed      (read_failed),
     .write_failed     (write_failed),
-    .read_unexpected  (read_unexpected),
-    .write_unexpected (write_unexpected),
     .read_answered    (read_answered),
     .write_answered   (write_answered),
+    .read_responded   (read_responded),
+    .write_responded  (write_responded),
     .read_idle        (read_idle),
     .write_idle       (write_idle),
     .waits_for_input  (waits_for_input),
@@ -157,7 +157,7 @@ module contact_afu #(
     .begin_packer     (control_begin_packer),
     .begin_dispatcher (control_begin_dispatcher),
     .run              (control_run),
-    .given_up         (control_given_up),
+    .drops_requests   (control_drops_requests),
     .job_source       (control_job_source),
     .job_destination  (control_job_destination),
     .job_count        (control_job_count),
@@ -192,7 +192,7 @@ module contact_afu #(
     .rst            (rst),
     .start          (control_begin_dispatcher),
     .run            (control_run),
-    .given_up       (control_given_up),
+    .drops_requests (control_drops_requests),
     .destination    (control_job_destination),
     .epoch          (control_job_epoch),
     .line_valid     (packer_line_valid),
@@ -208,7 +208,7 @@ module contact_afu #(
     .line_left      (line_left),
     .answered       (write_answered),
     .failed         (write_failed),
-    .unexpected     (write_unexpected),
+    .responded      (write_responded),
     .idle           (write_idle),
     .empty          (dispatched)
   );
@@ -232,7 +232,7 @@ module contact_afu #(
     .rst            (rst),
     .start          (control_begin_collector),
     .run            (control_run),
-    .given_up       (control_given_up),
+    .drops_requests (control_drops_requests),
     .source         (control_job_source),
     .lines          (control_lines),
     .epoch          (control_job_epoch),
@@ -250,7 +250,7 @@ module contact_afu #(
     .line           (collector_line),
     .answered       (read_answered),
     .failed         (read_failed),
-    .unexpected     (read_unexpected),
+    .responded      (read_responded),
     .idle           (read_idle)
   );
 

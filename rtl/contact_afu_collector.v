@@ -11,7 +11,7 @@ module contact_afu_collector (
   input  wire         rst,
   input  wire         start,
   input  wire         run,
-  input  wire         given_up,
+  input  wire         drops_requests,
   input  wire [57:0]  source,
   input  wire [31:0]  lines,
   input  wire [3:0]   epoch,
@@ -29,7 +29,7 @@ module contact_afu_collector (
   output wire [511:0] line,
   output reg          answered,
   output reg          failed,
-  output reg          unexpected,
+  output reg          responded,
   output reg          idle
 );
 
@@ -37,6 +37,7 @@ module contact_afu_collector (
   (* keep = "true", dont_merge *) reg rd_req_spare_valid_copy_0;
   reg may_ask;
   reg lines_to_request_step;
+  reg many_lines_to_request;
   reg [31:0] lines_to_request;
   reg freed;
   reg [6:0] reserved;
@@ -64,21 +65,20 @@ module contact_afu_collector (
   reg [6:0] outstanding;
 
   // ---- logic ----
-  wire drops_requests = start | given_up;
   wire rd_req_next_valid = ~drops_requests & (rd_req_spare_valid_copy_0 | may_ask);
   wire rd_req_moves = ~rd_req_valid | rd_req_ready;
   wire issue = may_ask & ~rd_req_spare_valid_copy_0;
-  wire lines_to_request_31_1_any = |lines_to_request[31:1];
-  wire may_ask_next =
-      run
-      & (issue                 ?
-             (lines_to_request_step ? (|lines_to_request[31:2] | (lines_to_request[1] & lines_to_request[0])) :
-              lines_to_request_31_1_any) :
-         lines_to_request_step ? lines_to_request_31_1_any :
-         |lines_to_request)
-      & ~(~freed & (reserved[6] | (&reserved[5:0] & issue)));
+  wire lines_to_request_or_request_2_0_above_1 = many_lines_to_request | (3'd1 < lines_to_request[2:0]);
+  wire freed_or_reserved_6_n = freed | ~reserved[6];
+  wire some_left_and_free =
+      issue ?
+          ((lines_to_request_step ? (many_lines_to_request | (3'd2 < lines_to_request[2:0])) :
+            lines_to_request_or_request_2_0_above_1)
+           & (freed_or_reserved_6_n & (freed | ~&reserved[5:0]))) :
+      ((lines_to_request_step ? lines_to_request_or_request_2_0_above_1 :
+        (many_lines_to_request | |lines_to_request[2:0]))
+       & freed_or_reserved_6_n);
   wire rd_req_waits = rd_req_next_valid & ~rd_req_moves;
-  wire start_or_issue = start | issue;
   wire [9:0] rd_req_spare_tag_next = {epoch, next_slot};
   wire oldest_goes = came[0];
   wire [63:0] marked = came | (answered ? (64'd1 << arrived_age) : 64'd0);
@@ -90,7 +90,7 @@ module contact_afu_collector (
   always @(posedge clk) begin
     if (rd_req_moves) rd_req_address <= rd_req_spare_valid_copy_1 ? rd_req_spare_address : next_address;
     if (~rd_req_spare_valid_copy_1) rd_req_spare_address <= next_address;
-    if (start_or_issue) next_address <= start ? source : (next_address + 58'd1);
+    if (start | issue) next_address <= start ? source : (next_address + 58'd1);
     if (rd_req_moves) rd_req_tag <= rd_req_spare_valid_copy_1 ? rd_req_spare_tag : rd_req_spare_tag_next;
     if (~rd_req_spare_valid_copy_1) rd_req_spare_tag <= rd_req_spare_tag_next;
     arrived_age <= slot_then - next_oldest;
@@ -106,6 +106,7 @@ module contact_afu_collector (
       rd_req_valid <= 1'b0;
       may_ask <= 1'b0;
       lines_to_request_step <= 1'b0;
+      many_lines_to_request <= 1'b0;
       lines_to_request <= 32'd0;
       freed <= 1'b0;
       reserved <= 7'd0;
@@ -121,18 +122,19 @@ module contact_afu_collector (
       rd_req_of_job <= 1'b0;
       oldest <= 6'd0;
       failed <= 1'b0;
-      unexpected <= 1'b0;
+      responded <= 1'b0;
       is_response <= 1'b0;
       idle <= 1'b0;
       outstanding <= 7'd0;
     end else begin
       rd_req_valid <= rd_req_next_valid | ~rd_req_moves;
-      may_ask <= may_ask_next;
+      may_ask <= run & some_left_and_free;
       lines_to_request_step <= issue & ~start;
+      many_lines_to_request <= start ? |lines[31:3] : |lines_to_request[31:3];
       if (start | lines_to_request_step) lines_to_request <= start ? lines : (lines_to_request - 32'd1);
       freed <= taken & ~start;
-      if (start | (issue ^ freed)) reserved <= start ? 7'd0 : issue ? (reserved + 7'd1) : (reserved - 7'd1);
-      if (start_or_issue) next_slot <= start ? 6'd0 : (next_slot + 6'd1);
+      reserved <= start ? 7'd0 : (issue ^ freed) ? (issue ? (reserved + 7'd1) : (reserved - 7'd1)) : reserved;
+      next_slot <= start ? 6'd0 : issue ? (next_slot + 6'd1) : next_slot;
       line_comes <= oldest_goes & ~start;
       came <= start ? 64'd0 : oldest_goes ? {1'b0, marked[63:1]} : marked;
       answered <= is_awaited & ~start;
@@ -144,20 +146,18 @@ module contact_afu_collector (
       rd_req_of_job <= ~start & (rd_req_moves | rd_req_of_job);
       oldest <= start ? 6'd0 : next_oldest;
       failed <= is_awaited & error_then & ~start;
-      unexpected <= run & is_response & ~is_awaited & ~start;
+      responded <= run & is_response & ~start;
       is_response <= is_response_next;
       idle <= ~|outstanding & (~rd_req_valid & ~rd_req_spare_valid_copy_0) & ~may_ask;
-      if (start | (issue ^ answered)) outstanding <= start ? 7'd0 : issue ? (outstanding + 7'd1) : (outstanding - 7'd1);
+      outstanding <=
+          start              ? 7'd0 :
+          (issue ^ answered) ? (issue ? (outstanding + 7'd1) : (outstanding - 7'd1)) :
+          outstanding;
     end
   end
   (* keep = "true" *) always @(posedge clk) begin
-    if (rst) begin
-      rd_req_spare_valid_copy_0 <= 1'b0;
-      rd_req_spare_valid_copy_1 <= 1'b0;
-    end else begin
-      rd_req_spare_valid_copy_0 <= rd_req_waits;
-      rd_req_spare_valid_copy_1 <= rd_req_waits;
-    end
+    rd_req_spare_valid_copy_0 <= rd_req_waits;
+    rd_req_spare_valid_copy_1 <= rd_req_waits;
   end
 
   line_memory #(

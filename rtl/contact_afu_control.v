@@ -23,10 +23,10 @@ module contact_afu_control (
   input  wire        filled,
   input  wire        read_failed,
   input  wire        write_failed,
-  input  wire        read_unexpected,
-  input  wire        write_unexpected,
   input  wire        read_answered,
   input  wire        write_answered,
+  input  wire        read_responded,
+  input  wire        write_responded,
   input  wire        read_idle,
   input  wire        write_idle,
   input  wire        waits_for_input,
@@ -34,7 +34,7 @@ module contact_afu_control (
   output wire [63:0] cycles_busy,
   output wire [63:0] cycles_input,
   output wire [63:0] cycles_output,
-  output reg         busy,
+  output wire        busy,
   output reg         done,
   output reg  [3:0]  error,
   output wire        begin_collector,
@@ -43,7 +43,7 @@ module contact_afu_control (
   output wire        begin_packer,
   output wire        begin_dispatcher,
   output reg         run,
-  output reg         given_up,
+  output reg         drops_requests,
   output reg  [57:0] job_source,
   output reg  [57:0] job_destination,
   output reg  [31:0] job_count,
@@ -56,11 +56,13 @@ module contact_afu_control (
   reg [31:0] cycles_busy_high;
   reg [31:0] cycles_busy_low;
   reg first_cycle;
-  reg complete;
+  (* keep = "true", dont_merge *) reg busy_copy_0;
+  reg completes;
   reg draining;
   reg [2:0] cycles_draining;
   reg none_inside_heard;
   reg link_idle_heard;
+  reg given_up;
   reg expired;
   reg response_heard;
   reg link_idle_before;
@@ -68,6 +70,7 @@ module contact_afu_control (
   reg silence_is_over;
   reg [31:0] silence;
   reg [31:0] job_watchdog;
+  (* keep = "true", dont_merge *) reg busy_copy_1;
   reg running;
   reg fails;
   reg unexpected_heard;
@@ -89,19 +92,22 @@ module contact_afu_control (
   (* keep = "true", dont_merge *) reg begin_job_copy_2;
   (* keep = "true", dont_merge *) reg begin_job_copy_3;
   (* keep = "true", dont_merge *) reg begin_job_copy_4;
+  (* keep = "true", dont_merge *) reg busy_copy_2;
   reg [31:0] job_lines;
 
   // ---- logic ----
   assign cycles_busy = {cycles_busy_high, cycles_busy_low};
-  wire accept = start & ~busy;
-  wire completes = run & complete;
+  wire accept = start & ~busy_copy_0;
   wire stopped = &cycles_draining;
   wire drained = draining & stopped & none_inside_heard & (link_idle_heard | given_up);
-  wire gives_up = busy & expired & ~completes;
+  wire is_busy = accept | (busy_copy_0 & ~completes & ~drained);
+  wire gives_up = busy_copy_0 & expired & ~completes;
+  wire is_given_up = ~accept & (given_up | gives_up);
   wire link_is_alive = response_heard | link_idle_before;
-  wire expires = busy & ~link_is_alive & has_watchdog & silence_is_over;
+  wire expires = busy_copy_0 & ~link_is_alive & has_watchdog & silence_is_over;
   wire begins_to_drain = draining & ~|cycles_draining;
-  wire silence_restarts = link_is_alive | ~busy | begins_to_drain;
+  wire silence_restarts = link_is_alive | ~busy_copy_0 | begins_to_drain;
+  wire takes_values = start & ~busy_copy_1;
   wire link_idle = read_idle & write_idle;
   wire has_unknown_mode = |mode;
   wire refuses = accept & has_unknown_mode;
@@ -110,7 +116,8 @@ module contact_afu_control (
   wire still_waits = waits_to_begin & ~failing;
   wire begins = (accept | still_waits) & filled_heard;
   wire takes_job = accept & ~refuses;
-  wire cycles_busy_moves = first_cycle | busy;
+  wire goes_on = running & ~completes & ~failing;
+  wire cycles_busy_moves = first_cycle | busy_copy_0;
   assign cycles_input = {cycles_input_high, cycles_input_low};
   wire cycles_input_moves = first_cycle | counts_input;
   assign cycles_output = {cycles_output_high, cycles_output_low};
@@ -126,18 +133,16 @@ module contact_afu_control (
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
-    if (~busy) job_source <= source;
-    if (~busy) job_destination <= destination;
-    if (accept) last_place <= count[0] - 1'b1;
+    if (~busy_copy_2) job_source <= source;
+    if (~busy_copy_2) job_destination <= destination;
+    if (takes_values) last_place <= count[0] - 1'b1;
   end
   always @(posedge clk) begin
     if (rst) begin
       cycles_busy_high <= 32'd0;
       cycles_busy_low <= 32'd0;
       first_cycle <= 1'b0;
-      busy <= 1'b0;
-      run <= 1'b0;
-      complete <= 1'b0;
+      completes <= 1'b0;
       draining <= 1'b0;
       cycles_draining <= 3'd0;
       none_inside_heard <= 1'b0;
@@ -156,6 +161,7 @@ module contact_afu_control (
       begin_job <= 1'b0;
       waits_to_begin <= 1'b0;
       filled_heard <= 1'b0;
+      run <= 1'b0;
       cycles_busy_low_is_full <= 1'b0;
       cycles_input_high <= 32'd0;
       cycles_input_low <= 32'd0;
@@ -168,35 +174,35 @@ module contact_afu_control (
       done <= 1'b0;
       error <= 4'd0;
       told_cause <= 4'd0;
+      drops_requests <= 1'b1;
       job_count <= 32'd0;
       job_epoch <= 4'd0;
       job_lines <= 32'd0;
     end else begin
-      if (first_cycle | (busy & cycles_busy_low_is_full)) cycles_busy_high <=
+      if (first_cycle | (busy_copy_0 & cycles_busy_low_is_full)) cycles_busy_high <=
           first_cycle ? 32'd0 : (cycles_busy_high + 32'd1);
       if (cycles_busy_moves) cycles_busy_low <= first_cycle ? 32'd1 : (cycles_busy_low + 32'd1);
       first_cycle <= accept;
-      busy <= accept | (busy & ~completes & ~drained);
-      run <= (run | begin_job) & running & ~completes & ~failing;
-      complete <= run & packer_done & dispatched & link_idle;
+      completes <= run & packer_done & dispatched & link_idle & goes_on;
       draining <= refuses | failing | (draining & ~drained);
       cycles_draining <= draining ? (stopped ? cycles_draining : (cycles_draining + 3'd1)) : 3'd0;
       none_inside_heard <= none_inside;
       link_idle_heard <= link_idle;
-      given_up <= ~accept & (given_up | gives_up);
+      given_up <= is_given_up;
       expired <= expires;
       response_heard <= read_answered | write_answered;
       link_idle_before <= link_idle_heard;
       has_watchdog <= accept ? |watchdog : (has_watchdog | draining);
       silence_is_over <= ~silence_restarts & (silence >= job_watchdog);
       silence <= silence_restarts ? 32'd0 : (silence + 32'd1);
-      if (accept | (draining & ~has_watchdog)) job_watchdog <= draining ? 32'h10000 : watchdog;
-      running <= takes_job | (running & ~completes & ~failing);
+      if (takes_values | (draining & ~has_watchdog)) job_watchdog <= draining ? 32'h10000 : watchdog;
+      running <= takes_job | goes_on;
       fails <= (running & (abort_job | read_failed | write_failed)) | expires;
-      unexpected_heard <= read_unexpected | write_unexpected;
+      unexpected_heard <= (read_responded & ~read_answered) | (write_responded & ~write_answered);
       begin_job <= begins;
       waits_to_begin <= (takes_job | still_waits) & ~filled_heard;
       filled_heard <= filled;
+      run <= (run | begin_job) & goes_on;
       if (cycles_busy_moves) cycles_busy_low_is_full <= ~first_cycle & (&cycles_busy_low[31:1] & ~cycles_busy_low[0]);
       if (first_cycle | (counts_input & cycles_input_low_is_full))
         cycles_input_high <= first_cycle ? 32'd0 : (cycles_input_high + 32'd1);
@@ -213,27 +219,35 @@ module contact_afu_control (
       done <= ~accept & (done | completes | drained);
       error <= accept ? (has_unknown_mode ? 4'd5 : 4'd0) : ended;
       told_cause <= running ? (abort_job ? 4'd1 : read_failed ? 4'd2 : write_failed ? 4'd3 : 4'd0) : 4'd0;
-      if (accept) job_count <= count;
-      if (accept) job_epoch <= epoch;
-      if (accept) job_lines <= rounded_count[32:1];
+      drops_requests <= begins | is_given_up;
+      if (takes_values) job_count <= count;
+      if (takes_values) job_epoch <= epoch;
+      if (takes_values) job_lines <= rounded_count[32:1];
     end
   end
   (* keep = "true" *) always @(posedge clk) begin
     if (rst) begin
+      busy_copy_0 <= 1'b0;
+      busy_copy_1 <= 1'b0;
       begin_job_copy_0 <= 1'b0;
       begin_job_copy_1 <= 1'b0;
       begin_job_copy_2 <= 1'b0;
       begin_job_copy_3 <= 1'b0;
       begin_job_copy_4 <= 1'b0;
+      busy_copy_2 <= 1'b0;
     end else begin
+      busy_copy_0 <= is_busy;
+      busy_copy_1 <= is_busy;
       begin_job_copy_0 <= begins;
       begin_job_copy_1 <= begins;
       begin_job_copy_2 <= begins;
       begin_job_copy_3 <= begins;
       begin_job_copy_4 <= begins;
+      busy_copy_2 <= is_busy;
     end
   end
 
+  assign busy = busy_copy_0;
   assign begin_collector = begin_job_copy_0;
   assign begin_feeder = begin_job_copy_1;
   assign begin_credits = begin_job_copy_2;

@@ -11,7 +11,7 @@ module contact_afu_dispatcher (
   input  wire         rst,
   input  wire         start,
   input  wire         run,
-  input  wire         given_up,
+  input  wire         drops_requests,
   input  wire [57:0]  destination,
   input  wire [3:0]   epoch,
   input  wire         line_valid,
@@ -27,7 +27,7 @@ module contact_afu_dispatcher (
   output reg          line_left,
   output reg          answered,
   output reg          failed,
-  output reg          unexpected,
+  output reg          responded,
   output reg          idle,
   output reg          empty
 );
@@ -61,17 +61,21 @@ module contact_afu_dispatcher (
 
   // ---- logic ----
   wire wr_req_moves = ~wr_req_valid | wr_req_ready;
-  wire goes = may_send & read_valid & wr_req_moves;
-  wire drops_requests = start | given_up;
-  wire read = ~read_valid | goes;
+  wire may_go = may_send & wr_req_moves;
+  wire goes = may_go & read_valid;
+  wire read = ~read_valid | may_go;
   wire take = read & ready;
   wire stored_8_1_any = |stored[8:1];
   wire stored_any = |stored;
+  wire some_ready =
+      take ? ((line_left ? (|stored[8:2] | (stored[1] & stored[0])) : stored_8_1_any) | line_valid) :
+      ((line_left ? stored_8_1_any : stored_any) | line_valid);
   wire oldest_goes = came[0];
+  wire oldest_goes_or_reserved_6_n = oldest_goes | ~reserved[6];
+  wire some_free = goes ? (oldest_goes_or_reserved_6_n & (oldest_goes | ~&reserved[5:0])) : oldest_goes_or_reserved_6_n;
   wire [63:0] marked = came | (answered ? (64'd1 << arrived_age) : 64'd0);
   wire is_awaited = |(awaited & answers);
   wire is_response_next = is_current & ~start;
-  wire start_or_goes = start | goes;
   wire [5:0] next_oldest = oldest + {5'd0, oldest_goes};
 
   // ---- at the clock edge ----
@@ -82,7 +86,7 @@ module contact_afu_dispatcher (
     if (goes) wr_req_tag <= {epoch, next_slot};
     slot_then <= response_slot;
     if (goes) wr_req_address <= next_address;
-    if (start_or_goes) next_address <= start ? destination : (next_address + 58'd1);
+    if (start | goes) next_address <= start ? destination : (next_address + 58'd1);
     error_then <= wr_rsp_error_d1;
     wr_rsp_error_d1 <= wr_rsp_error;
   end
@@ -108,25 +112,20 @@ module contact_afu_dispatcher (
       tail <= 8'd0;
       head <= 8'd0;
       failed <= 1'b0;
-      unexpected <= 1'b0;
+      responded <= 1'b0;
       is_response <= 1'b0;
       idle <= 1'b0;
       outstanding <= 7'd0;
       empty <= 1'b0;
     end else begin
       wr_req_valid <= (goes & ~drops_requests) | ~wr_req_moves;
-      may_send <= run & ~(~oldest_goes & (reserved[6] | (&reserved[5:0] & goes)));
+      may_send <= run & some_free;
       read_valid <= ~start & (take | (read_valid & ~goes));
-      ready <=
-          ~start
-          & (line_valid
-             | (take      ? (line_left ? (|stored[8:2] | (stored[1] & stored[0])) : stored_8_1_any) :
-                line_left ? stored_8_1_any :
-                stored_any));
+      ready <= ~start & some_ready;
       line_left <= take & ~start;
-      if (start | (line_valid ^ line_left)) stored <= start ? 9'd0 : line_valid ? (stored + 9'd1) : (stored - 9'd1);
+      stored <= start ? 9'd0 : (line_valid ^ line_left) ? (line_valid ? (stored + 9'd1) : (stored - 9'd1)) : stored;
       came <= start ? 64'd0 : oldest_goes ? {1'b0, marked[63:1]} : marked;
-      if (start | (goes ^ oldest_goes)) reserved <= start ? 7'd0 : goes ? (reserved + 7'd1) : (reserved - 7'd1);
+      reserved <= start ? 7'd0 : (goes ^ oldest_goes) ? (goes ? (reserved + 7'd1) : (reserved - 7'd1)) : reserved;
       answered <= is_awaited & ~start;
       awaited <= start ? 64'd0 : ((awaited & ~answers) | asked);
       answers <= is_response_next ? (64'd1 << response_slot) : 64'd0;
@@ -134,15 +133,18 @@ module contact_afu_dispatcher (
       asked <= (accepted & ~start) ? (64'd1 << accepted_slot) : 64'd0;
       accepted <= wr_req_valid & wr_req_ready & wr_req_of_job & ~start;
       wr_req_of_job <= ~start & (wr_req_moves | wr_req_of_job);
-      if (start_or_goes) next_slot <= start ? 6'd0 : (next_slot + 6'd1);
+      next_slot <= start ? 6'd0 : goes ? (next_slot + 6'd1) : next_slot;
       oldest <= start ? 6'd0 : next_oldest;
-      if (start | line_valid) tail <= start ? 8'd0 : (tail + 8'd1);
-      if (start | take) head <= start ? 8'd0 : (head + 8'd1);
+      tail <= start ? 8'd0 : line_valid ? (tail + 8'd1) : tail;
+      head <= start ? 8'd0 : take ? (head + 8'd1) : head;
       failed <= is_awaited & error_then & ~start;
-      unexpected <= run & is_response & ~is_awaited & ~start;
+      responded <= run & is_response & ~start;
       is_response <= is_response_next;
       idle <= ~|outstanding & ~wr_req_valid & ~goes;
-      if (start | (goes ^ answered)) outstanding <= start ? 7'd0 : goes ? (outstanding + 7'd1) : (outstanding - 7'd1);
+      outstanding <=
+          start             ? 7'd0 :
+          (goes ^ answered) ? (goes ? (outstanding + 7'd1) : (outstanding - 7'd1)) :
+          outstanding;
       empty <= ~start & ~stored_any & ~read_valid;
     end
   end

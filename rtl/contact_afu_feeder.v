@@ -40,6 +40,7 @@ module contact_afu_feeder (
   reg block_is_last;
   reg [6:0] turn_block;
   reg lines_left_step;
+  reg many_lines_left;
   reg [31:0] lines_left;
   reg [6:0] lines_waiting;
   reg [1:0] carries_rank_0;
@@ -90,36 +91,32 @@ module contact_afu_feeder (
   wire line_done_after_2 = {2'd0, last} < place_after_2;
   wire line_done = go_1 ? line_done_after_2 : go_0 ? line_done_after_1 : line_done_after_0;
   wire take = line_waits & (line_done | ~in_hand);
-  wire lines_left_31_2_any = |lines_left[31:2];
-  wire lines_left_1_0_equals_2_unless_31_2_any = (lines_left[1:0] == 2'd2) & ~lines_left_31_2_any;
+  wire left_2_0_equals_2_unless_many_lines_left = ~many_lines_left & (lines_left[2:0] == 3'd2);
   wire one_lines_left_next =
       start           ? ((lines[1:0] == 2'd1) & ~|lines[31:2]) :
       take            ?
-          (lines_left_step ? ((lines_left[1:0] == 2'd3) & ~lines_left_31_2_any) :
-           lines_left_1_0_equals_2_unless_31_2_any) :
-      lines_left_step ? lines_left_1_0_equals_2_unless_31_2_any :
-      ((lines_left[1:0] == 2'd1) & ~lines_left_31_2_any);
+          (lines_left_step ? (~many_lines_left & (lines_left[2:0] == 3'd3)) :
+           left_2_0_equals_2_unless_many_lines_left) :
+      lines_left_step ? left_2_0_equals_2_unless_many_lines_left :
+      (~many_lines_left & (lines_left[2:0] == 3'd1));
   wire lines_waiting_6_1_any = |lines_waiting[6:1];
-  wire line_comes_or_left_step_if_take_unless_start =
-      ~start
-      & (line_comes
-         | (take            ?
-                (lines_left_step ? (|lines_waiting[6:2] | (lines_waiting[1] & lines_waiting[0])) :
-                 lines_waiting_6_1_any) :
-            lines_left_step ? lines_waiting_6_1_any :
-            |lines_waiting));
-  wire lines_left_31_1_any = |lines_left[31:1];
-  wire step_if_take =
-      take            ?
-          (lines_left_step ? (lines_left_31_2_any | (lines_left[1] & lines_left[0])) : lines_left_31_1_any) :
-      lines_left_step ? lines_left_31_1_any :
-      |lines_left;
+  wire many_lines_left_or_lines_left_2_0_above_1 = many_lines_left | (3'd1 < lines_left[2:0]);
+  wire left_2_0_above_2_if_lines_left_step =
+      lines_left_step ? (many_lines_left | (3'd2 < lines_left[2:0])) : many_lines_left_or_lines_left_2_0_above_1;
+  wire left_2_0_above_1_if_lines_left_step =
+      lines_left_step ? many_lines_left_or_lines_left_2_0_above_1 : (many_lines_left | |lines_left[2:0]);
+  wire some_wait =
+      take ?
+          (((lines_left_step ? (|lines_waiting[6:2] | (lines_waiting[1] & lines_waiting[0])) : lines_waiting_6_1_any)
+            | line_comes)
+           & left_2_0_above_2_if_lines_left_step) :
+      (((lines_left_step ? lines_waiting_6_1_any : |lines_waiting) | line_comes) & left_2_0_above_1_if_lines_left_step);
   wire next_place = go_1 ? place_after_2[0] : go_0 ? place_after_1[0] : place;
-  wire [7:0] turn_plus_1 = {1'b0, turn} + 8'd1;
-  wire [7:0] turn_after_1 = (turn_plus_1 >= {1'b0, scpus}) ? (turn_plus_1 - {1'b0, scpus}) : turn_plus_1;
-  wire [7:0] turn_plus_2 = {1'b0, turn} + 8'd2;
-  wire [7:0] turn_after_2 = (turn_plus_2 >= {1'b0, scpus}) ? (turn_plus_2 - {1'b0, scpus}) : turn_plus_2;
-  wire [6:0] next_turn = (entered == 2'd2) ? turn_after_2[6:0] : (entered == 2'd1) ? turn_after_1[6:0] : turn;
+  wire [6:0] turns_before_1 = scpus - 7'd1;
+  wire [6:0] turn_after_1 = (turn >= turns_before_1) ? (turn - turns_before_1) : (turn + 7'd1);
+  wire [6:0] turns_before_2 = scpus - 7'd2;
+  wire [6:0] turn_after_2 = (turn >= turns_before_2) ? (turn - turns_before_2) : (turn + 7'd2);
+  wire [6:0] next_turn = (entered == 2'd2) ? turn_after_2 : (entered == 2'd1) ? turn_after_1 : turn;
   wire [511:0] aligned_by_1 = {
     aligns_by_1_copy_3 ? line[255:128] : held_3,
     aligns_by_1_copy_2 ? line[127:0] : held_2,
@@ -131,7 +128,7 @@ module contact_afu_feeder (
   // ---- at the clock edge ----
   always @(posedge clk) begin
     if (take) last <= next_last;
-    targets <= {turn_after_1[6:0], turn};
+    targets <= {turn_after_1, turn};
     pairs <= aligned_by_1;
     if (takes_line_copy_3) held_3 <= line[511:384];
     if (takes_line_copy_2) held_2 <= line[383:256];
@@ -156,6 +153,7 @@ module contact_afu_feeder (
       block_is_last <= 1'b0;
       turn_block <= 7'd0;
       lines_left_step <= 1'b0;
+      many_lines_left <= 1'b0;
       lines_left <= 32'd0;
       lines_waiting <= 7'd0;
       carries <= 2'd0;
@@ -170,22 +168,26 @@ module contact_afu_feeder (
       turn_phase <= round_begins ? 3'd0 : ends_block ? ((turn_phase == 3'd4) ? 3'd0 : (turn_phase + 3'd1)) : turn_phase;
       in_hand <= ~start & (take | (in_hand & ~line_done));
       place <= (start | ~in_hand) ? 1'b0 : next_place;
-      line_waits <= line_comes_or_left_step_if_take_unless_start & step_if_take;
+      line_waits <= ~start & some_wait;
       one_lines_left <= one_lines_left_next;
       turn_within <= (start | ends_block) ? 1'b0 : next_within;
       block_is_last <= round_begins ? one_block : ends_block ? before_last_block : block_is_last;
       turn_block <= round_begins ? 7'd0 : ends_block ? (turn_block + 7'd1) : turn_block;
       lines_left_step <= take & ~start;
+      many_lines_left <= start ? |lines[31:3] : |lines_left[31:3];
       if (start | lines_left_step) lines_left <= start ? lines : (lines_left - 32'd1);
-      if (start | (line_comes ^ lines_left_step)) lines_waiting <=
-          start      ? 7'd0 :
-          line_comes ? (lines_waiting + 7'd1) :
-          (lines_waiting - 7'd1);
+      lines_waiting <=
+          start                          ? 7'd0 :
+          (line_comes ^ lines_left_step) ? (line_comes ? (lines_waiting + 7'd1) : (lines_waiting - 7'd1)) :
+          lines_waiting;
       carries <= carries_rank_0;
       carries_rank_0 <= {go_1, go_0};
       turn <= start ? 7'd0 : next_turn;
-      if (start | take) head <= start ? 6'd0 : (head + 6'd1);
-      any_lines_left <= start ? |lines : step_if_take;
+      head <= start ? 6'd0 : take ? (head + 6'd1) : head;
+      any_lines_left <=
+          start ? |lines :
+          take  ? left_2_0_above_2_if_lines_left_step :
+          left_2_0_above_1_if_lines_left_step;
     end
   end
   (* keep = "true" *) always @(posedge clk) begin
@@ -202,7 +204,7 @@ module contact_afu_feeder (
   assign taken = lines_left_step;
 
   // Bits that nothing needs.
-  wire unused = &{1'b0, scpus_plus_1[0], turn_after_1[7], turn_after_2[7]};
+  wire unused = &{1'b0, scpus_plus_1[0]};
 
 endmodule
 

@@ -35,6 +35,7 @@ module contact_afu_packer (
   reg all_seen;
   reg [31:0] emerged;
   reg [31:0] count_here;
+  reg [1:0] group_here;
   (* keep = "true", dont_merge *) reg enters_1_place_1_copy_1;
   reg [255:0] entering_1;
   (* keep = "true", dont_merge *) reg enters_0_place_1_copy_1;
@@ -55,11 +56,12 @@ module contact_afu_packer (
   (* keep = "true", dont_merge *) reg empties_0_copy_1;
   (* keep = "true", dont_merge *) reg stores_0_copy_1;
   reg [31:0] contact_count;
+  reg [1:0] contacts_now;
   reg [1:0] leaves_here;
   reg [31:0] invalid_count;
+  reg [1:0] invalid_now;
   reg [31:0] first_invalid_pair;
   reg none_invalid;
-  reg [31:0] emerged_before;
 
   // ---- logic ----
   wire [1:0] leaves_now = filled_here ? leaves : 2'd0;
@@ -107,7 +109,6 @@ module contact_afu_packer (
     empties_soon <= empties;
     first_place <= place;
     carried <= leaves_now;
-    emerged_before <= emerged;
   end
   always @(posedge clk) begin
     if (rst) begin
@@ -118,10 +119,13 @@ module contact_afu_packer (
       place <= 1'b0;
       all_seen <= 1'b0;
       emerged <= 32'd0;
+      group_here <= 2'd0;
       done <= 1'b0;
       contact_count <= 32'd0;
+      contacts_now <= 2'd0;
       leaves_here <= 2'd0;
       invalid_count <= 32'd0;
+      invalid_now <= 2'd0;
       first_invalid_pair <= 32'hffffffff;
       none_invalid <= 1'b1;
     end else begin
@@ -131,14 +135,17 @@ module contact_afu_packer (
       filled_here <= filled;
       place <= start_or_flushes ? 1'b0 : next_place;
       all_seen <= ~start & (emerged == count_here);
-      emerged <= start ? 32'd0 : (emerged + {30'd0, group});
+      emerged <= start ? 32'd0 : (emerged + {30'd0, group_here});
+      group_here <= group;
       done <= done_next;
-      contact_count <= start ? 32'd0 : (contact_count + {30'd0, {1'b0, contact_here_0} + {1'b0, contact_here_1}});
+      contact_count <= start ? 32'd0 : (contact_count + {30'd0, contacts_now});
+      contacts_now <= {1'b0, contact_here_0} + {1'b0, contact_here_1};
       leaves_here <= leaves_now;
-      invalid_count <= start ? 32'd0 : (invalid_count + {30'd0, {1'b0, invalid_here_0} + {1'b0, invalid_here_1}});
+      invalid_count <= start ? 32'd0 : (invalid_count + {30'd0, invalid_now});
+      invalid_now <= {1'b0, invalid_here_0} + {1'b0, invalid_here_1};
       first_invalid_pair <=
           start                         ? 32'hffffffff :
-          (some_invalid & none_invalid) ? (invalid_here_0 ? emerged_before : (emerged_before + 32'd1)) :
+          (some_invalid & none_invalid) ? (invalid_here_0 ? emerged : (emerged + 32'd1)) :
           first_invalid_pair;
       none_invalid <= start | (none_invalid & ~some_invalid);
     end

@@ -62,10 +62,10 @@ module spl2_acknowledge (
     end else begin
       answered <= ~start & (counts_0 | take);
       counts_0 <= core_s_0 & ~start;
-      if (start | (counts_1 ^ take)) stored <= start ? 7'd0 : counts_1 ? (stored + 7'd1) : (stored - 7'd1);
+      stored <= start ? 7'd0 : (counts_1 ^ take) ? (counts_1 ? (stored + 7'd1) : (stored - 7'd1)) : stored;
       counts_1 <= core_s_1 & ~start;
-      if (start | take) head <= start ? 6'd0 : (head + 6'd1);
-      if (start | counts_1) tail <= start ? 6'd0 : (tail + 6'd1);
+      head <= start ? 6'd0 : take ? (head + 6'd1) : head;
+      tail <= start ? 6'd0 : counts_1 ? (tail + 6'd1) : tail;
     end
   end
 

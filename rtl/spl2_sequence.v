@@ -51,9 +51,9 @@ module spl2_sequence (
   reg asks;
   reg at_context;
   reg at_poll;
-  reg context_due;
-  reg waiting;
+  reg holds_for_context;
   reg at_run;
+  reg waiting;
   reg [9:0] pause;
   reg answered;
   reg has_start_word;
@@ -61,6 +61,7 @@ module spl2_sequence (
   reg is_other;
   reg at_status;
   reg at_fence;
+  reg leaves_state;
   reg at_latency;
   reg at_performance;
   reg refused;
@@ -71,17 +72,22 @@ module spl2_sequence (
   reg [32:0] destination_lines;
   reg [31:0] job_count;
   reg [511:0] compared;
+  reg [511:0] received;
   reg [32:0] source_lines;
   reg at_compare;
   reg at_measure;
   reg [31:0] job_sequence;
   reg is_own;
+  reg rsp_valid_and_3_others_d1;
   reg [11:0] expected;
-  reg start_job;
   reg [16:0] age;
+  reg start_job;
+  reg context_due;
   reg at_idle;
+  reg holds_and_is_quiet;
   reg [57:0] job_context_line;
   reg [57:0] source_line;
+  reg [57:0] first_pairs;
   reg [57:0] destination_line;
   reg [3:0] job_mode;
   reg [31:0] job_watchdog;
@@ -89,6 +95,7 @@ module spl2_sequence (
   reg has_abort;
   reg writes;
   (* keep = "true", dont_merge *) reg shows_dsm_copy_0;
+  reg [57:0] status_line_address;
   (* keep = "true", dont_merge *) reg shows_latency_copy_0;
   reg [31:0] first_write;
   reg [31:0] first_read;
@@ -107,28 +114,28 @@ module spl2_sequence (
   reg write_seen;
 
   // ---- logic ----
-  wire switches = at_poll & context_due & ~waiting & ~rd_granted & ~asks;
   wire pauses = |pause;
   wire may_ask = ~waiting & ~rd_granted & ~pauses;
   wire is_new = ~some_job | is_other;
   wire got_job = at_poll & answered & has_start_word & is_new;
   wire runs = got_job | at_run;
+  wire to_status = (at_fence & leaves_state) | (at_status & ~leaves_state);
   wire to_dsm = at_latency | at_performance;
   wire gave_up = core_error == 4'd4;
   wire ran = ~refused;
   wire fences = at_fence & ~(gave_up & ran);
   wire written = wr_granted | (to_dsm & ~dsm_valid) | (at_fence & ~fences);
-  wire to_status = (at_fence & written) | (at_status & ~written);
   wire fits = source_fits & destination_fits;
   wire refuses = at_start & ~fits;
-  wire [32:0] count_to_2 = {1'b0, job_count} + 33'd1;
+  wire [32:0] destination_count = {1'b0, job_count} + 33'd1;
   wire got_context = at_context & answered;
-  wire to_performance = (at_latency & written) | (at_performance & ~written);
-  wire to_latency = refuses | (at_run & core_done) | (at_latency & ~written);
+  wire [32:0] source_count = {1'b0, job_count} + 33'd3;
+  wire to_performance = (at_latency & leaves_state) | (at_performance & ~leaves_state);
+  wire to_latency = refuses | (at_run & core_done) | (at_latency & ~leaves_state);
   wire overdue = waiting & age[16];
+  wire switches = at_poll & holds_and_is_quiet;
   wire reads_context = (at_idle & context_valid) | switches;
   wire [57:0] address = at_context ? job_context_line : source_line;
-  wire [57:0] first_pairs = source_line + 58'd1;
   wire aborts = answered & has_abort & runs;
   wire [511:0] shows_latency_copy_0_or_shows_busy_copy_0 =
       {
@@ -161,29 +168,33 @@ module spl2_sequence (
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
-    has_start_word <= rsp_data[31:0] == 32'h406cccff;
-    is_other <= rsp_data[127:96] != job_sequence;
+    has_start_word <= received[31:0] == 32'h406cccff;
+    is_other <= received[127:96] != job_sequence;
     source_fits <= {1'b0, buffer_lines} >= source_lines;
     destination_fits <= {1'b0, buffer_lines} >= destination_lines;
     if (got_context) buffer_lines <= compared[223:192];
-    destination_lines <= {1'b0, count_to_2[32:1]};
+    destination_lines <= {1'b0, destination_count[32:1]};
     if (got_job) job_count <= compared[63:32];
-    compared <= rsp_data;
-    source_lines <= {1'b0, count_to_2[32:1]} + 33'd1;
+    compared <= received;
+    received <= rsp_data;
+    source_lines <= {1'b0, source_count[32:1]};
     if (got_job) job_sequence <= compared[127:96];
-    is_own <= rsp_valid & waiting & ((rsp_mdata[13:12] == 2'd1) & (rsp_mdata[11:0] == expected));
+    is_own <= rsp_valid_and_3_others_d1;
+    rsp_valid_and_3_others_d1 <= rsp_valid & waiting & ((rsp_mdata[13:12] == 2'd1) & (rsp_mdata[11:0] == expected));
     if (rd_granted) expected <= read_number;
     age <= rd_granted ? 17'd0 : (age + 17'd1);
     if (reads_context) job_context_line <= context_line;
     if (got_context) source_line <= compared[127:70];
+    first_pairs <= source_line + 58'd1;
     if (got_context) destination_line <= compared[191:134];
     if (got_job) job_mode <= compared[67:64] | {3'd0, |compared[95:68]};
     if (got_job) job_watchdog <= compared[191:160];
-    has_abort <= |rsp_data[159:128];
+    has_abort <= |received[159:128];
     wr_fence <= at_fence;
     wr_virtual <= ~to_dsm;
     wr_address <=
-        shows_dsm_copy_0 ? (at_latency ? {dsm_line[57:6], 6'd4} : {dsm_line[57:6], 6'd5}) : (job_context_line + 58'd1);
+        shows_dsm_copy_0 ? (at_latency ? {dsm_line[57:6], 6'd4} : {dsm_line[57:6], 6'd5}) : status_line_address;
+    status_line_address <= job_context_line + 58'd1;
     wr_data <= shows_latency_copy_0_or_shows_busy_copy_0 | {128'd0, identity_copy_0_to_shows_status_copy_0};
     if (at_start | ~write_seen) first_write <= (write_now & ~at_start) ? since_start : 32'd0;
     if (at_start | ~read_seen) first_read <= (read_now & ~at_start) ? since_start : 32'd0;
@@ -196,14 +207,15 @@ module spl2_sequence (
       asks <= 1'b0;
       at_context <= 1'b0;
       at_poll <= 1'b0;
-      context_due <= 1'b0;
-      waiting <= 1'b0;
+      holds_for_context <= 1'b0;
       at_run <= 1'b0;
+      waiting <= 1'b0;
       pause <= 10'd0;
       answered <= 1'b0;
       some_job <= 1'b0;
       at_status <= 1'b0;
       at_fence <= 1'b0;
+      leaves_state <= 1'b0;
       at_latency <= 1'b0;
       at_performance <= 1'b0;
       refused <= 1'b0;
@@ -211,18 +223,20 @@ module spl2_sequence (
       at_compare <= 1'b0;
       at_measure <= 1'b0;
       start_job <= 1'b0;
+      context_due <= 1'b0;
       at_idle <= 1'b1;
+      holds_and_is_quiet <= 1'b0;
       abort <= 1'b0;
       writes <= 1'b0;
       read_seen <= 1'b0;
       write_seen <= 1'b0;
     end else begin
-      asks <= (at_context | (at_poll & ~switches) | at_run) & may_ask;
+      asks <= (at_context | (at_poll & ~holds_for_context) | at_run) & may_ask;
       at_context <= reads_context | (at_context & ~answered);
-      at_poll <= got_context | (at_status & written) | (at_poll & ~got_job & ~switches);
-      context_due <= context_written | (context_due & ~reads_context);
-      waiting <= rd_granted | (waiting & ~answered & ~overdue);
+      at_poll <= got_context | (at_status & leaves_state) | (at_poll & ~got_job & ~switches);
+      holds_for_context <= at_poll & context_due;
       at_run <= start_job | (at_run & ~core_done);
+      waiting <= rd_granted | (waiting & ~answered & ~overdue);
       pause <=
           at_status                ? 10'd0 :
           (answered & ~at_context) ? (runs ? 10'd512 : 10'd32) :
@@ -231,7 +245,8 @@ module spl2_sequence (
       answered <= is_own & waiting & ~answered;
       some_job <= some_job | got_job;
       at_status <= to_status;
-      at_fence <= (at_performance & written) | (at_fence & ~written);
+      at_fence <= (at_performance & leaves_state) | (at_fence & ~leaves_state);
+      leaves_state <= written & ~leaves_state;
       at_latency <= to_latency;
       at_performance <= to_performance;
       refused <= refuses | (refused & ~at_start);
@@ -239,9 +254,11 @@ module spl2_sequence (
       at_compare <= at_measure;
       at_measure <= got_job;
       start_job <= at_start & fits;
+      context_due <= context_written | (context_due & ~reads_context);
       at_idle <= at_idle & ~context_valid;
+      holds_and_is_quiet <= holds_for_context & ~asks & ~rd_granted & ~waiting;
       abort <= aborts | (abort & ~got_job);
-      writes <= ((to_dsm & dsm_valid) | fences | at_status) & ~written;
+      writes <= ((to_dsm & dsm_valid) | fences | at_status) & ~written & ~leaves_state;
       read_seen <= ~at_start & (read_seen | (at_run & read_now));
       write_seen <= ~at_start & (write_seen | (at_run & write_now));
     end
@@ -271,8 +288,8 @@ module spl2_sequence (
   assign wr_valid = writes;
 
   // Bits that nothing needs.
-  wire unused = &{1'b0, count_to_2[0], compared[31:0], compared[133:128], compared[511:224],
-    dsm_line[5:0]};
+  wire unused = &{1'b0, destination_count[0], compared[31:0], compared[133:128], compared[511:224],
+    source_count[0], dsm_line[5:0]};
 
 endmodule
 

@@ -53,13 +53,15 @@ module spl2_transmit (
   (* keep = "true", dont_merge *) reg [5:0] epoch_copy_1;
   reg [11:0] granted_number;
   reg [11:0] read_number_2;
-  reg own_rd_turn;
+  (* keep = "true", dont_merge *) reg own_rd_turn_copy_0;
   reg rd_room;
+  reg own_rd_had_turn;
   reg core_rd_turn;
   reg discards;
-  reg own_wr_turn;
+  (* keep = "true", dont_merge *) reg own_wr_turn_copy_0;
   reg wr_room;
   reg is_register;
+  reg own_wr_had_turn;
   reg core_wr_turn;
   (* keep = "true", dont_merge *) reg chooses_own_wr_copy_4;
   reg [98:0] own_header;
@@ -74,17 +76,16 @@ module spl2_transmit (
   wire [5:0] next_epoch = epoch + {5'd0, start};
   wire [5:0] known_epoch = power_on ? 6'd0 : next_epoch;
   assign core_epoch = next_epoch[3:0];
-  wire own_rd_goes = own_rd_turn & rd_room;
+  wire own_rd_goes = own_rd_turn_copy_0 & rd_room;
   wire grants_own_rd = own_rd_valid & own_rd_goes;
-  wire grants_own_rd_unless_granted = own_rd_valid & ~grants_own_rd & ~own_rd_granted;
-  wire own_wr_goes = own_wr_turn & wr_room;
+  wire own_rd_turn_is_next = own_rd_valid & ~own_rd_turn_copy_0 & ~own_rd_had_turn;
+  wire own_wr_goes = own_wr_turn_copy_0 & wr_room;
   wire grants_register_wr = own_wr_goes & is_register & register_wr_valid;
+  wire own_wr_turn_is_next = (register_wr_valid | end_wr_valid) & ~own_wr_turn_copy_0 & ~own_wr_had_turn;
   wire grants_end_wr = own_wr_goes & ~is_register & end_wr_valid;
-  wire own_granted = grants_register_wr | grants_end_wr;
-  wire own_wr_waits = (register_wr_valid | end_wr_valid) & ~own_granted & ~(register_wr_granted | end_wr_granted);
-  wire chooses_own_wr_copy_0_next = own_wr_waits & ~power_on;
   wire reading = grants_own_rd | (core_rd_turn & core_rd_valid & ~discards);
   wire [57:0] own_rd_address_if_grants_own_rd = grants_own_rd ? own_rd_address : core_rd_address;
+  wire own_granted = grants_register_wr | grants_end_wr;
   wire writing = own_granted | (core_wr_turn & core_wr_valid & ~discards);
   wire [610:0] own_header_with_data = {own_header, own_data};
   wire [610:0] core_wr_tag_5_0_with_core_wr_data = {
@@ -107,18 +108,18 @@ module spl2_transmit (
   always @(posedge clk) begin
     epoch <= known_epoch;
     granted_number <= read_number_2;
-    if (grants_own_rd | power_on) read_number_2 <= power_on ? 12'd0 : (read_number_2 + 12'd1);
-    own_rd_turn <= grants_own_rd_unless_granted & ~power_on;
-    rd_room <= ~rd_almostfull;
+    if (own_rd_granted | power_on) read_number_2 <= power_on ? 12'd0 : (read_number_2 + 12'd1);
     own_rd_granted <= grants_own_rd;
-    core_rd_turn <= discards | (~grants_own_rd_unless_granted & ~rd_almostfull);
+    rd_room <= ~rd_almostfull;
+    own_rd_had_turn <= own_rd_turn_copy_0;
+    core_rd_turn <= discards | (~own_rd_turn_is_next & ~rd_almostfull);
     discards <= discard;
     register_wr_granted <= grants_register_wr;
-    own_wr_turn <= chooses_own_wr_copy_0_next;
     wr_room <= ~wr_almostfull;
     is_register <= register_wr_valid;
+    own_wr_had_turn <= own_wr_turn_copy_0;
     end_wr_granted <= grants_end_wr;
-    core_wr_turn <= discards | (~own_wr_waits & ~wr_almostfull);
+    core_wr_turn <= discards | (~own_wr_turn_is_next & ~wr_almostfull);
     tx_rd_valid <= reading & ~power_on;
     tx_rd_hdr <= {
       6'd1,
@@ -144,17 +145,19 @@ module spl2_transmit (
       write_number
     };
     own_data <= register_wr_chosen ? register_wr_data : end_wr_data;
-    if (own_granted | power_on) write_number <= power_on ? 12'd0 : (write_number + 12'd1);
+    if (register_wr_granted | end_wr_granted | power_on) write_number <= power_on ? 12'd0 : (write_number + 12'd1);
     tx_data <= own_wr_copy_4_to_own_wr_copy_0[511:0];
   end
   (* keep = "true" *) always @(posedge clk) begin
     epoch_copy_0 <= known_epoch;
     epoch_copy_1 <= known_epoch;
-    chooses_own_wr_copy_4 <= chooses_own_wr_copy_0_next;
-    chooses_own_wr_copy_3 <= chooses_own_wr_copy_0_next;
-    chooses_own_wr_copy_2 <= chooses_own_wr_copy_0_next;
-    chooses_own_wr_copy_1 <= chooses_own_wr_copy_0_next;
-    chooses_own_wr_copy_0 <= chooses_own_wr_copy_0_next;
+    own_rd_turn_copy_0 <= own_rd_turn_is_next;
+    own_wr_turn_copy_0 <= own_wr_turn_is_next;
+    chooses_own_wr_copy_4 <= own_wr_turn_is_next;
+    chooses_own_wr_copy_3 <= own_wr_turn_is_next;
+    chooses_own_wr_copy_2 <= own_wr_turn_is_next;
+    chooses_own_wr_copy_1 <= own_wr_turn_is_next;
+    chooses_own_wr_copy_0 <= own_wr_turn_is_next;
   end
 
   assign read_epoch = epoch_copy_0;

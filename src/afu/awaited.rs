@@ -12,8 +12,8 @@ pub(super) const CYCLES_TO_ANSWER: u32 = 2;
 pub(super) struct Answers<'g> {
     /// A response to a waiting request.
     pub(super) answered: Signal<'g>,
-    /// A response without a waiting request, while the job runs.
-    pub(super) unexpected: Signal<'g>,
+    /// Any response while the job runs: without a waiting request if it is not `answered`.
+    pub(super) responded: Signal<'g>,
     /// A response to a waiting request that reports a failure.
     pub(super) failed: Signal<'g>,
 }
@@ -39,7 +39,7 @@ pub(super) fn awaited<'g>(
     let is_response = registered(response.valid, "is_response");
     Answers {
         answered: registered(is_awaited, "answered"),
-        unexpected: registered(run & is_response & !is_awaited, "unexpected"),
+        responded: registered(run & is_response, "responded"),
         failed: registered(is_awaited & error.delay(1).named("error_then"), "failed"),
     }
 }

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use crate::hdl::{BuildErrors, Graph, Module};
 
 use super::awaited::awaited;
-use super::counter::{Countdown, all_used, up_down};
+use super::counter::{Countdown, from_zero, some_free, up_down};
 use super::in_order::{self, Arrival, goes_in_order};
 use super::lines::{Access, line_memory};
 use super::port::{ReadInputs, ReadOutputs, outputs};
@@ -32,7 +32,7 @@ pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
 
     let start = graph.input("start", 1);
     let run = graph.input("run", 1);
-    let drops = (start | graph.input("given_up", 1)).named("drops_requests");
+    let drops = graph.input("drops_requests", 1);
     let source = graph.input("source", ADDRESS_BITS);
     let lines = graph.input("lines", COUNT_BITS);
     let epoch = graph.input("epoch", EPOCH_BITS);
@@ -54,11 +54,11 @@ pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let issue = (*may_ask & port.has_room).named("issue");
     let some_left = remaining.connect(start, lines, issue);
     next_address.next_if(start | issue, start.select(source, next_address.plus(1)));
-    next_slot.next_if(start | issue, start.select(next_slot.same(0), next_slot.plus(1)));
+    from_zero(next_slot, start, issue, next_slot.plus(1));
     // A slot is free once its line was taken.
     let freed = (taken & !start).registered("freed");
     up_down(reserved, start, issue, freed);
-    may_ask.next(run & some_left & !all_used(reserved, issue, freed));
+    may_ask.next(run & some_left.and(some_free(reserved, freed)).at(issue).named("some_left_and_free"));
 
     // Responses go into the slot that the tag names. A response that no request waits for overwrites a line there and
     // ends the job.
@@ -90,7 +90,7 @@ pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     graph.output("line", line);
     graph.output("answered", answers.answered);
     graph.output("failed", answers.failed);
-    graph.output("unexpected", answers.unexpected);
+    graph.output("responded", answers.responded);
     graph.output("idle", (!outstanding.any() & port.is_empty & !*may_ask).registered("idle"));
     graph.finish()
 }

@@ -50,8 +50,12 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let [packed, dispatched] = ["packer_done", "dispatched"].map(input);
     let [none_inside, filled] = ["none_inside", "filled"].map(heard);
     let [read_failed, write_failed] = ["read_failed", "write_failed"].map(input);
-    let unexpected = (input("read_unexpected") | input("write_unexpected")).registered("unexpected_heard");
-    let response = (input("read_answered") | input("write_answered")).registered("response_heard");
+    let [read_answered, write_answered] = ["read_answered", "write_answered"].map(input);
+    let [read_responded, write_responded] = ["read_responded", "write_responded"].map(input);
+    let response = (read_answered | write_answered).registered("response_heard");
+    // A response that answers no request.
+    let unexpected = (read_responded & !read_answered) | (write_responded & !write_answered);
+    let unexpected = unexpected.registered("unexpected_heard");
     let link_idle_now = (input("read_idle") & input("write_idle")).named("link_idle");
     let link_idle = link_idle_now.registered("link_idle_heard");
     let [waits_for_input, waits_for_output] = ["waits_for_input", "waits_for_output"].map(input);
@@ -62,31 +66,35 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let error = graph.register("error", JobError::BITS, 0);
     let waits = graph.register("waits_to_begin", 1, 0);
     let run = graph.register("run", 1, 0);
-    let busy = graph.register("busy", 1, 0);
-    let accept = (start & !*busy).named("accept");
+    // A copy steers what control decides, one the values of a job, and one the wide addresses.
+    let is_busy = graph.wire("is_busy", 1);
+    let copies = is_busy.copies("busy", 3);
+    let (busy, keeps_values, keeps_addresses) = (copies[0], copies[1], copies[2]);
+    let accept = (start & !busy).named("accept");
+    let takes_values = (start & !keeps_values).named("takes_values");
 
     // The job is held from its start; everything downstream begins one cycle later. The addresses are wide, so they
     // are loaded in every cycle without a job and do not depend on `start`.
     let job_source = graph.data_register("job_source", ADDRESS_BITS);
-    job_source.next_if(!*busy, source);
+    job_source.next_if(!keeps_addresses, source);
     let job_destination = graph.data_register("job_destination", ADDRESS_BITS);
-    job_destination.next_if(!*busy, destination);
+    job_destination.next_if(!keeps_addresses, destination);
     let job_count = graph.register("job_count", COUNT_BITS, 0);
-    job_count.next_if(accept, count);
+    job_count.next_if(takes_values, count);
     let job_epoch = graph.register("job_epoch", EPOCH_BITS, 0);
-    job_epoch.next_if(accept, epoch);
+    job_epoch.next_if(takes_values, epoch);
     let job_watchdog = graph.register("job_watchdog", COUNT_BITS, 0);
     let has_watchdog = graph.register("has_watchdog", 1, 0);
     has_watchdog.next(accept.select(watchdog.any(), *has_watchdog | *draining));
     let drain_cycles = watchdog.same(u128::from(DRAIN_CYCLES));
-    job_watchdog.next_if(accept | (*draining & !*has_watchdog), draining.select(drain_cycles, watchdog));
+    job_watchdog.next_if(takes_values | (*draining & !*has_watchdog), draining.select(drain_cycles, watchdog));
     let takes_spheres = spec.config.input == Input::Spheres;
     let (lines, has_unknown_mode, is_too_large) = match &job.others {
-        Some(port) => spheres(&graph, spec, [accept, count, mode], port.input(&graph)),
+        Some(port) => spheres(&graph, spec, [takes_values, count, mode], port.input(&graph)),
         None => (pairs(spec, count), mode.any(), graph.constant(1, 0)),
     };
     let job_lines = graph.register("job_lines", COUNT_BITS, 0);
-    job_lines.next_if(accept, lines);
+    job_lines.next_if(takes_values, lines);
 
     let stopping = graph.register("cycles_draining", CYCLES_TO_STOP.ilog2(), 0);
     let stopped = stopping.all().named("stopped");
@@ -97,16 +105,15 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     // end. The register does not make a timely response late.
     let silence = graph.register("silence", COUNT_BITS, 0);
     let quiet = (response | link_idle.registered("link_idle_before")).named("link_is_alive");
-    let restarts = (quiet | !*busy | stops).named("silence_restarts");
+    let restarts = (quiet | !busy | stops).named("silence_restarts");
     silence.next(restarts.select(silence.same(0), silence.plus(1)));
     // It is compared one cycle before it is used: it will be above the watchdog's cycles.
     let is_over = (!restarts & silence.at_least(*job_watchdog)).registered("silence_is_over");
-    let expires = (*busy & !quiet & *has_watchdog & is_over).named("expires");
+    let expires = (busy & !quiet & *has_watchdog & is_over).named("expires");
     let expired = expires.registered("expired");
 
     // The end.
-    let complete = (*run & packed & dispatched & link_idle_now).registered("complete");
-    let complete = (*run & complete).named("completes");
+    let complete = graph.register("completes", 1, 0);
     let has_unknown_mode = has_unknown_mode.named("has_unknown_mode");
     let refuses = (accept & (has_unknown_mode | is_too_large)).named("refuses");
     // What ends a job early, in order of precedence. The first three are known with their code from a register.
@@ -121,25 +128,32 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let cause = told_cause.any().select(told_cause, watched).named("cause");
     let fails = (*running & (abort | read_failed | write_failed)) | expires;
     let fails = fails.registered("fails");
-    let failing = (*running & (fails | unexpected) & !complete).named("failing");
+    let failing = (*running & (fails | unexpected) & !*complete).named("failing");
+    // A job that fails now does not complete in the next cycle.
+    let goes_on = (*running & !*complete & !failing).named("goes_on");
+    complete.next(*run & packed & dispatched & link_idle_now & goes_on);
+    let complete = *complete;
     // This error takes precedence, because the host must know that late responses and late writes may still come.
-    let gives_up = (*busy & expired & !complete).named("gives_up");
+    let gives_up = (busy & expired & !complete).named("gives_up");
     let given_up = graph.register("given_up", 1, 0);
-    given_up.next(!accept & (*given_up | gives_up));
+    let is_given_up = (!accept & (*given_up | gives_up)).named("is_given_up");
+    given_up.next(is_given_up);
     // The parts are stopped some cycles later.
     let drained = (*draining & stopped & none_inside & (link_idle | *given_up)).named("drained");
     let takes_job = (accept & !refuses).named("takes_job");
-    running.next(takes_job | (*running & !complete & !failing));
-    busy.next(accept | (*busy & !complete & !drained));
-    // A job begins once the delay lines are filled, and runs one cycle later. Each part is told by a register of its
-    // own.
+    running.next(takes_job | goes_on);
+    is_busy.drive(accept | (busy & !complete & !drained));
+    // A job begins once the delay lines are filled, and runs one cycle later. Each part has a copy of the beginning.
     let still_waits = (*waits & !failing).named("still_waits");
     let begins = ((accept | still_waits) & filled).named("begins");
     begin.next(begins);
     let names = if takes_spheres { &PARTS_OF_SPHERES[..] } else { &PARTS };
     let parts = begins.copies("begin_job", names.len() as u32);
+    // Request ports drop what is behind their request after a reset, when a job begins, and while one is given up.
+    let drops = graph.register("drops_requests", 1, 1);
+    drops.next(begins | is_given_up);
     waits.next((takes_job | still_waits) & !filled);
-    run.next((*run | *begin) & *running & !complete & !failing);
+    run.next((*run | *begin) & goes_on);
     draining.next(refuses | failing | (*draining & !drained));
     done.next(!accept & (*done | complete | drained));
     let failed = failing.select(cause, *error).named("failed");
@@ -150,7 +164,7 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
         // The room for results in memory, for the dispatcher.
         let lines = port.input(&graph);
         let job_lines = graph.register("job_destination_lines", COUNT_BITS, 0);
-        job_lines.next_if(accept, lines);
+        job_lines.next_if(takes_values, lines);
         graph.output("job_destination_lines", job_lines.value());
     }
     let ended = gives_up.select(error.same(JobError::Watchdog.code().into()), ended).named("ended");
@@ -163,20 +177,20 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     // The counts begin one cycle after the start, and include that cycle, in which nothing waits yet.
     let first_cycle = accept.registered("first_cycle");
     for (port, counts, first) in [
-        (told.cycles_busy, *busy, 1),
+        (told.cycles_busy, busy, 1),
         (told.cycles_input, (waits_for_input & *run).registered("counts_input"), 0),
         (told.cycles_output, (waits_for_output & *run).registered("counts_output"), 0),
     ] {
         graph.output(port.name, cycles(&graph, port.name, port.bits, [first_cycle, counts], first));
     }
-    graph.output("busy", busy.value());
+    graph.output("busy", busy);
     graph.output("done", done.value());
     graph.output("error", error.value());
     for (part, begin) in names.iter().zip(parts) {
         graph.output(&format!("begin_{part}"), begin);
     }
     graph.output("run", run.value());
-    graph.output("given_up", given_up.value());
+    graph.output("drops_requests", drops.value());
     graph.output("job_source", job_source.value());
     graph.output("job_destination", job_destination.value());
     graph.output("job_count", job_count.value());
@@ -187,7 +201,7 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
         let bits = spec.layout().pairs_per_line().ilog2();
         let last_place = graph.data_register("last_place", bits.max(1));
         let fewer = count.low(bits.max(1)).minus(1);
-        last_place.next_if(accept, if bits == 0 { fewer.same(0) } else { fewer });
+        last_place.next_if(takes_values, if bits == 0 { fewer.same(0) } else { fewer });
         graph.output("last_place", last_place.value());
     }
     graph.finish()
@@ -205,7 +219,7 @@ fn pairs<'g>(spec: &Spec, count: Signal<'g>) -> Signal<'g> {
 fn spheres<'g>(
     graph: &'g Graph,
     spec: &Spec,
-    [accept, count, mode]: [Signal<'g>; 3],
+    [takes, count, mode]: [Signal<'g>; 3],
     others: Signal<'g>,
 ) -> (Signal<'g>, Signal<'g>, Signal<'g>) {
     let keeps = mode.is(2).named("mode_keeps_table");
@@ -218,11 +232,11 @@ fn spheres<'g>(
     let of_others = lines(others).gate(has_others).named("lines_of_others");
     for (name, value) in [("has_others", has_others), ("keeps_table", keeps)] {
         let register = graph.register(name, 1, 0);
-        register.next_if(accept, value);
+        register.next_if(takes, value);
         graph.output(name, register.value());
     }
     let job_others = graph.register("job_others", COUNT_BITS, 0);
-    job_others.next_if(accept, others);
+    job_others.next_if(takes, others);
     graph.output("job_others", job_others.value());
     let exceeds = |spheres: Signal<'g>, most: u32| spheres.greater_than(spheres.same(most.into()));
     let is_too_large =

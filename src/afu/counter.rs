@@ -11,6 +11,8 @@ pub(super) struct Countdown<'g> {
     /// True if exactly one is left.
     pub(super) one: Signal<'g>,
     flags: [Register<'g>; 2],
+    /// True if there were so many a cycle ago that some are left whatever was counted since.
+    many: Register<'g>,
     counts: Register<'g>,
     /// True in the cycle in which a step is counted.
     pub(super) counted: Signal<'g>,
@@ -22,29 +24,57 @@ impl<'g> Countdown<'g> {
         let flags = ["any", "one"].map(|flag| graph.register(&format!("{flag}_{name}"), 1, 0));
         let [any, one] = flags.map(Register::value);
         let counts = graph.register(&format!("{name}_step"), 1, 0);
-        Self { left: graph.register(name, width, 0), any, one, flags, counts, counted: *counts }
+        let many = graph.register(&format!("many_{name}"), 1, 0);
+        Self { left: graph.register(name, width, 0), any, one, flags, many, counts, counted: *counts }
     }
 
     /// Starts from `from` at `start`, and counts down at `step`, which is set only while something is left. Returns
     /// whether anything will be left.
-    pub(super) fn connect(self, start: Signal<'g>, from: Signal<'g>, step: Signal<'g>) -> Signal<'g> {
-        let (left, counted) = (self.left, self.counted);
+    pub(super) fn connect(self, start: Signal<'g>, from: Signal<'g>, step: Signal<'g>) -> AtStep<'g> {
+        let (left, counted, many) = (self.left, self.counted, *self.many);
         self.counts.next(step & !start);
         left.next_if(start | counted, start.select(from, left.minus(1)));
-        let next_any = left_after(*left, counted, step);
-        let one_after = |steps: u32| is_small(*left, steps + 1);
-        let next_one = by_steps(counted, step, one_after);
-        self.flags[0].next(start.select(from.any(), next_any));
-        self.flags[1].next(start.select(is_small(from, 1), next_one));
+        // From eight on, three bits that are two steps late say nothing, and `many` says it.
+        self.many.next(start.select(from.drop_low(3).any(), left.drop_low(3).any()));
+        let few = left.low(3);
+        let next_any = by_steps(counted, |steps| many | few.greater_than(few.same(steps.into())));
+        let next_one = by_steps(counted, |steps| !many & few.is(u128::from(steps + 1)));
+        self.flags[0].next(start.select(from.any(), next_any.at(step)));
+        self.flags[1].next(start.select(is_small(from, 1), next_one.at(step)));
         next_any
     }
 }
 
-/// True if anything is left of `count` after a cycle in which one goes at `step`, which arrives last. `count` still
-/// includes the one that went a cycle before, at `counted`.
-pub(super) fn left_after<'g>(count: Signal<'g>, counted: Signal<'g>, step: Signal<'g>) -> Signal<'g> {
+/// What will be true with a step in this cycle, and without one. Whether there is a step is known last, so both are
+/// computed before.
+#[derive(Clone, Copy)]
+pub(super) struct AtStep<'g> {
+    with: Signal<'g>,
+    without: Signal<'g>,
+}
+
+impl<'g> AtStep<'g> {
+    /// The one of both that `step` chooses.
+    pub(super) fn at(self, step: Signal<'g>) -> Signal<'g> {
+        step.select(self.with, self.without)
+    }
+
+    /// True if both are true.
+    pub(super) fn and(self, other: Self) -> Self {
+        Self { with: self.with & other.with, without: self.without & other.without }
+    }
+
+    /// True in either case if `signal` is set.
+    pub(super) fn or(self, signal: Signal<'g>) -> Self {
+        Self { with: self.with | signal, without: self.without | signal }
+    }
+}
+
+/// True if anything is left of `count` after a cycle with a step. `count` still includes the one that went a cycle
+/// before, at `counted`.
+pub(super) fn left_after<'g>(count: Signal<'g>, counted: Signal<'g>) -> AtStep<'g> {
     let count = count.extend(count.width().max(3));
-    by_steps(counted, step, |steps| match steps {
+    by_steps(counted, |steps| match steps {
         0 => count.any(),
         1 => count.drop_low(1).any(),
         _ => count.drop_low(2).any() | (count.bit(1) & count.bit(0)),
@@ -52,8 +82,8 @@ pub(super) fn left_after<'g>(count: Signal<'g>, counted: Signal<'g>, step: Signa
 }
 
 /// `of` the number of steps that are not counted yet.
-fn by_steps<'g>(counted: Signal<'g>, step: Signal<'g>, of: impl Fn(u32) -> Signal<'g>) -> Signal<'g> {
-    step.select(counted.select(of(2), of(1)), counted.select(of(1), of(0)))
+fn by_steps<'g>(counted: Signal<'g>, of: impl Fn(u32) -> Signal<'g>) -> AtStep<'g> {
+    AtStep { with: counted.select(of(2), of(1)), without: counted.select(of(1), of(0)) }
 }
 
 /// True if `value` is this number, 1 to 3.
@@ -62,30 +92,36 @@ fn is_small(value: Signal<'_>, number: u32) -> Signal<'_> {
     low & !value.drop_low(2).any()
 }
 
+/// Connects a counter that is 0 at `start`, and takes `next` where it `moves`. `start` resets it and delays nothing.
+pub(super) fn from_zero<'g>(count: Register<'g>, start: Signal<'g>, moves: Signal<'g>, next: Signal<'g>) {
+    count.next(start.select(count.same(0), moves.select(next, *count)));
+}
+
 /// Connects a counter that is 0 at `start`, goes up on one event and down on another. The second event arrives last.
 pub(super) fn up_down<'g>(count: Register<'g>, start: Signal<'g>, up: Signal<'g>, down: Signal<'g>) {
     let moved = up.select(count.plus(1), count.minus(1));
-    count.next_if(start | (up ^ down), start.select(count.same(0), moved));
+    from_zero(count, start, up ^ down, moved);
 }
 
-/// True if all of a power of two slots are used after a cycle in which `reserved` are used at the beginning.
-pub(super) fn all_used<'g>(reserved: Register<'g>, takes: Signal<'g>, frees: Signal<'g>) -> Signal<'g> {
+/// True if one of a power of two slots is free after a cycle that may take one, with `reserved` in use before it.
+pub(super) fn some_free<'g>(reserved: Register<'g>, frees: Signal<'g>) -> AtStep<'g> {
     let slots = reserved.width() - 1;
-    !frees & (reserved.msb() | (reserved.low(slots).all() & takes))
+    let without = frees | !reserved.msb();
+    AtStep { with: without & (frees | !reserved.low(slots).all()), without }
 }
 
-/// A counter of things that come and go, at most `2^(width − 1)` of them. They go one cycle after `goes` says so.
-/// Returns the counter, and the flag that any will be left.
+/// A counter of things that come and go, at most `2^(width − 1)` of them. The one that went a cycle ago is counted at
+/// `gone`. Returns whether any will be left, after a cycle in which one goes or not.
 pub(super) fn waiting<'g>(
     graph: &'g Graph,
     name: &str,
     width: u32,
     [start, comes]: [Signal<'g>; 2],
-    [goes, gone]: [Signal<'g>; 2],
-) -> Signal<'g> {
+    gone: Signal<'g>,
+) -> AtStep<'g> {
     let count = graph.register(name, width, 0);
     up_down(count, start, comes, gone);
-    comes | left_after(*count, gone, goes)
+    left_after(*count, gone).or(comes)
 }
 
 /// A count of the cycles in which `counts` is set, from `first` at `restart`. Its upper half counts when the lower half

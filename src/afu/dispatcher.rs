@@ -11,7 +11,7 @@ use crate::config::Results;
 use crate::hdl::{BuildErrors, Graph, Module};
 
 use super::awaited::{self, awaited};
-use super::counter::{Countdown, all_used, left_after, up_down};
+use super::counter::{Countdown, from_zero, left_after, some_free, up_down};
 use super::in_order::{Arrival, goes_in_order};
 use super::lines::{Access, line_memory};
 use super::port::{WriteInputs, WriteOutputs, outputs};
@@ -32,7 +32,7 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
 
     let start = graph.input("start", 1);
     let run = graph.input("run", 1);
-    let drops = (start | graph.input("given_up", 1)).named("drops_requests");
+    let drops = graph.input("drops_requests", 1);
     let destination = graph.input("destination", ADDRESS_BITS);
     let epoch = graph.input("epoch", EPOCH_BITS);
     let line_valid = graph.input("line_valid", 1);
@@ -47,14 +47,16 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
     let stored = graph.register("stored", place_bits + 1, 0);
     let ready = graph.register("ready", 1, 0);
     let read_valid = graph.register("read_valid", 1, 0);
-    let goes = graph.wire("goes", 1);
-    let read = (!*read_valid | goes).named("read");
+    let may_go = graph.wire("may_go", 1);
+    let goes = (may_go & *read_valid).named("goes");
+    let read = (!*read_valid | may_go).named("read");
     let take = (read & *ready).named("take");
     let left = (take & !start).registered("line_left");
-    tail.next_if(start | line_valid, start.select(tail.same(0), tail.plus(1)));
-    head.next_if(start | take, start.select(head.same(0), head.plus(1)));
+    from_zero(tail, start, line_valid, tail.plus(1));
+    from_zero(head, start, take, head.plus(1));
     up_down(stored, start, line_valid, left);
-    ready.next(!start & (line_valid | left_after(*stored, left, take)));
+    let is_ready = left_after(*stored, left).or(line_valid).at(take).named("some_ready");
+    ready.next(!start & is_ready);
     read_valid.next(!start & (take | (*read_valid & !goes)));
 
     // Write requests. Whether one may be sent is decided one cycle ahead. The line at the port is in the memory's own
@@ -65,7 +67,7 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
     let may_send = graph.register("may_send", 1, 0);
     let valid = graph.register("wr_req_valid", 1, 0);
     let moves = (!*valid | link.wr_req_ready).named("wr_req_moves");
-    goes.drive(*may_send & *read_valid & moves);
+    may_go.drive(*may_send & moves);
     let send = if bounded {
         let lines = graph.input("lines", COUNT_BITS);
         let room = Countdown::new(&graph, "lines_of_room", COUNT_BITS);
@@ -94,7 +96,7 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
     let request_tag = graph.data_register("wr_req_tag", spec.tag_bits());
     request_tag.next_if(send, epoch.concat(next_slot.value()));
     next_address.next_if(start | send, start.select(destination, next_address.plus(1)));
-    next_slot.next_if(start | send, start.select(next_slot.same(0), next_slot.plus(1)));
+    from_zero(next_slot, start, send, next_slot.plus(1));
 
     // Acknowledgements, in any order.
     let is_current = link.wr_rsp_tag.high(EPOCH_BITS).equals(epoch);
@@ -105,7 +107,7 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
     let answers = awaited(&graph, slots, [start, run], [accepted, request_tag.low(slot_bits)], &arrival, error);
     let freed = goes_in_order(&graph, slots, start, arrival.slot, answers.answered);
     up_down(reserved, start, send, freed);
-    may_send.next(run & !all_used(reserved, send, freed));
+    may_send.next(run & some_free(reserved, freed).at(send).named("some_free"));
     let outstanding = graph.register("outstanding", slot_bits + 1, 0);
     up_down(outstanding, start, send, answers.answered);
 
@@ -121,7 +123,7 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
     }
     graph.output("answered", answers.answered);
     graph.output("failed", answers.failed);
-    graph.output("unexpected", answers.unexpected);
+    graph.output("responded", answers.responded);
     // It is busy in the cycle in which a request reaches the port.
     graph.output("idle", (!outstanding.any() & !*valid & !send).registered("idle"));
     graph.output("empty", (!start & !stored.any() & !*read_valid).registered("empty"));

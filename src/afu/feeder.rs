@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
-use super::counter::{Countdown, waiting};
+use super::counter::{Countdown, from_zero, waiting};
 use super::lines::CYCLES_TO_WORD;
 use super::rounds::Rounds;
 use super::{COUNT_BITS, SCPU_BITS, Spec, wide};
@@ -93,11 +93,12 @@ pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let next_place = by_group(&go, place_after).named("next_place");
     place.next((start | !*in_hand).select(place.same(0), next_place));
     let waiting_bits = spec.max_outstanding.ilog2() + 1;
-    let any_waiting = waiting(&graph, "lines_waiting", waiting_bits, [start, comes], [take, taken]);
-    line_waits.next(!start & any_waiting & lines_left.connect(start, lines, take));
+    let any_waiting = waiting(&graph, "lines_waiting", waiting_bits, [start, comes], taken);
+    let waits_then = any_waiting.and(lines_left.connect(start, lines, take)).at(take).named("some_wait");
+    line_waits.next(!start & waits_then);
     // The place in the collector's memory of the line after the one in hand.
     let head = graph.register("head", spec.max_outstanding.ilog2(), 0);
-    head.next_if(start | take, start.select(head.same(0), head.plus(1)));
+    from_zero(head, start, take, head.plus(1));
     if let Some(rounds) = &rounds {
         let ends_block = by_group(&go, |pairs| rounds.ends_block(pairs)).named("ends_block");
         rounds.advance(start, ends_block, by_group(&go, |pairs| rounds.within_after(pairs)).named("next_within"));
@@ -143,12 +144,11 @@ pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
 /// The SCPUs that the lanes of a group are for, lane 0 in the lowest bits. `group` is the number of its pairs.
 fn targets<'g>(graph: &'g Graph, start: Signal<'g>, scpus: Signal<'g>, group: Signal<'g>, lanes: u32) -> Signal<'g> {
     let turn = graph.register("turn", SCPU_BITS, 0);
-    let all = scpus.extend(SCPU_BITS + 1);
     let behind = |pairs: u32| {
-        let sum = turn.extend(SCPU_BITS + 1).plus(u128::from(pairs)).named(&format!("turn_plus_{pairs}"));
-        // There are never more pairs in a group than SCPUs.
-        let wrapped = sum.at_least(all).select(sum - all, sum).named(&format!("turn_after_{pairs}"));
-        wrapped.low(SCPU_BITS)
+        // The first turn that wraps. There are never more pairs in a group than SCPUs.
+        let last = scpus.minus(pairs.into()).named(&format!("turns_before_{pairs}"));
+        let wrapped = turn.at_least(last).select(turn.value() - last, turn.plus(pairs.into()));
+        wrapped.named(&format!("turn_after_{pairs}"))
     };
     let next = (1..=lanes).fold(turn.value(), |fewer, pairs| group.is(u128::from(pairs)).select(behind(pairs), fewer));
     turn.next(start.select(turn.same(0), next.named("next_turn")));

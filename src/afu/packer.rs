@@ -16,7 +16,7 @@ pub(super) fn cycles_to_line(spec: &Spec) -> u32 {
 
 /// Additional cycles for a last line that is not full. A last word of its own is known to have left a cycle later.
 pub(super) fn cycles_to_flush(spec: &Spec) -> u32 {
-    if per_word(spec).is_some() { 3 } else { 2 }
+    if per_word(spec).is_some() { 4 } else { 3 }
 }
 
 /// Cycles until a job without pairs is known to be complete.
@@ -55,9 +55,10 @@ fn of_all(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
         contacts.push(results.of(lane, "contact"));
         invalids.push(results.of(lane, "invalid"));
     }
-    let (emerged, all_out) = status::emerged(&graph, start, results.group, count);
+    let group = results.group.registered("group_here");
+    let (emerged, all_out) = status::emerged(&graph, start, group, count);
     fill(&graph, spec, start, results.leaves, records, all_out);
-    status::count(&graph, start, emerged.delay(1).named("emerged_before"), &contacts, &invalids);
+    status::count(&graph, start, emerged, &contacts, &invalids);
     graph.finish()
 }
 

@@ -29,9 +29,9 @@ pub(super) fn slice<'g>(
     ready: Signal<'g>,
 ) -> Slice<'g> {
     let at_port = graph.register(&format!("{port}_valid"), 1, 0);
-    // One copy says whether there is room, the other steers the wide fields.
+    // One copy says whether there is room, the other steers the wide fields. A reset clears them because it `drops`.
     let waits = graph.wire(&format!("{port}_waits"), 1);
-    let copies = waits.copies(&format!("{port}_spare_valid"), 2);
+    let copies = waits.data_copies(&format!("{port}_spare_valid"), 2);
     let (spare, steers) = (copies[0], copies[1]);
     let moves = (!*at_port | ready).named(&format!("{port}_moves"));
     let behind = (!drops & (spare | valid)).named(&format!("{port}_next_valid"));

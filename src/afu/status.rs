@@ -66,8 +66,10 @@ pub(super) fn count<'g>(
     let contact_count = graph.register("contact_count", COUNT_BITS, 0);
     let invalid_count = graph.register("invalid_count", COUNT_BITS, 0);
     let first_invalid = graph.register("first_invalid_pair", COUNT_BITS, u128::from(u32::MAX));
-    contact_count.next(start.select(contact_count.same(0), contact_count.value() + ones(graph, contacts)));
-    invalid_count.next(start.select(invalid_count.same(0), invalid_count.value() + ones(graph, invalids)));
+    for (count, bits, name) in [(contact_count, contacts, "contacts_now"), (invalid_count, invalids, "invalid_now")] {
+        let now = ones(graph, bits).registered(name).extend(COUNT_BITS);
+        count.next(start.select(count.same(0), count.value() + now));
+    }
     let none_yet = graph.register("none_invalid", 1, 1);
     let mut first = emerged.plus(u128::from(lanes - 1));
     for lane in (0..lanes - 1).rev() {
@@ -82,9 +84,8 @@ pub(super) fn count<'g>(
     graph.output("first_invalid", first_invalid.value());
 }
 
-/// The number of set bits, as a pair count.
+/// The number of set bits.
 fn ones<'g>(graph: &'g Graph, bits: &[Signal<'g>]) -> Signal<'g> {
     let width = bits.len().ilog2() + 1;
-    let sum = bits.iter().fold(graph.constant(width, 0), |sum, bit| sum + bit.extend(width));
-    sum.extend(COUNT_BITS)
+    bits.iter().fold(graph.constant(width, 0), |sum, bit| sum + bit.extend(width))
 }

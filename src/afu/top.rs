@@ -44,7 +44,7 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, B
 
     // Signals that flow back. Control and credits hear from all other parts.
     let wire = |name: &'static str, width: u32| (name, graph.wire(name, width));
-    let told_to_control = ["read_failed", "write_failed", "read_unexpected", "write_unexpected", "read_answered"]
+    let told_to_control = ["read_failed", "write_failed", "read_responded", "write_responded", "read_answered"]
         .into_iter()
         .chain(["write_answered", "read_idle", "write_idle", "packer_done", "dispatched", "none_inside", "filled"])
         .chain(["waits_for_input", "waits_for_output"])
@@ -61,7 +61,7 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, B
     let control = graph.instance("control", &control, &control_inputs);
     let begin = |part: &str| control.output(&format!("begin_{part}"));
     let run = control.output("run");
-    let given_up = control.output("given_up");
+    let drops = control.output("drops_requests");
     let job_epoch = control.output("job_epoch");
 
     let mut credits_inputs = told_to_credits.clone();
@@ -73,7 +73,7 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, B
     collector_inputs.extend([
         ("start", begin("collector")),
         ("run", run),
-        ("given_up", given_up),
+        ("drops_requests", drops),
         ("source", control.output("job_source")),
         ("lines", control.output("lines")),
         ("epoch", job_epoch),
@@ -125,7 +125,7 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, B
     dispatcher_inputs.extend([
         ("start", begin("dispatcher")),
         ("run", run),
-        ("given_up", given_up),
+        ("drops_requests", drops),
         ("destination", control.output("job_destination")),
         ("epoch", job_epoch),
         ("line_valid", packer.output("line_valid")),

@@ -33,14 +33,19 @@ module collector (
   wire        line_comes;
   wire [31:0] line;
   wire        idle;
-  wire        unexpected;
+  // As control tells it (credits.sv: drops_in_time).
+  reg         was_reset = 1'b1;
+  always @(posedge clk) was_reset <= rst;
+  wire        drops = start | given_up | was_reset;
+  wire        answered, responded;
+  wire        unexpected = responded & ~answered;
   contact_afu_collector dut (
-    .clk(clk), .rst(rst), .start(start), .run(run), .given_up(given_up), .source(source), .lines(lines),
+    .clk(clk), .rst(rst), .start(start), .run(run), .drops_requests(drops), .source(source), .lines(lines),
     .epoch(epoch), .taken(taken),
     .place(place), .rd_req_ready(rd_req_ready), .rd_rsp_valid(rd_rsp_valid), .rd_rsp_tag(rd_rsp_tag),
     .rd_rsp_data(rd_rsp_data), .rd_rsp_error(rd_rsp_error),
     .rd_req_valid(rd_req_valid), .rd_req_address(rd_req_address), .rd_req_tag(rd_req_tag),
-    .line_comes(line_comes), .line(line), .answered(), .failed(), .unexpected(unexpected), .idle(idle)
+    .line_comes(line_comes), .line(line), .answered(answered), .failed(), .responded(responded), .idle(idle)
   );
   (* hierconn *) wire        \dut.rd_req_spare_valid_copy_0 ;
   (* hierconn *) wire        \dut.rd_req_spare_valid_copy_1 ;
@@ -182,7 +187,7 @@ module collector (
     held <= rd_req_valid & ~rd_req_ready & ~rst;
     was <= {rd_req_address, rd_req_tag};
   end
-  always @* if (after_reset & ~rst) begin
+  always @* if (begun & ~rst) begin
     copy_is_right: assert (\dut.rd_req_spare_valid_copy_1 == spare);
   end
   // Once the job is given up, only the request that stands on the port is left.

@@ -37,6 +37,9 @@ module credits (
   (* hierconn *) wire                       \dut.control.begin_packer ;
   (* hierconn *) wire                       \dut.control.begin_dispatcher ;
   (* hierconn *) wire                       \dut.control.given_up ;
+  (* hierconn *) wire                       \dut.control.drops_requests ;
+  (* hierconn *) wire                       \dut.control.busy_copy_1 ;
+  (* hierconn *) wire                       \dut.control.busy_copy_2 ;
   (* hierconn *) wire                       \dut.control.run ;
   (* hierconn *) wire                       \dut.control.running ;
   (* hierconn *) wire                       \dut.control.draining ;
@@ -98,20 +101,23 @@ module credits (
   (* hierconn *) wire                       \dut.packer.went ;
   (* hierconn *) wire                       \dut.packer.comes ;
   (* hierconn *) wire [31:0]                \dut.packer.emerged ;
+  (* hierconn *) wire [1:0]                 \dut.packer.group_here ;
   wire [2:0]  gathered = 3'd0;
-  wire [1:0]  uncounted = 2'd0;
+  wire [1:0]  uncounted = \dut.packer.group_here ;
   wire [31:0] emerged = \dut.packer.emerged ;
 `endif
 
   // Expected positions of groups of pairs, which advance by one rank per cycle, and the number of pairs in them.
   reg [2*RANKS+1:0] ranks;
   reg after_reset = 1'b0;
+  reg was_reset;
   reg begun = 1'b0;
   // Whether a job ran one cycle ago, two, three.
   reg [2:0] ran = 3'd0;
   reg completed = 1'b0;
   always @(posedge clk) begin
     after_reset <= after_reset | rst;
+    was_reset <= rst;
     begun <= ~rst & (begun | \dut.control.begin_job );
     ran <= rst ? 3'd0 : {ran[1:0], \dut.control.run };
     completed <= \dut.control.completes & ~rst;
@@ -147,7 +153,9 @@ module credits (
     waits_or_runs: assert (~(\dut.control.run & \dut.control.waits_to_begin )
       & (\dut.control.running | ~(\dut.control.run | \dut.control.waits_to_begin )));
     one_or_other: assert (~(\dut.control.running & \dut.control.draining ));
-    busy_is_right: assert (busy == (\dut.control.running | \dut.control.draining ));
+    busy_is_right: assert ({3{\dut.control.running | \dut.control.draining }}
+      == {busy, \dut.control.busy_copy_1 , \dut.control.busy_copy_2 });
+    drops_in_time: assert (\dut.control.drops_requests == (\dut.control.begin_job | \dut.control.given_up | was_reset));
     nothing_runs: assert (~\dut.control.given_up
       | ~(\dut.control.running | \dut.control.run | \dut.control.begin_job ));
     only_in_a_job: assert (\dut.feeder.entered == 2'd0 | (ran[2] & begun));

@@ -31,14 +31,19 @@ module dispatcher (
   wire [5:0]  wr_req_tag;
   wire [31:0] wr_req_data;
   wire        idle;
-  wire        unexpected;
+  // As control tells it (credits.sv: drops_in_time).
+  reg         was_reset = 1'b1;
+  always @(posedge clk) was_reset <= rst;
+  wire        drops = start | given_up | was_reset;
+  wire        answered, responded;
+  wire        unexpected = responded & ~answered;
   wire        empty;
   contact_afu_dispatcher dut (
-    .clk(clk), .rst(rst), .start(start), .run(run), .given_up(given_up), .destination(destination), .epoch(epoch),
+    .clk(clk), .rst(rst), .start(start), .run(run), .drops_requests(drops), .destination(destination), .epoch(epoch),
     .line_valid(line_valid), .line(line),
     .wr_req_ready(wr_req_ready), .wr_rsp_valid(wr_rsp_valid), .wr_rsp_tag(wr_rsp_tag), .wr_rsp_error(wr_rsp_error),
     .wr_req_valid(wr_req_valid), .wr_req_address(wr_req_address), .wr_req_tag(wr_req_tag), .wr_req_data(wr_req_data),
-    .line_left(), .answered(), .failed(), .unexpected(unexpected), .idle(idle), .empty(empty)
+    .line_left(), .answered(answered), .failed(), .responded(responded), .idle(idle), .empty(empty)
   );
   (* hierconn *) wire [$clog2(`LINES):0]   \dut.stored ;
   (* hierconn *) wire [$clog2(`LINES)-1:0] \dut.head ;

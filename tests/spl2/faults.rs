@@ -32,10 +32,15 @@ const FAULTS: [(&str, &str, Planted, &str); 7] = [
     ("spl2_transmit.v", " core_rd_turn <= ", Planted::AlmostFullIgnored, "discards | ~own_rd_valid"),
     ("spl2_acknowledge.v", "wire core_s_1 = ", Planted::SecondChannelLost, "valid_1 & ~valid_0 & ~|mdata_1[13:12]"),
     ("spl2_sequence.v", "wire written = ", Planted::NoFence, "wr_granted | (to_dsm & ~dsm_valid) | at_fence"),
-    ("spl2_sequence.v", " writes <= ", Planted::NoFence, "((to_dsm & dsm_valid) | at_status) & ~written"),
+    (
+        "spl2_sequence.v",
+        " writes <= ",
+        Planted::NoFence,
+        "((to_dsm & dsm_valid) | at_status) & ~written & ~leaves_state",
+    ),
     ("spl2_transmit.v", "wire [5:0] next_epoch = ", Planted::EpochStuck, "6'd0"),
     ("spl2_sequence.v", " wr_virtual <= ", Planted::VirtualDsm, "1'b1"),
-    ("spl2_sequence.v", "wire [57:0] first_pairs = ", Planted::SourceOff, "source_line"),
+    ("spl2_sequence.v", " first_pairs <= ", Planted::SourceOff, "source_line"),
 ];
 
 const SELECTOR_BIT: u32 = 28;

@@ -33,7 +33,8 @@ pub(super) fn loader(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, BuildErr
     let line_waits = graph.register("line_waits", 1, 0);
     let line_ends = graph.wire("line_ends", 1);
     let taken = (line_ends & !start).registered("taken");
-    line_waits.next(!start & waiting(&graph, "lines_waiting", slot_bits + 1, [start, comes], [line_ends, taken]));
+    let waits_then = waiting(&graph, "lines_waiting", slot_bits + 1, [start, comes], taken).at(line_ends);
+    line_waits.next(!start & waits_then.named("some_wait"));
 
     // Where the next sphere is: the set, the row and the column.
     let second = graph.register("is_second_set", 1, 0);

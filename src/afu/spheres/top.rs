@@ -37,7 +37,7 @@ pub(in crate::afu) fn spheres_top(
     let wire = |name: &'static str, width: u32| (name, graph.wire(name, width));
     let one = graph.constant(1, 1);
 
-    let told_to_control = ["read_failed", "write_failed", "read_unexpected", "write_unexpected", "read_answered"]
+    let told_to_control = ["read_failed", "write_failed", "read_responded", "write_responded", "read_answered"]
         .into_iter()
         .chain(["write_answered", "read_idle", "write_idle", "packer_done", "dispatched"])
         .chain(["waits_for_input", "waits_for_output", "overflowed"]);
@@ -55,7 +55,7 @@ pub(in crate::afu) fn spheres_top(
     let control = graph.instance("control", &control(spec)?, &control_inputs);
     let begin = |part: &str| control.output(&format!("begin_{part}"));
     let run = control.output("run");
-    let given_up = control.output("given_up");
+    let drops = control.output("drops_requests");
     let epoch = control.output("job_epoch");
     let has_others = control.output("has_others");
     let keeps_table = control.output("keeps_table");
@@ -64,7 +64,7 @@ pub(in crate::afu) fn spheres_top(
     collector_inputs.extend([
         ("start", begin("collector")),
         ("run", run),
-        ("given_up", given_up),
+        ("drops_requests", drops),
         ("source", control.output("job_source")),
         ("lines", control.output("lines")),
         ("epoch", epoch),
@@ -346,7 +346,7 @@ pub(in crate::afu) fn spheres_top(
     inputs.extend([
         ("start", begin("dispatcher")),
         ("run", run),
-        ("given_up", given_up),
+        ("drops_requests", drops),
         ("destination", control.output("job_destination")),
         ("epoch", epoch),
         ("line_valid", packer.output("line_valid")),

@@ -15,7 +15,7 @@ const ROUNDS: Rows = &[
     ("every SCPU has phase 0", "1'b0 : ends_block ? ", "1'b0 : 1'b0 ? ", 22, "phase_is_the_block_s"),
     (
         "a single pair does not count",
-        "(entered == 2'd1) ? turn_after_1[6:0]",
+        "(entered == 2'd1) ? turn_after_1",
         "(entered == 2'd1) ? turn",
         23,
         "turn_is_the_block_s",
@@ -93,15 +93,15 @@ const JOB_SIEVE: Rows = &[
     ),
     (
         "hits in one lane only are counted",
-        "(contact_count + {30'd0, hits_to_1})",
-        "(contact_count + {30'd0, hits_to_0})",
+        "contacts_now <= hits_to_1;",
+        "contacts_now <= hits_to_0;",
         39,
         "all_counted",
     ),
     (
         "invalid pairs in one lane only are counted",
-        "{30'd0, {1'b0, invalid_here_0} + {1'b0, invalid_here_1}}",
-        "{31'd0, invalid_here_1}",
+        "invalid_now <= {1'b0, invalid_here_0} + {1'b0, invalid_here_1};",
+        "invalid_now <= {1'b0, invalid_here_1};",
         31,
         "invalid_counted",
     ),
@@ -111,12 +111,18 @@ const JOB_SIEVE: Rows = &[
 const JOB_CONTROL: Rows = &[
     (
         "done with a write on its way",
-        "complete <= run & packer_done & dispatched & link_idle;",
-        "complete <= run & packer_done & dispatched;",
+        "completes <= run & packer_done & dispatched & link_idle & goes_on;",
+        "completes <= run & packer_done & dispatched & goes_on;",
         39,
         "done_acknowledged",
     ),
-    ("done at once", "complete <= run & packer_done & dispatched & link_idle;", "complete <= run;", 13, "all_written"),
+    (
+        "done at once",
+        "completes <= run & packer_done & dispatched & link_idle & goes_on;",
+        "completes <= run & goes_on;",
+        13,
+        "all_written",
+    ),
     ("hits beyond the room are no error", "(completes & overflowed) ? 4'd6", "1'b0 ? 4'd6", 39, "overflow_is_told"),
 ];
 

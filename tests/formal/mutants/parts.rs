@@ -5,18 +5,12 @@ use super::Rows;
 const COLLECTOR: Rows = &[
     (
         "reads without a free slot",
-        "      & ~(~freed & (reserved[2] | (&reserved[1:0] & issue)));",
-        ";",
-        8,
+        "wire freed_or_reserved_2_n = freed | ~reserved[2];",
+        "wire freed_or_reserved_2_n = 1'b1;",
+        9,
         "never_more",
     ),
-    (
-        "slots begin anywhere",
-        "next_slot <= start ? 2'd0 : (next_slot + 2'd1);",
-        "next_slot <= next_slot + 2'd1;",
-        2,
-        "slots_in_order",
-    ),
+    ("slots begin anywhere", "next_slot <= start ? 2'd0 :", "next_slot <= start ? 2'd1 :", 2, "slots_in_order"),
     (
         "announces a line twice",
         "line_comes <= oldest_goes & ~start;",
@@ -43,8 +37,8 @@ const COLLECTOR: Rows = &[
     ("a slot is free before its line", "freed <= taken & ~start;", "freed <= taken | start;", 2, "taken_is_reserved"),
     (
         "asks for a line too many",
-        "lines_to_request_step ? lines_to_request_31_1_any :",
-        "lines_to_request_step ? |lines_to_request :",
+        "(3'd2 < lines_to_request[2:0])",
+        "(3'd1 < lines_to_request[2:0])",
         5,
         "asks_while_any",
     ),
@@ -58,8 +52,8 @@ const COLLECTOR: Rows = &[
     ("any response counts", "answered <= is_awaited & ~start;", "answered <= is_response & ~start;", 4, "counted"),
     (
         "a response that nobody waits for is no error",
-        "unexpected <= run & is_response & ~is_awaited & ~start;",
-        "unexpected <= 1'b0;",
+        "responded <= run & is_response & ~start;",
+        "responded <= 1'b0;",
         4,
         "surprise_is_told",
     ),
@@ -104,8 +98,8 @@ const COLLECTOR: Rows = &[
     ),
     (
         "a request follows one that was given up",
-        "wire drops_requests = start | given_up;",
-        "wire drops_requests = start;",
+        "wire rd_req_next_valid = ~drops_requests & (",
+        "wire rd_req_next_valid = (",
         6,
         "nothing_follows",
     ),
@@ -121,26 +115,20 @@ const DISPATCHER: Rows = &[
     ),
     (
         "stored but not counted",
-        "if (start | (line_valid ^ line_left)) stored",
-        "if (start | line_left) stored",
+        "stored <= start ? 5'd0 : (line_valid ^ line_left)",
+        "stored <= start ? 5'd0 : line_left",
         3,
         "fifo_counts",
     ),
-    ("ready for a line that has left", "| (take      ?", "| (1'b0 ?", 4, "ready_is_right"),
+    ("ready for a line that has left", "take ? ((line_left", "1'b0 ? ((line_left", 4, "ready_is_right"),
     (
         "requests without a free slot",
-        "run & ~(~oldest_goes & (reserved[2] | (&reserved[1:0] & goes)));",
-        "run;",
-        9,
+        "wire oldest_goes_or_reserved_2_n = oldest_goes | ~reserved[2];",
+        "wire oldest_goes_or_reserved_2_n = 1'b1;",
+        10,
         "never_more",
     ),
-    (
-        "sends as the last slot is taken",
-        "(reserved[2] | (&reserved[1:0] & goes))",
-        "reserved[2]",
-        8,
-        "sends_a_free_slot",
-    ),
+    ("sends as the last slot is taken", "(oldest_goes | ~&reserved[1:0])", "1'b1", 8, "sends_a_free_slot"),
     ("a tag waits twice", "wr_req_tag <= {epoch, next_slot};", "wr_req_tag <= {epoch, 2'd0};", 7, "tag_free"),
     (
         "tags change places",
@@ -149,13 +137,7 @@ const DISPATCHER: Rows = &[
         5,
         "tags_in_order",
     ),
-    (
-        "slots begin anywhere",
-        "next_slot <= start ? 2'd0 : (next_slot + 2'd1);",
-        "next_slot <= next_slot + 2'd1;",
-        2,
-        "slots_in_order",
-    ),
+    ("slots begin anywhere", "next_slot <= start ? 2'd0 :", "next_slot <= start ? 2'd1 :", 2, "slots_in_order"),
     (
         "slots are freed by earlier jobs",
         "answered <= is_awaited & ~start;",
@@ -174,8 +156,8 @@ const DISPATCHER: Rows = &[
     ("acknowledgements are not counted", "(goes ^ answered)", "goes", 11, "none_lost"),
     (
         "an acknowledgement that nobody waits for is no error",
-        "unexpected <= run & is_response & ~is_awaited & ~start;",
-        "unexpected <= 1'b0;",
+        "responded <= run & is_response & ~start;",
+        "responded <= 1'b0;",
         4,
         "surprise_is_told",
     ),
@@ -202,13 +184,7 @@ const DISPATCHER: Rows = &[
         7,
         "stable",
     ),
-    (
-        "a request follows one that was given up",
-        "wire drops_requests = start | given_up;",
-        "wire drops_requests = start;",
-        5,
-        "nothing_follows",
-    ),
+    ("a request follows one that was given up", "(goes & ~drops_requests)", "goes", 5, "nothing_follows"),
 ];
 
 pub const TABLES: &[(&str, &str, Rows)] =

@@ -3,9 +3,27 @@
 use super::Rows;
 
 const CONTROL: Rows = &[
-    ("gives up as it completes", "busy & expired & ~completes;", "busy & expired;", 24, "complete_is_good"),
-    ("goes on while it drains", "(running & ~completes & ~failing)", "(running & ~completes)", 4, "one_or_other"),
-    ("begins while it runs", "wire accept = start & ~busy;", "wire accept = start & ~draining;", 10, "begins_rested"),
+    (
+        "gives up as it completes",
+        "busy_copy_0 & expired & ~completes;",
+        "busy_copy_0 & expired;",
+        24,
+        "complete_is_good",
+    ),
+    (
+        "goes on while it drains",
+        "wire goes_on = running & ~completes & ~failing;",
+        "wire goes_on = running & ~completes;",
+        4,
+        "one_or_other",
+    ),
+    (
+        "begins while it runs",
+        "wire accept = start & ~busy_copy_0;",
+        "wire accept = start & ~draining;",
+        10,
+        "begins_rested",
+    ),
     ("runs before it begins", "run <= (run | begin_job)", "run <= (run | accept | waits_to_begin)", 3, "begins_first"),
     (
         "a job begins again",
@@ -37,10 +55,18 @@ const CONTROL: Rows = &[
     ),
     (
         "is not busy with a job that it refuses",
-        "busy <= accept | (busy",
-        "busy <= takes_job | (busy",
+        "wire is_busy = accept | (busy_copy_0",
+        "wire is_busy = takes_job | (busy_copy_0",
         2,
         "busy_is_right",
+    ),
+    ("a copy of a flag is none", "busy_copy_2 <= is_busy;", "busy_copy_2 <= 1'b0;", 2, "busy_is_right"),
+    (
+        "request ports are not told of the end",
+        "drops_requests <= begins | is_given_up;",
+        "drops_requests <= begins;",
+        17,
+        "drops_in_time",
     ),
     ("ends with pairs inside", "draining & stopped & none_inside_heard & ", "draining & ", 20, "idle_is_empty"),
     (
@@ -62,7 +88,7 @@ const CONTROL: Rows = &[
 const FEEDER: Rows = &[
     ("pairs enter after an abort", "wire go_0 = may_go_on & ", "wire go_0 = ", 20, "only_in_a_job"),
     ("takes a line that is not there", "wire take = line_waits & ", "wire take = ", 9, "takes_a_line"),
-    ("a turn too many", "(turn_plus_2 >= {1'b0, scpus})", "(turn_plus_2 > {1'b0, scpus})", 21, "turn_is_an_scpu"),
+    ("a turn too many", "(turn >= turns_before_2)", "(turn > turns_before_2)", 21, "turn_is_an_scpu"),
     ("two pairs count as one", "entered <= go_1 ? 2'd2 : ", "entered <= go_1 ? 2'd1 : ", 20, "each_once"),
     (
         "counts no line that it takes",
@@ -109,7 +135,7 @@ const PACKER: Rows = &[(
     "the last line goes out twice",
     "wire start_or_flushes = start | flushes;",
     "wire start_or_flushes = start;",
-    28,
+    29,
     "last_line_once",
 )];
 
@@ -121,7 +147,7 @@ const STORE: Rows = &[
         29,
         "fits",
     ),
-    ("sends a line that has left", "| (take      ?", "| (1'b0 ?", 30, "sends_a_line"),
+    ("sends a line that has left", "take ? ((line_left", "1'b0 ? ((line_left", 30, "sends_a_line"),
 ];
 
 const SLOT: Rows = &[(
@@ -140,14 +166,8 @@ const PORT_CONTROL: Rows = &[
         18,
         "rd_in_job",
     ),
-    (
-        "done with a write on the port",
-        "packer_done & dispatched & link_idle;",
-        "packer_done & dispatched;",
-        34,
-        "wr_in_job",
-    ),
-    ("done and still busy", "(busy & ~completes & ~drained)", "(busy & ~drained)", 13, "done_known"),
+    ("done with a write on the port", "dispatched & link_idle & goes_on;", "dispatched & goes_on;", 34, "wr_in_job"),
+    ("done and still busy", "(busy_copy_0 & ~completes & ~drained)", "(busy_copy_0 & ~drained)", 13, "done_known"),
     (
         "a response that nobody waits for is no error",
         "wire is_unexpected = unexpected_heard & ~begin_job;",
@@ -155,7 +175,13 @@ const PORT_CONTROL: Rows = &[
         40,
         "surprise_is_told",
     ),
-    ("done at once", "complete <= run & packer_done & dispatched & link_idle;", "complete <= run;", 11, "done_all"),
+    (
+        "done at once",
+        "completes <= run & packer_done & dispatched & link_idle & goes_on;",
+        "completes <= run & goes_on;",
+        11,
+        "done_all",
+    ),
 ];
 
 const PORT_COLLECTOR: Rows = &[
@@ -194,31 +220,25 @@ const PORT_SLOT: Rows = &[(
 const PORT_PACKER: Rows = &[
     (
         "contacts in one lane only",
-        "{30'd0, {1'b0, contact_here_0} + {1'b0, contact_here_1}}",
-        "{31'd0, contact_here_1}",
+        "contacts_now <= {1'b0, contact_here_0} + {1'b0, contact_here_1};",
+        "contacts_now <= {1'b0, contact_here_1};",
         40,
         "done_counts",
     ),
     (
         "invalid pairs in one lane only",
-        "{30'd0, {1'b0, invalid_here_0} + {1'b0, invalid_here_1}}",
-        "{31'd0, invalid_here_1}",
+        "invalid_now <= {1'b0, invalid_here_0} + {1'b0, invalid_here_1};",
+        "invalid_now <= {1'b0, invalid_here_1};",
         40,
         "done_invalid",
     ),
-    (
-        "the wrong invalid pair",
-        "(invalid_here_0 ? emerged_before : (emerged_before + 32'd1))",
-        "emerged_before",
-        40,
-        "done_first",
-    ),
+    ("the wrong invalid pair", "(invalid_here_0 ? emerged : (emerged + 32'd1))", "emerged", 40, "done_first"),
 ];
 
 const ANY_COLLECTOR: Rows = &[(
     "a request follows one that was given up",
-    "wire drops_requests = start | given_up;",
-    "wire drops_requests = start;",
+    "wire rd_req_next_valid = ~drops_requests & (",
+    "wire rd_req_next_valid = (",
     20,
     "rd_in_order",
 )];

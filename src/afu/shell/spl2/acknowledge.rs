@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::hdl::{BuildErrors, Graph, Module};
 
 use super::words::{MDATA_BITS, SHELL_EPOCH_BITS, is_core_s};
-use crate::afu::counter::up_down;
+use crate::afu::counter::{from_zero, up_down};
 use crate::afu::{EPOCH_BITS, Spec};
 
 /// Builds the module `spl2_acknowledge`. Channel 0 goes straight to the core, and channel 1 waits for a cycle in which
@@ -34,8 +34,8 @@ pub(super) fn acknowledge(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let stored = graph.register("stored", slot_bits + 1, 0);
     let take = (stored.any() & !first).named("take");
     store.write(second, tail.value(), second_tag);
-    tail.next_if(start | second, start.select(tail.same(0), tail.plus(1)));
-    head.next_if(start | take, start.select(head.same(0), head.plus(1)));
+    from_zero(tail, start, second, tail.plus(1));
+    from_zero(head, start, take, head.plus(1));
     up_down(stored, start, second, take);
     let waited = store.read(head.value()).named("oldest");
 

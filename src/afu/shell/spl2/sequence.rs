@@ -36,7 +36,7 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let response_valid = graph.input("rsp_valid", 1);
     let response_mdata = graph.input("rsp_mdata", MDATA_BITS);
     // One cycle after the other two.
-    let received = graph.input("rsp_data", spec.line_bits);
+    let received = graph.input("rsp_data", spec.line_bits).delay(1).named("received");
     let write_granted = graph.input("wr_granted", 1);
     let told = JobOutputs::of(spec);
     let core_done = graph.input("core_done", 1);
@@ -66,7 +66,7 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     // A response is compared with the outstanding read before it is used. One that arrives as the next read is granted
     // belongs to an earlier read, from before a reset.
     let response = received.delay(1).named("compared");
-    let own = (response_valid & *waiting & is_own(response_mdata, expected.value())).delay(1).named("is_own");
+    let own = (response_valid & *waiting & is_own(response_mdata, expected.value())).delay(2).named("is_own");
     let answered = graph.register("answered", 1, 0);
     answered.next(own & *waiting & !*answered);
     let answered = answered.value();
@@ -79,13 +79,15 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let pause = graph.register("pause", pause_bits, 0);
     let pauses = pause.any().named("pauses");
     let may_ask = (!*waiting & !read_granted & !pauses).named("may_ask");
-    let switches = graph.wire("switches", 1);
-    let asks = ((at_context | (at_poll & !switches) | at_run) & may_ask).registered("asks");
+    let is_due = graph.register("context_due", 1, 0);
+    let holds = (at_poll & *is_due).registered("holds_for_context");
+    let asks = ((at_context | (at_poll & !holds) | at_run) & may_ask).registered("asks");
 
     // The context is read again between jobs if its address was written again. So everything that a job reads and
-    // writes, including its status, belongs to one context. No request is in flight then.
-    let is_due = graph.register("context_due", 1, 0);
-    switches.drive(at_poll & *is_due & !*waiting & !read_granted & !asks);
+    // writes, including its status, belongs to one context. No request is in flight then: none is made while polling
+    // holds, and a grant is heard in time.
+    let is_quiet = (holds & !asks & !read_granted & !*waiting).registered("holds_and_is_quiet");
+    let switches = (at_poll & is_quiet).named("switches");
     let reads_context = ((*idle & context_valid) | switches).named("reads_context");
     is_due.next(context_written | (*is_due & !reads_context));
     let context_line = graph.data_register("job_context_line", ADDRESS_BITS);
@@ -141,10 +143,9 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     // Lines that the job takes, of each buffer.
     let layout = spec.layout();
     let fits = |per_line: u32, more: u32, buffer: &str| {
-        let rounded = job_count.extend(COUNT_BITS + 1).plus(u128::from(per_line - 1));
-        let rounded = rounded.named(&format!("count_to_{per_line}"));
-        let needed = rounded.drop_low(per_line.ilog2()).extend(COUNT_BITS + 1).plus(more.into());
-        fit(needed, *lines, buffer)
+        let rounded = job_count.extend(COUNT_BITS + 1).plus(u128::from(per_line - 1 + more * per_line));
+        let rounded = rounded.named(&format!("{buffer}_count"));
+        fit(rounded.drop_low(per_line.ilog2()).extend(COUNT_BITS + 1), *lines, buffer)
     };
     let source_fits = match job_others {
         None => fits(layout.pairs_per_line(), map::DATA_LINE, "source"),
@@ -225,7 +226,7 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
         .collect::<Vec<_>>(),
     );
     let dsm = |line: u32| dsm_page_line(dsm_line, constant(6, line.into()));
-    let status_address = context_line.plus(map::STATUS_LINE.into());
+    let status_address = context_line.plus(map::STATUS_LINE.into()).delay(1).named("status_line_address");
     let to_dsm = (at_latency | at_performance).named("to_dsm");
     let shows_dsm = shows("dsm", to_latency | to_performance);
     let dsm_address = at_latency.select(dsm(map::LATENCY_LINE), dsm(map::PERFORMANCE_LINE));
@@ -233,14 +234,18 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let gave_up = core_error.is(JobError::Watchdog.code().into()).named("gave_up");
     let fences = (at_fence & !(gave_up & ran)).named("fences");
     let written = (write_granted | (to_dsm & !dsm_valid) | (at_fence & !fences)).named("written");
-    to_latency.drive(refuses | (at_run & core_done) | (at_latency & !written));
-    to_performance.drive((at_latency & written) | (at_performance & !written));
-    to_status.drive((at_fence & written) | (at_status & !written));
+    // The state is left a cycle later.
+    let left = graph.register("leaves_state", 1, 0);
+    left.next(written & !*left);
+    let leaves = *left;
+    to_latency.drive(refuses | (at_run & core_done) | (at_latency & !leaves));
+    to_performance.drive((at_latency & leaves) | (at_performance & !leaves));
+    to_status.drive((at_fence & leaves) | (at_status & !leaves));
 
     // The transitions between states.
     idle.next(*idle & !context_valid);
     context.next(reads_context | (at_context & !answered));
-    poll.next(got_context | (at_status & written) | (at_poll & !got_job & !switches));
+    poll.next(got_context | (at_status & leaves) | (at_poll & !got_job & !switches));
     measure.next(got_job);
     // The sum of the lines of two sets takes a cycle more.
     compare.next(if job_others.is_some() { measure.registered("at_sum") } else { *measure });
@@ -248,17 +253,17 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     run.next(start | (at_run & !core_done));
     latencies.next(to_latency);
     counters.next(to_performance);
-    fence.next((at_performance & written) | (at_fence & !written));
+    fence.next((at_performance & leaves) | (at_fence & !leaves));
     report.next(to_status);
 
     // The write of a state is at the port one cycle after the state begins.
     let writes = graph.register("writes", 1, 0);
-    writes.next(((to_dsm & dsm_valid) | fences | at_status) & !written);
+    writes.next(((to_dsm & dsm_valid) | fences | at_status) & !written & !leaves);
 
     graph.output("rd_valid", asks);
     graph.output("rd_address", at_context.select(*context_line, source.value()).named("address"));
     graph.output("start", start);
-    graph.output("source", source.plus(map::DATA_LINE.into()).named("first_pairs"));
+    graph.output("source", source.plus(map::DATA_LINE.into()).delay(1).named("first_pairs"));
     graph.output("destination", destination.value());
     if only_hits {
         graph.output("destination_lines", lines.value());

@@ -38,13 +38,11 @@ pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let own_read = graph.input("own_rd_valid", 1);
     let own_read_address = graph.input("own_rd_address", ADDRESS_BITS);
     let reads = Turns::new(&graph, "rd", rd_almostfull);
-    // The shell is told of a grant one cycle later. Until then its request is still there, and has no turn.
-    let told_of_read = graph.data_register("own_rd_granted", 1);
     let own_read_granted = (own_read & reads.own).named("grants_own_rd");
-    told_of_read.next(own_read_granted);
-    reads.connect(own_read & !own_read_granted & !*told_of_read, discard, power_on);
+    let told_of_read = own_read_granted.delay(1).named("own_rd_granted");
+    reads.connect(own_read, discard);
     let core_read_ready = reads.core;
-    let read_number = number(&graph, "read_number", own_read_granted, power_on);
+    let read_number = number(&graph, "read_number", told_of_read, power_on);
     let granted_number = read_number.delay(1).named("granted_number");
     let constant = |width: u32, value: u128| graph.constant(width, value);
     let read_header = words::header(
@@ -80,18 +78,14 @@ pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     // A write of the shell is chosen one cycle before its turn.
     let writes = Turns::new(&graph, "wr", wr_almostfull);
     let is_register = register_write.delay(1).named("is_register");
-    let told_of_register = graph.data_register("register_wr_granted", 1);
-    let told_of_end = graph.data_register("end_wr_granted", 1);
     let register_granted = (writes.own & is_register & register_write).named("grants_register_wr");
     let end_granted = (writes.own & !is_register & end_write).named("grants_end_wr");
     let own_granted = (register_granted | end_granted).named("own_granted");
-    told_of_register.next(register_granted);
-    told_of_end.next(end_granted);
-    let told = *told_of_register | *told_of_end;
-    let own_waits = ((register_write | end_write) & !own_granted & !told).named("own_wr_waits");
-    writes.connect(own_waits, discard, power_on);
-    let chooses_own = wide::steering(own_waits & !power_on, "chooses_own_wr", TX_HEADER_BITS + spec.line_bits);
-    let write_number = number(&graph, "write_number", own_granted, power_on);
+    let told_of_register = register_granted.delay(1).named("register_wr_granted");
+    let told_of_end = end_granted.delay(1).named("end_wr_granted");
+    let turn_is_own = writes.connect(register_write | end_write, discard);
+    let chooses_own = wide::steering(turn_is_own, "chooses_own_wr", TX_HEADER_BITS + spec.line_bits);
+    let write_number = number(&graph, "write_number", told_of_register | told_of_end, power_on);
     let is_fence = (end_write_fence & !register_write).named("is_fence");
     let write_line = words::kind(&graph, Request::WriteLine);
     let own_address = register_chosen.select(register_write_address, end_write_address).named("own_wr_address");
@@ -122,10 +116,10 @@ pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     graph.output("write_epoch", epochs[1]);
     graph.output("core_epoch", next_epoch.low(EPOCH_BITS));
     graph.output("read_number", granted_number);
-    graph.output("own_rd_granted", told_of_read.value());
+    graph.output("own_rd_granted", told_of_read);
     graph.output("core_rd_ready", core_read_ready);
-    graph.output("register_wr_granted", told_of_register.value());
-    graph.output("end_wr_granted", told_of_end.value());
+    graph.output("register_wr_granted", told_of_register);
+    graph.output("end_wr_granted", told_of_end);
     graph.output("core_wr_ready", core_write_ready);
     graph.output("tx_rd_valid", read_valid.value());
     graph.output("tx_rd_hdr", read_register.value());
@@ -137,9 +131,14 @@ pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
 
 /// The turn of a port, known one cycle ahead: the shell's if it has a request, otherwise the core's. SPL accepts four
 /// more requests after almost-full, and at most two arrive.
+///
+/// The shell is told of a grant one cycle later, and then withdraws its request. So two cycles after each of its turns
+/// are not its own, whether or not the request was granted. No turn depends on a grant.
 #[derive(Clone, Copy)]
 struct Turns<'g> {
-    turn: Register<'g>,
+    turn: Signal<'g>,
+    next_turn: Signal<'g>,
+    had: Signal<'g>,
     open: Register<'g>,
     almost_full: Signal<'g>,
     /// The shell's turn.
@@ -150,22 +149,26 @@ struct Turns<'g> {
 
 impl<'g> Turns<'g> {
     fn new(graph: &'g Graph, port: &str, almost_full: Signal<'g>) -> Self {
-        let turn = graph.data_register(&format!("own_{port}_turn"), 1);
+        let next_turn = graph.wire(&format!("own_{port}_turn_is_next"), 1);
+        let turn = next_turn.data_copies(&format!("own_{port}_turn"), 1)[0];
+        let had = turn.delay(1).named(&format!("own_{port}_had_turn"));
         let open = graph.data_register(&format!("core_{port}_turn"), 1);
         let room = (!almost_full).delay(1).named(&format!("{port}_room"));
-        let own = (*turn & room).named(&format!("own_{port}_goes"));
-        Self { turn, open, almost_full, own, core: *open }
+        let own = (turn & room).named(&format!("own_{port}_goes"));
+        Self { turn, next_turn, had, open, almost_full, own, core: *open }
     }
 
-    /// The next turn is the shell's if it `wants` it. While the core's requests are discarded, it gets its turn without
-    /// room.
-    fn connect(self, wants: Signal<'g>, discard: Signal<'g>, power_on: Signal<'g>) {
-        self.turn.next(wants & !power_on);
-        self.open.next(discard | (!wants & !self.almost_full));
+    /// The next turn is the shell's, as is returned, if it has a request that `waits`. While the core's requests are
+    /// discarded, it gets its turn without room.
+    fn connect(self, waits: Signal<'g>, discard: Signal<'g>) -> Signal<'g> {
+        self.next_turn.drive(waits & !self.turn & !self.had);
+        self.open.next(discard | (!self.next_turn & !self.almost_full));
+        self.next_turn
     }
 }
 
-/// The number of the shell's next request: the number of requests granted since the system's reset.
+/// The number of the shell's next request: the number of requests granted since the system's reset. It is counted when
+/// the shell is told, before the next turn.
 fn number<'g>(graph: &'g Graph, name: &str, granted: Signal<'g>, power_on: Signal<'g>) -> Signal<'g> {
     let number = graph.data_register(name, NUMBER_BITS);
     number.next_if(granted | power_on, number.plus(1).gate(!power_on));
