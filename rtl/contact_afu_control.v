@@ -113,9 +113,10 @@ module contact_afu_control (
   wire refuses = accept & has_unknown_mode;
   wire is_unexpected = unexpected_heard & ~begin_job;
   wire failing = running & (fails | is_unexpected) & ~completes;
-  wire still_waits = waits_to_begin & ~failing;
+  wire still_waits = waits_to_begin & ~fails;
   wire begins = (accept | still_waits) & filled_heard;
   wire takes_job = accept & ~refuses;
+  wire keeps_waiting = waits_to_begin & ~failing;
   wire goes_on = running & ~completes & ~failing;
   wire cycles_busy_moves = first_cycle | busy_copy_0;
   assign cycles_input = {cycles_input_high, cycles_input_low};
@@ -200,7 +201,7 @@ module contact_afu_control (
       fails <= (running & (abort_job | read_failed | write_failed)) | expires;
       unexpected_heard <= (read_responded & ~read_answered) | (write_responded & ~write_answered);
       begin_job <= begins;
-      waits_to_begin <= (takes_job | still_waits) & ~filled_heard;
+      waits_to_begin <= (takes_job | keeps_waiting) & ~filled_heard;
       filled_heard <= filled;
       run <= (run | begin_job) & goes_on;
       if (cycles_busy_moves) cycles_busy_low_is_full <= ~first_cycle & (&cycles_busy_low[31:1] & ~cycles_busy_low[0]);

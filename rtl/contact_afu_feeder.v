@@ -93,12 +93,12 @@ module contact_afu_feeder (
   wire take = line_waits & (line_done | ~in_hand);
   wire left_2_0_equals_2_unless_many_lines_left = ~many_lines_left & (lines_left[2:0] == 3'd2);
   wire one_lines_left_next =
-      start           ? ((lines[1:0] == 2'd1) & ~|lines[31:2]) :
-      take            ?
-          (lines_left_step ? (~many_lines_left & (lines_left[2:0] == 3'd3)) :
-           left_2_0_equals_2_unless_many_lines_left) :
-      lines_left_step ? left_2_0_equals_2_unless_many_lines_left :
-      (~many_lines_left & (lines_left[2:0] == 3'd1));
+      ~start
+      & (take            ?
+             (lines_left_step ? (~many_lines_left & (lines_left[2:0] == 3'd3)) :
+              left_2_0_equals_2_unless_many_lines_left) :
+         lines_left_step ? left_2_0_equals_2_unless_many_lines_left :
+         (~many_lines_left & (lines_left[2:0] == 3'd1)));
   wire lines_waiting_6_1_any = |lines_waiting[6:1];
   wire many_lines_left_or_lines_left_2_0_above_1 = many_lines_left | (3'd1 < lines_left[2:0]);
   wire left_2_0_above_2_if_lines_left_step =
@@ -184,10 +184,7 @@ module contact_afu_feeder (
       carries_rank_0 <= {go_1, go_0};
       turn <= start ? 7'd0 : next_turn;
       head <= start ? 6'd0 : take ? (head + 6'd1) : head;
-      any_lines_left <=
-          start ? |lines :
-          take  ? left_2_0_above_2_if_lines_left_step :
-          left_2_0_above_1_if_lines_left_step;
+      any_lines_left <= ~start & (take ? left_2_0_above_2_if_lines_left_step : left_2_0_above_1_if_lines_left_step);
     end
   end
   (* keep = "true" *) always @(posedge clk) begin

@@ -56,9 +56,9 @@ module spl2_sequence (
   reg waiting;
   reg [9:0] pause;
   reg answered;
-  reg has_start_word;
+  reg start_word_differs;
   reg some_job;
-  reg is_other;
+  reg sequence_differs;
   reg at_status;
   reg at_fence;
   reg leaves_state;
@@ -72,13 +72,16 @@ module spl2_sequence (
   reg [32:0] destination_lines;
   reg [31:0] job_count;
   reg [511:0] compared;
-  reg [511:0] received;
+  reg [511:0] rsp_data_d1;
   reg [32:0] source_lines;
   reg at_compare;
   reg at_measure;
+  reg [3:0] sequence_bytes_differ;
   reg [31:0] job_sequence;
+  reg [3:0] start_word_bytes_differ;
   reg is_own;
-  reg rsp_valid_and_3_others_d1;
+  reg has_own_number;
+  reg comes_in_time;
   reg [11:0] expected;
   reg [16:0] age;
   reg start_job;
@@ -92,7 +95,8 @@ module spl2_sequence (
   reg [3:0] job_mode;
   reg [31:0] job_watchdog;
   reg abort;
-  reg has_abort;
+  reg abort_word_differs;
+  reg [3:0] abort_word_bytes_differ;
   reg writes;
   (* keep = "true", dont_merge *) reg shows_dsm_copy_0;
   reg [57:0] status_line_address;
@@ -116,8 +120,8 @@ module spl2_sequence (
   // ---- logic ----
   wire pauses = |pause;
   wire may_ask = ~waiting & ~rd_granted & ~pauses;
-  wire is_new = ~some_job | is_other;
-  wire got_job = at_poll & answered & has_start_word & is_new;
+  wire is_new = ~some_job | sequence_differs;
+  wire got_job = at_poll & answered & ~start_word_differs & is_new;
   wire runs = got_job | at_run;
   wire to_status = (at_fence & leaves_state) | (at_status & ~leaves_state);
   wire to_dsm = at_latency | at_performance;
@@ -136,7 +140,7 @@ module spl2_sequence (
   wire switches = at_poll & holds_and_is_quiet;
   wire reads_context = (at_idle & context_valid) | switches;
   wire [57:0] address = at_context ? job_context_line : source_line;
-  wire aborts = answered & has_abort & runs;
+  wire aborts = answered & abort_word_differs & runs;
   wire [511:0] shows_latency_copy_0_or_shows_busy_copy_0 =
       {
         416'd0,
@@ -168,19 +172,29 @@ module spl2_sequence (
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
-    has_start_word <= received[31:0] == 32'h406cccff;
-    is_other <= received[127:96] != job_sequence;
+    start_word_differs <= |start_word_bytes_differ;
+    sequence_differs <= |sequence_bytes_differ;
     source_fits <= {1'b0, buffer_lines} >= source_lines;
     destination_fits <= {1'b0, buffer_lines} >= destination_lines;
     if (got_context) buffer_lines <= compared[223:192];
     destination_lines <= {1'b0, destination_count[32:1]};
     if (got_job) job_count <= compared[63:32];
-    compared <= received;
-    received <= rsp_data;
+    compared <= rsp_data_d1;
+    rsp_data_d1 <= rsp_data;
     source_lines <= {1'b0, source_count[32:1]};
+    sequence_bytes_differ <= {
+      rsp_data[127:120] != job_sequence[31:24],
+      rsp_data[119:112] != job_sequence[23:16],
+      rsp_data[111:104] != job_sequence[15:8],
+      rsp_data[103:96] != job_sequence[7:0]
+    };
     if (got_job) job_sequence <= compared[127:96];
-    is_own <= rsp_valid_and_3_others_d1;
-    rsp_valid_and_3_others_d1 <= rsp_valid & waiting & ((rsp_mdata[13:12] == 2'd1) & (rsp_mdata[11:0] == expected));
+    start_word_bytes_differ <= {
+      rsp_data[31:24] != 8'd64, rsp_data[23:16] != 8'd108, rsp_data[15:8] != 8'd204, rsp_data[7:0] != 8'd255
+    };
+    is_own <= has_own_number & comes_in_time;
+    has_own_number <= (rsp_mdata[13:12] == 2'd1) & (rsp_mdata[11:0] == expected);
+    comes_in_time <= rsp_valid & waiting;
     if (rd_granted) expected <= read_number;
     age <= rd_granted ? 17'd0 : (age + 17'd1);
     if (reads_context) job_context_line <= context_line;
@@ -189,7 +203,10 @@ module spl2_sequence (
     if (got_context) destination_line <= compared[191:134];
     if (got_job) job_mode <= compared[67:64] | {3'd0, |compared[95:68]};
     if (got_job) job_watchdog <= compared[191:160];
-    has_abort <= |received[159:128];
+    abort_word_differs <= |abort_word_bytes_differ;
+    abort_word_bytes_differ <= {
+      rsp_data[159:152] != 8'd0, rsp_data[151:144] != 8'd0, rsp_data[143:136] != 8'd0, rsp_data[135:128] != 8'd0
+    };
     wr_fence <= at_fence;
     wr_virtual <= ~to_dsm;
     wr_address <=

@@ -49,6 +49,7 @@ module spl2_transmit (
 
   // ---- state ----
   (* keep = "true", dont_merge *) reg [5:0] epoch_copy_0;
+  reg [5:0] next_epoch;
   reg [5:0] epoch;
   (* keep = "true", dont_merge *) reg [5:0] epoch_copy_1;
   reg [11:0] granted_number;
@@ -73,8 +74,7 @@ module spl2_transmit (
   (* keep = "true", dont_merge *) reg chooses_own_wr_copy_0;
 
   // ---- logic ----
-  wire [5:0] next_epoch = epoch + {5'd0, start};
-  wire [5:0] known_epoch = power_on ? 6'd0 : next_epoch;
+  wire [5:0] known_epoch = power_on ? 6'd0 : start ? next_epoch : epoch;
   assign core_epoch = next_epoch[3:0];
   wire own_rd_goes = own_rd_turn_copy_0 & rd_room;
   wire grants_own_rd = own_rd_valid & own_rd_goes;
@@ -106,6 +106,7 @@ module spl2_transmit (
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
+    if (start | power_on) next_epoch <= power_on ? 6'd1 : (next_epoch + 6'd1);
     epoch <= known_epoch;
     granted_number <= read_number_2;
     if (own_rd_granted | power_on) read_number_2 <= power_on ? 12'd0 : (read_number_2 + 12'd1);

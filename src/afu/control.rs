@@ -144,7 +144,8 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     running.next(takes_job | goes_on);
     is_busy.drive(accept | (busy & !complete & !drained));
     // A job begins once the delay lines are filled, and runs one cycle later. Each part has a copy of the beginning.
-    let still_waits = (*waits & !failing).named("still_waits");
+    // While one waits nothing is outstanding, so only a registered cause ends it.
+    let still_waits = (*waits & !fails).named("still_waits");
     let begins = ((accept | still_waits) & filled).named("begins");
     begin.next(begins);
     let names = if takes_spheres { &PARTS_OF_SPHERES[..] } else { &PARTS };
@@ -152,7 +153,8 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     // Request ports drop what is behind their request after a reset, when a job begins, and while one is given up.
     let drops = graph.register("drops_requests", 1, 1);
     drops.next(begins | is_given_up);
-    waits.next((takes_job | still_waits) & !filled);
+    let keeps_waiting = (*waits & !failing).named("keeps_waiting");
+    waits.next((takes_job | keeps_waiting) & !filled);
     run.next((*run | *begin) & goes_on);
     draining.next(refuses | failing | (*draining & !drained));
     done.next(!accept & (*done | complete | drained));

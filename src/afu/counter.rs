@@ -39,8 +39,9 @@ impl<'g> Countdown<'g> {
         let few = left.low(3);
         let next_any = by_steps(counted, |steps| many | few.greater_than(few.same(steps.into())));
         let next_one = by_steps(counted, |steps| !many & few.is(u128::from(steps + 1)));
-        self.flags[0].next(start.select(from.any(), next_any.at(step)));
-        self.flags[1].next(start.select(is_small(from, 1), next_one.at(step)));
+        // The flags know the new count a cycle after it is there.
+        self.flags[0].next(!start & next_any.at(step));
+        self.flags[1].next(!start & next_one.at(step));
         next_any
     }
 }
@@ -84,12 +85,6 @@ pub(super) fn left_after<'g>(count: Signal<'g>, counted: Signal<'g>) -> AtStep<'
 /// `of` the number of steps that are not counted yet.
 fn by_steps<'g>(counted: Signal<'g>, of: impl Fn(u32) -> Signal<'g>) -> AtStep<'g> {
     AtStep { with: counted.select(of(2), of(1)), without: counted.select(of(1), of(0)) }
-}
-
-/// True if `value` is this number, 1 to 3.
-fn is_small(value: Signal<'_>, number: u32) -> Signal<'_> {
-    let low = value.low(2).is(number.into());
-    low & !value.drop_low(2).any()
 }
 
 /// Connects a counter that is 0 at `start`, and takes `next` where it `moves`. `start` resets it and delays nothing.

@@ -76,6 +76,8 @@ module credits (
   (* hierconn *) wire [1:0]                 \dut.sieve.dropped_pairs ;
   (* hierconn *) wire [31:0]                \dut.sieve.emerged ;
   (* hierconn *) wire [31:0]                \dut.sieve.contact_count ;
+  // Counted one cycle later.
+  (* hierconn *) wire [1:0]                 \dut.sieve.contacts_now ;
   (* hierconn *) wire [ROOM_BITS-1:0]       \dut.backlog.stored ;
   (* hierconn *) wire [ROOM_BITS-1:0]       \dut.backlog.readable ;
   (* hierconn *) wire [ROOM_BITS-2:0]       \dut.backlog.head ;
@@ -112,6 +114,8 @@ module credits (
   reg after_reset = 1'b0;
   reg was_reset;
   reg begun = 1'b0;
+  // The job began one cycle ago; the feeder's flags know its lines one cycle later.
+  reg began;
   // Whether a job ran one cycle ago, two, three.
   reg [2:0] ran = 3'd0;
   reg completed = 1'b0;
@@ -119,6 +123,7 @@ module credits (
     after_reset <= after_reset | rst;
     was_reset <= rst;
     begun <= ~rst & (begun | \dut.control.begin_job );
+    began <= \dut.control.begin_job ;
     ran <= rst ? 3'd0 : {ran[1:0], \dut.control.run };
     completed <= \dut.control.completes & ~rst;
     ranks <= rst ? {2 * RANKS + 2{1'b0}} : {ranks[2*RANKS-1:0], \dut.feeder.entered };
@@ -179,8 +184,8 @@ module credits (
   end
   always @* if (begun & ~\dut.control.begin_job & ~rst) begin
     turn_is_an_scpu: assert (\dut.feeder.turn < `SCPUS);
-    flags_are_right: assert (\dut.feeder.any_lines_left == (lines_left != 32'd0)
-      & \dut.feeder.one_lines_left == (lines_left == 32'd1));
+    flags_are_right: assert (began | (\dut.feeder.any_lines_left == (lines_left != 32'd0)
+      & \dut.feeder.one_lines_left == (lines_left == 32'd1)));
     only_last_is_short: assert (~\dut.feeder.in_hand | \dut.feeder.last | lines_left == 32'd0);
     each_once: assert (to_give + {26'd0, inside} + {32'd0, \dut.feeder.entered } + {32'd0, uncounted} + {2'd0, emerged}
       == {2'd0, \dut.control.job_count });
@@ -202,8 +207,8 @@ module credits (
     each_is_sifted: assert (sifted == {1'b0, were_here});
     hits_add_up: assert ({3'd0, next_room} + inside + uncounted + sifted + \dut.backlog.stored + \dut.backlog.group_out
       == CAPACITY);
-    no_hit_is_lost: assert (\dut.sieve.contact_count == left + \dut.sieve.hits_rank_0 + \dut.backlog.stored
-      + \dut.backlog.group_out );
+    no_hit_is_lost: assert (\dut.sieve.contact_count + \dut.sieve.contacts_now == left + \dut.sieve.hits_rank_0
+      + \dut.backlog.stored + \dut.backlog.group_out );
     backlog_fits: assert (\dut.backlog.stored <= CAPACITY);
     backlog_counts: assert (\dut.backlog.tail - \dut.backlog.head == \dut.backlog.stored [ROOM_BITS-2:0]);
     reads_what_is_there: assert (\dut.backlog.readable <= \dut.backlog.stored );

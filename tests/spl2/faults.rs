@@ -38,7 +38,7 @@ const FAULTS: [(&str, &str, Planted, &str); 7] = [
         Planted::NoFence,
         "((to_dsm & dsm_valid) | at_status) & ~written & ~leaves_state",
     ),
-    ("spl2_transmit.v", "wire [5:0] next_epoch = ", Planted::EpochStuck, "6'd0"),
+    ("spl2_transmit.v", " next_epoch <= ", Planted::EpochStuck, "6'd1"),
     ("spl2_sequence.v", " wr_virtual <= ", Planted::VirtualDsm, "1'b1"),
     ("spl2_sequence.v", " first_pairs <= ", Planted::SourceOff, "source_line"),
 ];

@@ -41,8 +41,8 @@ const CONTROL: Rows = &[
     ),
     (
         "waits for the delay lines after it began",
-        "(takes_job | still_waits) & ~filled_heard;",
-        "takes_job | still_waits;",
+        "(takes_job | keeps_waiting) & ~filled_heard;",
+        "takes_job | keeps_waiting;",
         9,
         "waits_or_runs",
     ),

@@ -36,7 +36,8 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let response_valid = graph.input("rsp_valid", 1);
     let response_mdata = graph.input("rsp_mdata", MDATA_BITS);
     // One cycle after the other two.
-    let received = graph.input("rsp_data", spec.line_bits).delay(1).named("received");
+    let arrives = graph.input("rsp_data", spec.line_bits);
+    let received = arrives.delay(1).named("received");
     let write_granted = graph.input("wr_granted", 1);
     let told = JobOutputs::of(spec);
     let core_done = graph.input("core_done", 1);
@@ -66,7 +67,9 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     // A response is compared with the outstanding read before it is used. One that arrives as the next read is granted
     // belongs to an earlier read, from before a reset.
     let response = received.delay(1).named("compared");
-    let own = (response_valid & *waiting & is_own(response_mdata, expected.value())).delay(2).named("is_own");
+    let own = is_own(response_mdata, expected.value()).delay(1).named("has_own_number")
+        & (response_valid & *waiting).delay(1).named("comes_in_time");
+    let own = own.delay(1).named("is_own");
     let answered = graph.register("answered", 1, 0);
     answered.next(own & *waiting & !*answered);
     let answered = answered.value();
@@ -104,8 +107,8 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     // The control memory: a job is new if its number is not the last one's.
     let some_job = graph.register("some_job", 1, 0);
     let job_sequence = graph.data_register("job_sequence", 32);
-    let starts = control::START.of(received).is(map::START_WORD.into()).delay(1).named("has_start_word");
-    let is_other = (!control::SEQUENCE.of(received).equals(*job_sequence)).delay(1).named("is_other");
+    let starts = !differs(control::START.of(arrives), constant(32, map::START_WORD.into()), "start_word");
+    let is_other = differs(control::SEQUENCE.of(arrives), *job_sequence, "sequence");
     let is_new = (!*some_job | is_other).named("is_new");
     let got_job = (at_poll & answered & starts & is_new).named("got_job");
     some_job.next(*some_job | got_job);
@@ -129,8 +132,8 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let job_watchdog = graph.data_register("job_watchdog", COUNT_BITS);
     job_watchdog.next_if(got_job, control::WATCHDOG.of(response));
     let abort = graph.register("abort", 1, 0);
-    let aborts =
-        (answered & control::ABORT.of(received).any().delay(1).named("has_abort") & (got_job | at_run)).named("aborts");
+    let has_abort = differs(control::ABORT.of(arrives), constant(32, 0), "abort_word");
+    let aborts = (answered & has_abort & (got_job | at_run)).named("aborts");
     abort.next(aborts | (*abort & !got_job));
     let runs = (got_job | at_run).named("runs");
     let poll_pause = |cycles: u32| constant(pause_bits, cycles.into());
@@ -305,6 +308,13 @@ fn lines_of_sets<'g>(mode: Signal<'g>, count: Signal<'g>, others: Signal<'g>) ->
 /// A register that shows fields of a line from the next cycle on.
 fn shows<'g>(name: &str, state: Signal<'g>) -> Signal<'g> {
     state.data_copies(&format!("shows_{name}"), 1)[0]
+}
+
+/// True if a word of 32 bits differs from `other`, two cycles later: its bytes are compared first.
+fn differs<'g>(word: Signal<'g>, other: Signal<'g>, name: &str) -> Signal<'g> {
+    let bytes = (0..4).rev().map(|byte| !word.slice(8 * byte, 8).equals(other.slice(8 * byte, 8)));
+    let bytes = Signal::join(&bytes.collect::<Vec<_>>()).delay(1).named(&format!("{name}_bytes_differ"));
+    bytes.any().delay(1).named(&format!("{name}_differs"))
 }
 
 #[cfg(test)]

@@ -24,9 +24,11 @@ pub(super) fn transmit(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     // After the core has given up, its remaining requests are taken and dropped: SPL may never have room again.
     let discard = graph.input("discard", 1).delay(1).named("discards");
 
+    // The next job's epoch is known before its start, which only selects it.
     let epoch = graph.data_register("epoch", SHELL_EPOCH_BITS);
-    let next_epoch = (epoch.value() + start.extend(SHELL_EPOCH_BITS)).named("next_epoch");
-    let known_epoch = next_epoch.gate(!power_on).named("known_epoch");
+    let next_epoch = graph.data_register("next_epoch", SHELL_EPOCH_BITS);
+    next_epoch.next_if(start | power_on, power_on.select(next_epoch.same(1), next_epoch.plus(1)));
+    let known_epoch = start.select(*next_epoch, *epoch).gate(!power_on).named("known_epoch");
     epoch.next(known_epoch);
     // Responses are compared with copies beside them.
     let epochs = known_epoch.data_copies("epoch", 2);
