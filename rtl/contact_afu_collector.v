@@ -38,6 +38,7 @@ module contact_afu_collector (
   reg may_ask;
   reg lines_to_request_step;
   reg many_lines_to_request;
+  reg started_with_many_lines_to_request;
   reg [31:0] lines_to_request;
   reg freed;
   reg [6:0] reserved;
@@ -48,41 +49,57 @@ module contact_afu_collector (
   reg [5:0] next_slot;
   reg [63:0] came;
   reg [5:0] arrived_age;
+  reg is_response;
+  reg was_asked;
+  reg [7:0] marked_in_rows;
+  reg [5:0] answered_slot;
+  reg was_answered;
+  reg [5:0] response_slot;
   reg [63:0] awaited;
   reg [63:0] answers;
-  reg [5:0] response_slot;
-  reg is_current;
   reg [63:0] asked;
   reg [5:0] accepted_slot;
   reg accepted;
   reg rd_req_of_job;
-  reg [5:0] slot_then;
+  reg is_current;
+  reg is_asked;
+  reg [5:0] asked_slot;
   reg [5:0] oldest;
   reg [511:0] response_line;
   reg error_then;
   reg rd_rsp_error_d1;
-  reg is_response;
   reg [6:0] outstanding;
 
   // ---- logic ----
   wire rd_req_next_valid = ~drops_requests & (rd_req_spare_valid_copy_0 | may_ask);
   wire rd_req_moves = ~rd_req_valid | rd_req_ready;
   wire issue = may_ask & ~rd_req_spare_valid_copy_0;
-  wire lines_to_request_or_request_2_0_above_1 = many_lines_to_request | (3'd1 < lines_to_request[2:0]);
+  wire has_many_lines_to_request = many_lines_to_request | started_with_many_lines_to_request;
+  wire lines_to_request_or_request_2_0_above_1 = has_many_lines_to_request | (3'd1 < lines_to_request[2:0]);
   wire freed_or_reserved_6_n = freed | ~reserved[6];
   wire some_left_and_free =
       issue ?
-          ((lines_to_request_step ? (many_lines_to_request | (3'd2 < lines_to_request[2:0])) :
+          ((lines_to_request_step ? (has_many_lines_to_request | (3'd2 < lines_to_request[2:0])) :
             lines_to_request_or_request_2_0_above_1)
            & (freed_or_reserved_6_n & (freed | ~&reserved[5:0]))) :
       ((lines_to_request_step ? lines_to_request_or_request_2_0_above_1 :
-        (many_lines_to_request | |lines_to_request[2:0]))
+        (has_many_lines_to_request | |lines_to_request[2:0]))
        & freed_or_reserved_6_n);
   wire rd_req_waits = rd_req_next_valid & ~rd_req_moves;
   wire [9:0] rd_req_spare_tag_next = {epoch, next_slot};
   wire oldest_goes = came[0];
   wire [63:0] marked = came | (answered ? (64'd1 << arrived_age) : 64'd0);
-  wire is_awaited = |(awaited & answers);
+  wire is_awaited = is_response & (was_asked | (|(marked_in_rows & (8'd1 << answered_slot[5:3])) & ~was_answered));
+  wire [7:0] place_in_row = 8'd1 << response_slot[2:0];
+  wire marked_in_7 = |(awaited[63:56] & place_in_row);
+  wire marked_in_6 = |(awaited[55:48] & place_in_row);
+  wire marked_in_5 = |(awaited[47:40] & place_in_row);
+  wire marked_in_4 = |(awaited[39:32] & place_in_row);
+  wire marked_in_3 = |(awaited[31:24] & place_in_row);
+  wire marked_in_2 = |(awaited[23:16] & place_in_row);
+  wire marked_in_1 = |(awaited[15:8] & place_in_row);
+  wire marked_in_0 = |(awaited[7:0] & place_in_row);
+  wire is_asked_next = accepted & ~start;
   wire is_response_next = is_current & ~start;
   wire [5:0] next_oldest = oldest + {5'd0, oldest_goes};
 
@@ -93,10 +110,16 @@ module contact_afu_collector (
     if (start | issue) next_address <= start ? source : (next_address + 58'd1);
     if (rd_req_moves) rd_req_tag <= rd_req_spare_valid_copy_1 ? rd_req_spare_tag : rd_req_spare_tag_next;
     if (~rd_req_spare_valid_copy_1) rd_req_spare_tag <= rd_req_spare_tag_next;
-    arrived_age <= slot_then - next_oldest;
+    arrived_age <= answered_slot - next_oldest;
+    was_asked <= is_asked & (asked_slot == response_slot);
+    marked_in_rows <= {
+      marked_in_7, marked_in_6, marked_in_5, marked_in_4, marked_in_3, marked_in_2, marked_in_1, marked_in_0
+    };
+    answered_slot <= response_slot;
+    was_answered <= is_response & (answered_slot == response_slot);
     response_slot <= rd_rsp_tag[5:0];
     accepted_slot <= rd_req_tag[5:0];
-    slot_then <= response_slot;
+    asked_slot <= accepted_slot;
     response_line <= rd_rsp_data;
     error_then <= rd_rsp_error_d1;
     rd_rsp_error_d1 <= rd_rsp_error;
@@ -107,6 +130,7 @@ module contact_afu_collector (
       may_ask <= 1'b0;
       lines_to_request_step <= 1'b0;
       many_lines_to_request <= 1'b0;
+      started_with_many_lines_to_request <= 1'b0;
       lines_to_request <= 32'd0;
       freed <= 1'b0;
       reserved <= 7'd0;
@@ -114,23 +138,25 @@ module contact_afu_collector (
       line_comes <= 1'b0;
       came <= 64'd0;
       answered <= 1'b0;
+      is_response <= 1'b0;
       awaited <= 64'd0;
       answers <= 64'd0;
-      is_current <= 1'b0;
       asked <= 64'd0;
       accepted <= 1'b0;
       rd_req_of_job <= 1'b0;
+      is_current <= 1'b0;
+      is_asked <= 1'b0;
       oldest <= 6'd0;
       failed <= 1'b0;
       responded <= 1'b0;
-      is_response <= 1'b0;
       idle <= 1'b0;
       outstanding <= 7'd0;
     end else begin
       rd_req_valid <= rd_req_next_valid | ~rd_req_moves;
       may_ask <= run & some_left_and_free;
       lines_to_request_step <= issue & ~start;
-      many_lines_to_request <= start ? |lines[31:3] : |lines_to_request[31:3];
+      many_lines_to_request <= ~start & |lines_to_request[31:3];
+      started_with_many_lines_to_request <= start & |lines[31:3];
       if (start | lines_to_request_step) lines_to_request <= start ? lines : (lines_to_request - 32'd1);
       freed <= taken & ~start;
       reserved <= start ? 7'd0 : (issue ^ freed) ? (issue ? (reserved + 7'd1) : (reserved - 7'd1)) : reserved;
@@ -138,16 +164,17 @@ module contact_afu_collector (
       line_comes <= oldest_goes & ~start;
       came <= start ? 64'd0 : oldest_goes ? {1'b0, marked[63:1]} : marked;
       answered <= is_awaited & ~start;
+      is_response <= is_response_next;
       awaited <= start ? 64'd0 : ((awaited & ~answers) | asked);
       answers <= is_response_next ? (64'd1 << response_slot) : 64'd0;
-      is_current <= rd_rsp_valid & (rd_rsp_tag[9:6] == epoch);
-      asked <= (accepted & ~start) ? (64'd1 << accepted_slot) : 64'd0;
+      asked <= is_asked_next ? (64'd1 << accepted_slot) : 64'd0;
       accepted <= rd_req_valid & rd_req_ready & rd_req_of_job & ~start;
       rd_req_of_job <= ~start & (rd_req_moves | rd_req_of_job);
+      is_current <= rd_rsp_valid & (rd_rsp_tag[9:6] == epoch);
+      is_asked <= is_asked_next;
       oldest <= start ? 6'd0 : next_oldest;
       failed <= is_awaited & error_then & ~start;
       responded <= run & is_response & ~start;
-      is_response <= is_response_next;
       idle <= ~|outstanding & (~rd_req_valid & ~rd_req_spare_valid_copy_0) & ~may_ask;
       outstanding <=
           start              ? 7'd0 :

@@ -40,23 +40,28 @@ module contact_afu_dispatcher (
   reg [63:0] came;
   reg [6:0] reserved;
   reg [5:0] arrived_age;
+  reg is_response;
+  reg was_asked;
+  reg [7:0] marked_in_rows;
+  reg [5:0] answered_slot;
+  reg was_answered;
+  reg [5:0] response_slot;
   reg [63:0] awaited;
   reg [63:0] answers;
-  reg [5:0] response_slot;
-  reg is_current;
   reg [63:0] asked;
   reg [5:0] accepted_slot;
   reg accepted;
   reg wr_req_of_job;
   reg [5:0] next_slot;
-  reg [5:0] slot_then;
+  reg is_current;
+  reg is_asked;
+  reg [5:0] asked_slot;
   reg [5:0] oldest;
   reg [57:0] next_address;
   reg [7:0] tail;
   reg [7:0] head;
   reg error_then;
   reg wr_rsp_error_d1;
-  reg is_response;
   reg [6:0] outstanding;
 
   // ---- logic ----
@@ -74,17 +79,33 @@ module contact_afu_dispatcher (
   wire oldest_goes_or_reserved_6_n = oldest_goes | ~reserved[6];
   wire some_free = goes ? (oldest_goes_or_reserved_6_n & (oldest_goes | ~&reserved[5:0])) : oldest_goes_or_reserved_6_n;
   wire [63:0] marked = came | (answered ? (64'd1 << arrived_age) : 64'd0);
-  wire is_awaited = |(awaited & answers);
+  wire is_awaited = is_response & (was_asked | (|(marked_in_rows & (8'd1 << answered_slot[5:3])) & ~was_answered));
+  wire [7:0] place_in_row = 8'd1 << response_slot[2:0];
+  wire marked_in_7 = |(awaited[63:56] & place_in_row);
+  wire marked_in_6 = |(awaited[55:48] & place_in_row);
+  wire marked_in_5 = |(awaited[47:40] & place_in_row);
+  wire marked_in_4 = |(awaited[39:32] & place_in_row);
+  wire marked_in_3 = |(awaited[31:24] & place_in_row);
+  wire marked_in_2 = |(awaited[23:16] & place_in_row);
+  wire marked_in_1 = |(awaited[15:8] & place_in_row);
+  wire marked_in_0 = |(awaited[7:0] & place_in_row);
+  wire is_asked_next = accepted & ~start;
   wire is_response_next = is_current & ~start;
   wire [5:0] next_oldest = oldest + {5'd0, oldest_goes};
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
-    arrived_age <= slot_then - next_oldest;
+    arrived_age <= answered_slot - next_oldest;
+    was_asked <= is_asked & (asked_slot == response_slot);
+    marked_in_rows <= {
+      marked_in_7, marked_in_6, marked_in_5, marked_in_4, marked_in_3, marked_in_2, marked_in_1, marked_in_0
+    };
+    answered_slot <= response_slot;
+    was_answered <= is_response & (answered_slot == response_slot);
     response_slot <= wr_rsp_tag[5:0];
     accepted_slot <= wr_req_tag[5:0];
     if (goes) wr_req_tag <= {epoch, next_slot};
-    slot_then <= response_slot;
+    asked_slot <= accepted_slot;
     if (goes) wr_req_address <= next_address;
     if (start | goes) next_address <= start ? destination : (next_address + 58'd1);
     error_then <= wr_rsp_error_d1;
@@ -101,19 +122,20 @@ module contact_afu_dispatcher (
       came <= 64'd0;
       reserved <= 7'd0;
       answered <= 1'b0;
+      is_response <= 1'b0;
       awaited <= 64'd0;
       answers <= 64'd0;
-      is_current <= 1'b0;
       asked <= 64'd0;
       accepted <= 1'b0;
       wr_req_of_job <= 1'b0;
       next_slot <= 6'd0;
+      is_current <= 1'b0;
+      is_asked <= 1'b0;
       oldest <= 6'd0;
       tail <= 8'd0;
       head <= 8'd0;
       failed <= 1'b0;
       responded <= 1'b0;
-      is_response <= 1'b0;
       idle <= 1'b0;
       outstanding <= 7'd0;
       empty <= 1'b0;
@@ -127,19 +149,20 @@ module contact_afu_dispatcher (
       came <= start ? 64'd0 : oldest_goes ? {1'b0, marked[63:1]} : marked;
       reserved <= start ? 7'd0 : (goes ^ oldest_goes) ? (goes ? (reserved + 7'd1) : (reserved - 7'd1)) : reserved;
       answered <= is_awaited & ~start;
+      is_response <= is_response_next;
       awaited <= start ? 64'd0 : ((awaited & ~answers) | asked);
       answers <= is_response_next ? (64'd1 << response_slot) : 64'd0;
-      is_current <= wr_rsp_valid & (wr_rsp_tag[9:6] == epoch);
-      asked <= (accepted & ~start) ? (64'd1 << accepted_slot) : 64'd0;
+      asked <= is_asked_next ? (64'd1 << accepted_slot) : 64'd0;
       accepted <= wr_req_valid & wr_req_ready & wr_req_of_job & ~start;
       wr_req_of_job <= ~start & (wr_req_moves | wr_req_of_job);
       next_slot <= start ? 6'd0 : goes ? (next_slot + 6'd1) : next_slot;
+      is_current <= wr_rsp_valid & (wr_rsp_tag[9:6] == epoch);
+      is_asked <= is_asked_next;
       oldest <= start ? 6'd0 : next_oldest;
       tail <= start ? 8'd0 : line_valid ? (tail + 8'd1) : tail;
       head <= start ? 8'd0 : take ? (head + 8'd1) : head;
       failed <= is_awaited & error_then & ~start;
       responded <= run & is_response & ~start;
-      is_response <= is_response_next;
       idle <= ~|outstanding & ~wr_req_valid & ~goes;
       outstanding <=
           start             ? 7'd0 :

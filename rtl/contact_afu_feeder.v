@@ -41,6 +41,7 @@ module contact_afu_feeder (
   reg [6:0] turn_block;
   reg lines_left_step;
   reg many_lines_left;
+  reg started_with_many_lines_left;
   reg [31:0] lines_left;
   reg [6:0] lines_waiting;
   reg [1:0] carries_rank_0;
@@ -91,20 +92,21 @@ module contact_afu_feeder (
   wire line_done_after_2 = {2'd0, last} < place_after_2;
   wire line_done = go_1 ? line_done_after_2 : go_0 ? line_done_after_1 : line_done_after_0;
   wire take = line_waits & (line_done | ~in_hand);
-  wire left_2_0_equals_2_unless_many_lines_left = ~many_lines_left & (lines_left[2:0] == 3'd2);
+  wire has_many_lines_left = many_lines_left | started_with_many_lines_left;
+  wire left_2_0_equals_2_unless_has_many_lines_left = ~has_many_lines_left & (lines_left[2:0] == 3'd2);
   wire one_lines_left_next =
       ~start
       & (take            ?
-             (lines_left_step ? (~many_lines_left & (lines_left[2:0] == 3'd3)) :
-              left_2_0_equals_2_unless_many_lines_left) :
-         lines_left_step ? left_2_0_equals_2_unless_many_lines_left :
-         (~many_lines_left & (lines_left[2:0] == 3'd1)));
+             (lines_left_step ? (~has_many_lines_left & (lines_left[2:0] == 3'd3)) :
+              left_2_0_equals_2_unless_has_many_lines_left) :
+         lines_left_step ? left_2_0_equals_2_unless_has_many_lines_left :
+         (~has_many_lines_left & (lines_left[2:0] == 3'd1)));
   wire lines_waiting_6_1_any = |lines_waiting[6:1];
-  wire many_lines_left_or_lines_left_2_0_above_1 = many_lines_left | (3'd1 < lines_left[2:0]);
+  wire has_many_lines_left_or_left_2_0_above_1 = has_many_lines_left | (3'd1 < lines_left[2:0]);
   wire left_2_0_above_2_if_lines_left_step =
-      lines_left_step ? (many_lines_left | (3'd2 < lines_left[2:0])) : many_lines_left_or_lines_left_2_0_above_1;
+      lines_left_step ? (has_many_lines_left | (3'd2 < lines_left[2:0])) : has_many_lines_left_or_left_2_0_above_1;
   wire left_2_0_above_1_if_lines_left_step =
-      lines_left_step ? many_lines_left_or_lines_left_2_0_above_1 : (many_lines_left | |lines_left[2:0]);
+      lines_left_step ? has_many_lines_left_or_left_2_0_above_1 : (has_many_lines_left | |lines_left[2:0]);
   wire some_wait =
       take ?
           (((lines_left_step ? (|lines_waiting[6:2] | (lines_waiting[1] & lines_waiting[0])) : lines_waiting_6_1_any)
@@ -154,6 +156,7 @@ module contact_afu_feeder (
       turn_block <= 7'd0;
       lines_left_step <= 1'b0;
       many_lines_left <= 1'b0;
+      started_with_many_lines_left <= 1'b0;
       lines_left <= 32'd0;
       lines_waiting <= 7'd0;
       carries <= 2'd0;
@@ -174,7 +177,8 @@ module contact_afu_feeder (
       block_is_last <= round_begins ? one_block : ends_block ? before_last_block : block_is_last;
       turn_block <= round_begins ? 7'd0 : ends_block ? (turn_block + 7'd1) : turn_block;
       lines_left_step <= take & ~start;
-      many_lines_left <= start ? |lines[31:3] : |lines_left[31:3];
+      many_lines_left <= ~start & |lines_left[31:3];
+      started_with_many_lines_left <= start & |lines[31:3];
       if (start | lines_left_step) lines_left <= start ? lines : (lines_left - 32'd1);
       lines_waiting <=
           start                          ? 7'd0 :

@@ -5,7 +5,11 @@ use crate::hdl::{Graph, Signal};
 
 use super::in_order::Arrival;
 
-/// Cycles from a response of this job, registered, to [`Answers`]: its slot decoded, compared with the marks.
+/// Marks among which one is chosen in a first step.
+const ROW: u32 = 8;
+
+/// Cycles from a response of this job, registered, to [`Answers`]: its slot decoded and its mark chosen in each row of
+/// marks, then the row chosen.
 pub(super) const CYCLES_TO_ANSWER: u32 = 2;
 
 /// Responses of this job, [two cycles](CYCLES_TO_ANSWER) after they arrived.
@@ -31,12 +35,26 @@ pub(super) fn awaited<'g>(
 ) -> Answers<'g> {
     let registered = |happens: Signal<'g>, name: &str| (happens & !start).registered(name);
     let accepted = registered(accepted, "accepted");
-    let asked = registered_marks(slot.delay(1).named("accepted_slot"), accepted, start, "asked");
+    let accepted_slot = slot.delay(1).named("accepted_slot");
+    let asked = registered_marks(accepted_slot, accepted, start, "asked");
     let answers = registered_marks(response.slot, response.valid, start, "answers");
     let awaited = graph.register("awaited", slots, 0);
     awaited.next(start.select(awaited.same(0), (*awaited & !answers) | asked));
-    let is_awaited = (*awaited & answers).any().named("is_awaited");
     let is_response = registered(response.valid, "is_response");
+
+    // The response's mark as it will be in the next cycle: as it is, unless that slot is answered or asked for now.
+    let row_bits = ROW.min(slots).ilog2();
+    let here = response.slot.delay(1).named("answered_slot");
+    let was_answered = (is_response & here.equals(response.slot)).delay(1).named("was_answered");
+    let asked_here =
+        registered(accepted, "is_asked") & accepted_slot.delay(1).named("asked_slot").equals(response.slot);
+    let was_asked = asked_here.delay(1).named("was_asked");
+    let place = response.slot.low(row_bits).one_hot().named("place_in_row");
+    let marked = |row: u32| (awaited.slice(row << row_bits, 1 << row_bits) & place).any();
+    let rows: Vec<_> = (0..slots >> row_bits).rev().map(|row| marked(row).named(&format!("marked_in_{row}"))).collect();
+    let rows = Signal::join(&rows).delay(1).named("marked_in_rows");
+    let is_marked = if slots > ROW { (rows & here.drop_low(row_bits).one_hot()).any() } else { rows };
+    let is_awaited = (is_response & (was_asked | (is_marked & !was_answered))).named("is_awaited");
     Answers {
         answered: registered(is_awaited, "answered"),
         responded: registered(run & is_response, "responded"),

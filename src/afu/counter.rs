@@ -11,8 +11,10 @@ pub(super) struct Countdown<'g> {
     /// True if exactly one is left.
     pub(super) one: Signal<'g>,
     flags: [Register<'g>; 2],
-    /// True if there were so many a cycle ago that some are left whatever was counted since.
-    many: Register<'g>,
+    /// True if there were so many a cycle ago that some are left whatever was counted since: counted down, or as many
+    /// as they were at the start.
+    many: [Register<'g>; 2],
+    has_many: Signal<'g>,
     counts: Register<'g>,
     /// True in the cycle in which a step is counted.
     pub(super) counted: Signal<'g>,
@@ -24,18 +26,20 @@ impl<'g> Countdown<'g> {
         let flags = ["any", "one"].map(|flag| graph.register(&format!("{flag}_{name}"), 1, 0));
         let [any, one] = flags.map(Register::value);
         let counts = graph.register(&format!("{name}_step"), 1, 0);
-        let many = graph.register(&format!("many_{name}"), 1, 0);
-        Self { left: graph.register(name, width, 0), any, one, flags, many, counts, counted: *counts }
+        let many = ["many", "started_with_many"].map(|flag| graph.register(&format!("{flag}_{name}"), 1, 0));
+        let has_many = (*many[0] | *many[1]).named(&format!("has_many_{name}"));
+        Self { left: graph.register(name, width, 0), any, one, flags, many, has_many, counts, counted: *counts }
     }
 
     /// Starts from `from` at `start`, and counts down at `step`, which is set only while something is left. Returns
     /// whether anything will be left.
     pub(super) fn connect(self, start: Signal<'g>, from: Signal<'g>, step: Signal<'g>) -> AtStep<'g> {
-        let (left, counted, many) = (self.left, self.counted, *self.many);
+        let (left, counted, many) = (self.left, self.counted, self.has_many);
         self.counts.next(step & !start);
         left.next_if(start | counted, start.select(from, left.minus(1)));
         // From eight on, three bits that are two steps late say nothing, and `many` says it.
-        self.many.next(start.select(from.drop_low(3).any(), left.drop_low(3).any()));
+        self.many[0].next(!start & left.drop_low(3).any());
+        self.many[1].next(start & from.drop_low(3).any());
         let few = left.low(3);
         let next_any = by_steps(counted, |steps| many | few.greater_than(few.same(steps.into())));
         let next_one = by_steps(counted, |steps| !many & few.is(u128::from(steps + 1)));

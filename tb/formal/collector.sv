@@ -61,6 +61,7 @@ module collector (
   (* hierconn *) wire [3:0]  \dut.answers ;
   (* hierconn *) wire        \dut.is_current ;
   (* hierconn *) wire        \dut.is_response ;
+  (* hierconn *) wire        \dut.is_awaited ;
   (* hierconn *) wire [1:0]  \dut.response_slot ;
   (* hierconn *) wire        \dut.accepted ;
   (* hierconn *) wire [1:0]  \dut.accepted_slot ;
@@ -169,6 +170,7 @@ module collector (
     leftover_is_right: assert (~rd_req_valid | \dut.rd_req_of_job == ~left);
     awaited_is_right: assert (\dut.awaited == marked & \dut.asked == asks_marked & \dut.answers == answers_marked
       & heard == answers_heard & \dut.is_response == (answers_marked != 4'd0)
+      & \dut.is_awaited == ((\dut.awaited & \dut.answers ) != 4'd0)
       & waited == ((marked & ~answers_marked) | asks_marked) & waiting == ((waited & ~answers_heard) | asks_heard)
       & (\dut.accepted ? 4'd1 << \dut.accepted_slot : 4'd0) == asks_heard);
     surprise_is_told: assert (unexpected == surprised);
