@@ -376,8 +376,8 @@ fn a_spoilt_shell_is_found_out() {
         ("afu_top.v", "wire power_on = ~reset_n;", "wire power_on = 1'b0;", "a valid is unknown"),
         (
             "spl2_transmit.v",
-            "wire [5:0] known_epoch = power_on ? 6'd0 : (start ? next_epoch : epoch);",
-            "wire [5:0] known_epoch = start ? next_epoch : epoch;",
+            "next_epoch <= power_on ? 6'd1 : (next_epoch + 6'd1);",
+            "next_epoch <= next_epoch + 6'd1;",
             "a read's header is unknown",
         ),
         ("contact_afu_packer.v", " line <= {", " line <= 512'dx ^ {", "a write's data is unknown"),
