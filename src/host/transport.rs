@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::handshake::Protocol;
+#[cfg(feature = "cosim")]
 use crate::link::axi::AxiError;
 use crate::link::spl2::{DeviceWrite, Limits, Spl2Error, Spl2Model};
 use crate::link::{Line, LinkModel, Traffic};
@@ -116,7 +117,8 @@ pub enum TransportError {
         /// The error.
         what: Spl2Error,
     },
-    /// The device broke a rule of AXI4 or AXI4-Lite.
+    /// A simulated device broke a rule of AXI4 or AXI4-Lite.
+    #[cfg(feature = "cosim")]
     #[error("protocol broken in cycle {cycle}: {what}")]
     Axi {
         /// The cycle, counted from the start of the device.
