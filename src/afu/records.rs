@@ -16,7 +16,7 @@ impl Afu {
             return self.spheres();
         }
         let (config, layout) = (&self.spec().config, self.layout());
-        let (line, word) = (layout.line_bits(), layout.word_bits());
+        let word = layout.word_bits();
         let numbers = match config.record {
             RecordFormat::F32 => "IEEE 754 binary32",
             RecordFormat::F16 => "IEEE 754 binary16",
@@ -69,7 +69,7 @@ impl Afu {
         let _ = write!(
             out,
             "\n**What is computed.** {} Without contact every word but the flags is zero. A pair with a NaN, an infinity{} is \
-             invalid{}: it is counted, and is no contact. A line is {line} bits.\n",
+             invalid{}: it is counted, and is no contact.\n",
             shape.computes,
             if has_lengths { " or a negative radius" } else { "" },
             if has_lengths { " (−0 is a valid radius)" } else { "" },

@@ -77,6 +77,22 @@ impl Case {
         }
     }
 
+    /// Lines of the source, and of the destination.
+    pub fn lines(&self) -> u32 {
+        self.lines.len() as u32
+    }
+
+    /// The source's lines.
+    pub fn source(&self) -> Vec<Line> {
+        let words: Vec<u32> = self.pairs.iter().flat_map(|pair| pair.0).collect();
+        words.chunks(16).map(|line| std::array::from_fn(|word| line.get(word).copied().unwrap_or(0))).collect()
+    }
+
+    /// The destination's lines.
+    pub fn wanted(&self) -> &[Line] {
+        &self.lines
+    }
+
     /// A workspace whose buffers begin at these lines of 4 KB, with exactly the room that the case needs.
     pub fn workspace(&self, source: u64, destination: u64) -> Workspace {
         let lines = (self.lines.len() as u64).max(1);

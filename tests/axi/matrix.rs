@@ -1,6 +1,8 @@
 //! All combinations of widths of the bus, numbers of SCPUs, counts of pairs, links and handshakes.
 
-use contact_afu::config::{Config, Results};
+use contact_afu::afu::shell::axi::map;
+use contact_afu::config::{Config, Input, Results};
+use contact_afu::host::{Expected, Session, Software, Transport, Workspace};
 use contact_afu::link::LinkModel;
 use contact_afu::link::axi::Handshake;
 use contact_afu::pairs::Set;
@@ -56,5 +58,52 @@ fn every_kind_of_record() {
         for link in [LinkModel::ideal(), LinkModel::hostile()] {
             bench.run(&pairs, &link, 5).unwrap().assert_good();
         }
+    }
+}
+
+/// The same transactions with the AFU in software: every register but those that count cycles, and every byte of the
+/// destination, are the same.
+#[test]
+fn software_and_verilog_write_the_same() {
+    let config = Config { results: Results::Hits, ..config(3, 256) };
+    let model = model(&config);
+    let workspace = || {
+        let layout = Expected::edited(&config).layout;
+        Workspace::contiguous(layout, 1000).unwrap().with_buffers(7, 1200, 1000).unwrap()
+    };
+    let counts = ["cycles_busy", "cycles_input", "cycles_output", "first_read", "first_write"];
+    for (link, seed) in LinkModel::PRESETS.into_iter().zip(1..) {
+        let afu = model.instance(seed).unwrap();
+        let mut hardware = session(machine(&afu, link, Handshake::Free, seed), &config, workspace());
+        let software = Software::new(&config, LinkModel::ideal()).unwrap();
+        let mut software = Session::new(software, workspace(), Expected::new(&config).unwrap());
+        let mut one = hardware.transaction().send(&[]).unwrap();
+        let mut other = software.transaction().send(&[]).unwrap();
+        for count in [301, 1, 2, 3, 1000, 0] {
+            let what = format!("{link}, before {count} pairs");
+            let mut done = one.start().unwrap().confirm().unwrap().wait().unwrap();
+            let mut done_too = other.start().unwrap().confirm().unwrap().wait().unwrap();
+            for register in map::registers(Input::Direct).filter(|register| !counts.contains(&register.name)) {
+                for word in 0..register.words {
+                    let at = register.offset + 4 * word;
+                    let read = done.transport_mut().read_csr(at).unwrap();
+                    assert_eq!(read, done_too.transport_mut().read_csr(at).unwrap(), "{what}: {}", register.name);
+                }
+            }
+            let first = workspace().destination() / 64;
+            for line in first..first + 1000 {
+                assert_eq!(done.transport().line(line), done_too.transport().line(line), "{what}: line {line:#x}");
+            }
+            // Each line that was written has its cycle, in the order of the lines.
+            let outcome = done.outcome();
+            let cycles: Vec<u64> = outcome.write_cycles.iter().flatten().copied().collect();
+            assert_eq!(cycles.len(), outcome.lines.iter().flatten().count(), "{what}");
+            assert!(cycles.is_sorted() && cycles.iter().all(|&cycle| cycle < outcome.cycles), "{what}: {cycles:?}");
+            let (got, got_too) = (done.retrieve().unwrap(), done_too.retrieve().unwrap());
+            assert_eq!(got.results().contacts, got_too.results().contacts, "{what}");
+            let pairs = Set::Random(count).pairs(count);
+            (one, other) = (got.send_next(&pairs).unwrap(), got_too.send_next(&pairs).unwrap());
+        }
+        std::mem::forget((one, other));
     }
 }

@@ -2,7 +2,8 @@
 
 use contact_afu::afu::JobError;
 use contact_afu::afu::shell::axi::map::{self, Access};
-use contact_afu::config::Input;
+use contact_afu::afu::{Afu, Spec};
+use contact_afu::config::{Config, Input, Results};
 use contact_afu::cosim::axi::Machine;
 use contact_afu::link::axi::Handshake;
 
@@ -121,4 +122,19 @@ fn the_interrupt_follows_its_three_registers() {
     assert_eq!(events(&mut machine), done);
     machine.write_register(map::INTERRUPT_STATUS.offset, done | ready).unwrap();
     assert_eq!(events(&mut machine), ready);
+}
+
+/// REGISTERS.md names the registers that a job of each kind needs: where the number of results is not known before, how
+/// many lines there is room for.
+#[test]
+fn the_steps_of_a_job_name_what_it_needs() {
+    for (results, needs_room) in [(Results::All, false), (Results::Hits, true)] {
+        let files = Afu::generate(Spec::from(Config { results, ..config(1, 512) })).unwrap().files();
+        let (_, text) = files.iter().find(|(name, _)| name == "REGISTERS.md").unwrap();
+        let step = text.lines().find(|line| line.starts_with("3. Write")).unwrap();
+        assert_eq!(step.contains("`destination_lines` (0x24)"), needs_room, "{step}");
+        let others =
+            ["`source` (0x10)", "`destination` (0x18)", "`count` (0x20)", "`mode` (0x28)", "`watchdog` (0x2C)"];
+        assert!(others.iter().all(|register| step.contains(register)), "{step}");
+    }
 }

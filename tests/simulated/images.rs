@@ -95,8 +95,8 @@ fn hash(lines: &[Line]) -> String {
     hash.finalize().iter().take(8).map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// The destination lines of a job with the shell `spl2`.
-fn below_spl2(config: &Config) -> Vec<Line> {
+/// The destination lines of a job with a shell that has registers.
+fn below_a_shell(config: &Config) -> Vec<Line> {
     let pairs: Vec<_> = pairs(config).into_iter().map(contact_afu::PairRecord).collect();
     let verdict = Bench::new(config).unwrap().run(&pairs, &LinkModel::ideal(), 1).unwrap();
     verdict.assert_good();
@@ -119,5 +119,11 @@ fn images_at_the_line_port_are_what_they_were() {
 
 #[test]
 fn images_below_spl2_are_what_they_were() {
-    compare(&SPL2, Shell::Spl2, below_spl2);
+    compare(&SPL2, Shell::Spl2, below_a_shell);
+}
+
+/// What lies in memory does not depend on the shell.
+#[test]
+fn images_behind_axi_are_those_below_spl2() {
+    compare(&SPL2, Shell::Axi, below_a_shell);
 }

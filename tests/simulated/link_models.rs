@@ -44,10 +44,28 @@ fn with_256_reads_in_flight_far_memory_is_the_limit() {
     }
 }
 
+/// Behind AXI4 the models of two hosts' links, of a card's memory and of a Zynq's port are the limit too.
+#[test]
+fn behind_axi_memory_is_the_limit() {
+    for (bus, interval, links) in [(512, 5, &["harp2", "pcie3x8", "ddr4"][..]), (128, 20, &["zynqmp"])] {
+        let config = Config { shell: Shell::Axi, bus, outstanding: 256, interval, ..Config::default() };
+        let bench = Bench::new(&config).unwrap();
+        for name in links {
+            let verdict = bench.run(&Set::Random(90_000).pairs(1), &link(name), 1).unwrap();
+            assert!(verdict.is_good());
+            let reached = verdict.outcome.limit_cycles / verdict.outcome.cycles as f64;
+            println!("{name}: {reached}");
+            assert!((0.95..=1.0).contains(&reached), "{name}: {reached}");
+        }
+    }
+}
+
 /// The same bits whatever is in flight, over links that reorder, stall and delay.
 #[test]
 fn the_number_in_flight_changes_no_bit() {
-    for (shell, outstanding) in [(Shell::Line, 16), (Shell::Line, 128), (Shell::Line, 256), (Shell::Spl2, 16)] {
+    for (shell, outstanding) in
+        [(Shell::Line, 16), (Shell::Line, 128), (Shell::Line, 256), (Shell::Spl2, 16), (Shell::Axi, 16)]
+    {
         let config = Config { scpus: 3, shell, outstanding, ..Config::default() };
         let bench = Bench::new(&config).unwrap();
         for link in [LinkModel::hostile(), link("pcie3x8")] {

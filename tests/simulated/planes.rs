@@ -60,11 +60,12 @@ fn every_profile_at_several_intervals() {
 
 /// The simulated AFU and the host, over a link that reorders and stalls.
 #[test]
-fn jobs_over_a_hostile_link_below_both_shells() {
+fn jobs_over_a_hostile_link_below_every_shell() {
     for (shell, profile, record, results, interval) in [
         (Shell::Line, "wide", "f32", "hits", 2),
         (Shell::Spl2, "paper", "f32", "all", 1),
         (Shell::Spl2, "half", "f16", "hits", 1),
+        (Shell::Axi, "half", "f16", "hits", 1),
     ] {
         let config = Config { shell, ..config(profile, "depth,normal,position", record, results, 3, interval) };
         let bench = Bench::new(&config).unwrap();

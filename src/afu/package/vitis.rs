@@ -42,7 +42,13 @@ ipx::associate_bus_interfaces -busif s_axi_control -clock ap_clk $core
 
 # The registers of ap_ctrl_hs, and the arguments. What the kernel only reports is not an argument: a host reads it by
 # its offset in REGISTERS.md.
-set block [lindex [ipx::get_address_blocks -of_objects [ipx::get_memory_maps s_axi_control -of_objects $core]] 0]
+set map [ipx::get_memory_maps s_axi_control -of_objects $core]
+if {{$map eq \"\"}} {{
+  set map [ipx::add_memory_map s_axi_control $core]
+  set_property slave_memory_map_ref s_axi_control [ipx::get_bus_interfaces s_axi_control -of_objects $core]
+}}
+set block [lindex [ipx::get_address_blocks -of_objects $map] 0]
+if {{$block eq \"\"}} {{ set block [ipx::add_address_block registers $map] }}
 proc kernel_register {{block name offset bits {{master \"\"}}}} {{
   set register [ipx::add_register $name $block]
   set_property address_offset $offset $register

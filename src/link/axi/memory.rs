@@ -1,13 +1,14 @@
 //! The memory: queues of bursts in front of a link.
 
 use std::collections::{HashMap, VecDeque};
+use std::ops::Range;
 
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::error::AxiError;
 use super::monitor::Monitor;
-use super::signals::{Address, FromMemory, OKAY, ReadBeat, SLVERR, ToMemory, WriteBeat};
+use super::signals::{Address, DECERR, FromMemory, OKAY, ReadBeat, SLVERR, ToMemory, WriteBeat};
 use crate::link::regulator::Gate;
 use crate::link::{LINE_BYTES, Line, Link, LinkError, LinkModel, ReadRequest, Replies, Requests, Stalls, WriteRequest};
 
@@ -52,7 +53,8 @@ struct Read {
     tag: u16,
     /// The last line of its burst.
     last: bool,
-    received: Option<(Line, bool)>,
+    /// Its data, and the response of each of its beats.
+    received: Option<(Line, u8)>,
 }
 
 /// A write burst whose address was taken.
@@ -64,7 +66,7 @@ struct Write {
     left: u64,
     /// Lines that the link has not acknowledged, those that have not gone included.
     unacknowledged: u64,
-    failed: bool,
+    response: u8,
 }
 
 /// Memory behind an AXI4 slave.
@@ -93,6 +95,8 @@ pub struct AxiMemory {
     violations: u64,
     /// Responses that nobody asked for, of channels R and B, still to be given.
     unasked: [bool; 2],
+    /// The lines where there is no memory.
+    absent: Range<u64>,
 }
 
 impl AxiMemory {
@@ -121,6 +125,7 @@ impl AxiMemory {
             sent: HashMap::new(),
             violations: 0,
             unasked: [false; 2],
+            absent: 0..0,
             link,
         })
     }
@@ -146,6 +151,11 @@ impl AxiMemory {
         self.unasked = [read, write];
     }
 
+    /// Plants a fault: from now on there is no memory at these lines, and the interconnect answers with DECERR there.
+    pub fn lacks(&mut self, lines: Range<u64>) {
+        self.absent = lines;
+    }
+
     /// The stalls of the slave's channels, beside the link's own: of reads, and of writes.
     pub(crate) fn stalls(&self) -> ([Stalls; 2], [Stalls; 3]) {
         let LinkModel { read, write, .. } = self.link.model();
@@ -153,7 +163,7 @@ impl AxiMemory {
     }
 
     /// From now on the AFU may read `source`, and write each line of `destination` once. Forgets when lines were sent.
-    pub(crate) fn guard(&mut self, source: std::ops::Range<u64>, destination: std::ops::Range<u64>) {
+    pub(crate) fn guard(&mut self, source: Range<u64>, destination: Range<u64>) {
         self.link.memory.guard(source, destination);
         self.violations = 0;
         self.sent.clear();
@@ -212,7 +222,7 @@ impl AxiMemory {
         if let Some(burst) = afu.aw.filter(|_| from.aw_ready) {
             let lines = self.lines(&burst);
             let line = burst.address / LINE_BYTES;
-            self.writes.push_back(Write { line, left: lines, unacknowledged: lines, failed: false });
+            self.writes.push_back(Write { line, left: lines, unacknowledged: lines, response: OKAY });
         }
         if let Some(beat) = afu.w.filter(|_| from.w_ready) {
             self.beats.push_back(beat);
@@ -250,8 +260,25 @@ impl AxiMemory {
         self.writes.iter().filter(|write| write.left > 0).count()
     }
 
+    /// Answers the next accesses of lines where there is no memory, in their turn and without the link.
+    fn refuse_lines(&mut self) {
+        while let Some((_, last)) = self.to_read.front().copied().filter(|(line, _)| self.absent.contains(line)) {
+            self.to_read.pop_front();
+            self.reads.push_back(Read { tag: 0, last, received: Some(([0; 16], DECERR)) });
+        }
+        if self.next_line().is_some_and(|(line, _)| self.absent.contains(&line))
+            && let Some(write) = self.writes.iter_mut().find(|write| write.left > 0)
+        {
+            (write.line, write.left) = (write.line + 1, write.left - 1);
+            write.unacknowledged -= 1;
+            write.response = DECERR;
+            self.beats.drain(..self.beats_per_line());
+        }
+    }
+
     /// One cycle of the link.
     fn move_lines(&mut self) {
+        self.refuse_lines();
         let tag = self.next_tag;
         let read = self.to_read.front().map(|&(address, _)| ReadRequest { address, tag });
         let write = self.next_line().map(|(address, data)| WriteRequest { address, tag, data });
@@ -277,7 +304,7 @@ impl AxiMemory {
             // A tag that is unknown is of before a reset.
             let read = self.reads.iter_mut().find(|read| read.tag == response.tag && read.received.is_none());
             if let Some(read) = read {
-                read.received = Some((response.data, response.error));
+                read.received = Some((response.data, if response.error { SLVERR } else { OKAY }));
             }
         }
         if let Some(response) = acknowledged
@@ -285,7 +312,8 @@ impl AxiMemory {
             && let Some(write) = self.writes.get_mut((burst - self.answered) as usize)
         {
             write.unacknowledged -= 1;
-            write.failed |= response.error;
+            // The codes of errors are above that of success.
+            write.response = write.response.max(if response.error { SLVERR } else { OKAY });
         }
     }
 
@@ -305,7 +333,7 @@ impl AxiMemory {
 
     fn read_beat(&mut self) -> Option<ReadBeat> {
         let Read { last, received, .. } = *self.reads.front()?;
-        let (line, failed) = received?;
+        let (line, response) = received?;
         let words = self.model.bus as usize / 32;
         let mut data = [0; 16];
         data[..words].copy_from_slice(&line[self.beat as usize * words..][..words]);
@@ -315,12 +343,11 @@ impl AxiMemory {
             self.beat = 0;
             self.reads.pop_front();
         }
-        Some(ReadBeat { data, response: if failed { SLVERR } else { OKAY }, last: ends && last })
+        Some(ReadBeat { data, response, last: ends && last })
     }
 
     fn write_response(&mut self) -> Option<u8> {
-        let write = self.writes.front().filter(|write| write.unacknowledged == 0)?;
-        let response = if write.failed { SLVERR } else { OKAY };
+        let Write { response, .. } = *self.writes.front().filter(|write| write.unacknowledged == 0)?;
         self.writes.pop_front();
         self.answered += 1;
         Some(response)

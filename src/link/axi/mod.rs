@@ -13,4 +13,4 @@ pub use error::AxiError;
 pub(crate) use lite::{LiteMaster, LiteMonitor, LiteSlave};
 pub use memory::{AxiMemory, AxiModel, Handshake};
 pub(crate) use signals::{Address, FromMemory, ToMemory, WriteBeat};
-pub use signals::{OKAY, SLVERR};
+pub use signals::{DECERR, OKAY, SLVERR};

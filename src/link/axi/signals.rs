@@ -6,6 +6,8 @@ use crate::link::Line;
 pub const OKAY: u8 = 0;
 /// The response of an access that the slave refused.
 pub const SLVERR: u8 = 2;
+/// The response of an access to which no slave belongs.
+pub const DECERR: u8 = 3;
 
 /// The channel AW or AR.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -13,12 +13,7 @@ pub fn markdown(input: Input) -> String {
     let mut out = format!("AFU_ID `{AFU_ID:032x}`, version {VERSION} of this map.\n\n");
     out += "| offset | bits | name | access | meaning |\n|---|---|---|---|---|\n";
     for register in registers(input) {
-        let access = match register.access {
-            Access::Read => "R",
-            Access::ReadWrite => "R/W",
-            Access::Toggle => "R, toggle",
-        };
-        let (offset, bits) = (register.offset, 32 * register.words);
+        let (offset, bits, access) = (register.offset, 32 * register.words, access(register.access));
         let _ = writeln!(out, "| {offset:#04X} | {bits} | `{}` | {access} | {} |", register.name, register.meaning);
     }
     out += "\n| register | bits | field | meaning |\n|---|---|---|---|\n";
@@ -35,6 +30,14 @@ pub fn markdown(input: Input) -> String {
     out
 }
 
+fn access(access: Access) -> &'static str {
+    match access {
+        Access::Read => "R",
+        Access::ReadWrite => "R/W",
+        Access::Toggle => "R, toggle",
+    }
+}
+
 /// The steps of a job as Markdown.
 pub fn job(input: Input, layout: &Layout) -> String {
     let at = |register: map::Register| format!("`{}` ({:#04X})", register.name, register.offset);
@@ -43,11 +46,10 @@ pub fn job(input: Input, layout: &Layout) -> String {
         Input::Spheres => "spheres",
     };
     let arguments = match input {
-        Input::Direct => format!("{}, {}", at(map::COUNT), at(map::MODE)),
-        Input::Spheres => {
-            let of_spheres = [map::DESTINATION_LINES, map::COUNT, map::OTHERS, map::MODE].map(at);
-            of_spheres.join(", ")
-        }
+        Input::Direct if layout.number_bits() == 0 => [map::COUNT, map::MODE].map(at).join(", "),
+        // The number of contacts is not known before, so the AFU must know how many it may write.
+        Input::Direct => [map::DESTINATION_LINES, map::COUNT, map::MODE].map(at).join(", "),
+        Input::Spheres => [map::DESTINATION_LINES, map::COUNT, map::OTHERS, map::MODE].map(at).join(", "),
     };
     format!(
         "## A job
@@ -60,7 +62,8 @@ change nothing. A register of 64 or 128 bits is words of 32 bits, the least sign
    bursts. If the CPU's caches are not coherent with the port, flush the {what} from the CPU's caches, and invalidate the
    lines of the contacts.
 3. Write {source}, {destination}, {arguments} and {watchdog}.
-4. Write 1 to {control}.
+4. Write 1 to {control}. The job has what the registers hold now. What is written while it runs is for the next job,
+   and another start is ignored until it has ended.
 5. Read {status} until `done` is 1. Or set bit 0 of {enable} and of {global}, and wait for the port `interrupt`; then
    write 1 to {events}.
 6. If `error` is 0, the contacts are in memory from `destination` on. Otherwise {failure} and {address} say which access
@@ -97,7 +100,7 @@ fn spheres(layout: &Layout) -> String {
         "
 ## Jobs of spheres
 
-Each set begins with a row of {ROW} spheres, which is {lines} lines. With n = `count` and m = `others`:
+Each set takes whole rows of {ROW} spheres, which are {lines} lines each. With n = `count` and m = `others`:
 
 | `mode` | the job | in memory, from `source` on |
 |---|---|---|
@@ -134,6 +137,7 @@ pub(super) fn header(prefix: &str, input: Input, about: &str) -> String {
     let mut out = format!(
         "/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* Registers of the AXI4-Lite slave s_axi_control, as in REGISTERS.md.
+ * A register of more than 32 bits is words of 32 bits, the least significant first.
  * {about}
  */
 #ifndef {upper}_REGS_H
@@ -149,7 +153,8 @@ pub(super) fn header(prefix: &str, input: Input, about: &str) -> String {
     let _ = writeln!(out, "#define {upper}_VERSION_OF_MAP {VERSION}u");
     for register in registers(input) {
         let name = register.name.to_uppercase();
-        let _ = writeln!(out, "\n/* {} */", register.meaning.replace('`', ""));
+        let (bits, access) = (32 * register.words, access(register.access));
+        let _ = writeln!(out, "\n/* {bits} bits, {access}: {} */", register.meaning.replace('`', ""));
         let _ = writeln!(out, "#define {upper}_{name} {:#04x}u", register.offset);
         for field in register.fields {
             let mask = field.put(u32::MAX);
