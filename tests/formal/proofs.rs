@@ -139,6 +139,13 @@ pub fn proofs() -> Vec<Proof> {
         others.map(|proof| Proof { is_short: proof.latency == 1 && short_others.contains(&proof.name), ..proof });
     let axi = ["axi_reads", "axi_writes", "axi_lite"]
         .map(|name| Proof::new(name, name, 1, Inductive(2)).of(Design::Axi).short());
+    let whole_ways = [
+        Proof::new("a read's whole way", "axi_read_lines", 1, Bounded(20)),
+        Proof::new("reads are whole", "axi_read_lines", 1, Reached(20)),
+        Proof::new("a write's whole way", "axi_write_lines", 1, Bounded(20)),
+        Proof::new("writes are whole", "axi_write_lines", 1, Reached(20)),
+    ];
+    let axi = axi.into_iter().chain(whole_ways.map(|proof| proof.of(Design::Axi)));
     let queue = [
         Proof::new("queue", "queue", 1, Inductive(2)),
         Proof::new("order in a queue", "queue", 1, Bounded(24)).with(&["ORDER"]),

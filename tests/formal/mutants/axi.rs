@@ -28,6 +28,31 @@ const READS: Rows = &[
     ),
 ];
 
+const READ_LINES: Rows = &[
+    (
+        "the beats of a line are exchanged",
+        "{rdata_heard, beats_before}",
+        "{beats_before, rdata_heard}",
+        8,
+        "right_line",
+    ),
+    (
+        "a failure has the address of a line that waits",
+        "failed_address <= oldest[65:8];",
+        "failed_address <= waiting_line;",
+        8,
+        "right_failure",
+    ),
+    (
+        "a line is complete with its first beat",
+        "wire complete = beat & beat_number;",
+        "wire complete = beat;",
+        7,
+        "after_its_beats",
+    ),
+    ("a line that is asked for is not expected", "(lines_expected + 5'd1)", "lines_expected", 7, "nothing_unasked"),
+];
+
 const WRITES: Rows = &[
     (
         "a write's address does not wait to be taken",
@@ -68,6 +93,32 @@ const WRITES: Rows = &[
     ("WLAST at the end of each line", "wlast <= burst_ends;", "wlast <= beat_number;", 9, "last_is_last"),
 ];
 
+const WRITE_LINES: Rows = &[
+    ("a line leaves twice", "leaving <= stored[next_head];", "leaving <= stored[head];", 8, "right_beats"),
+    (
+        "an acknowledgement has the tag of the one before",
+        "oldest <= taken[next_tag];",
+        "oldest <= taken[tag_head];",
+        15,
+        "right_acknowledgement",
+    ),
+    (
+        "a failure is reported with every line of its burst",
+        "burst_failed <= first_line & failure_any;",
+        "burst_failed <= acknowledged & failure_any;",
+        13,
+        "right_failure",
+    ),
+    (
+        "a response acknowledges four lines",
+        "response_turns ? burst[1:0]",
+        "response_turns ? 2'd3",
+        14,
+        "answered_before",
+    ),
+    ("a burst that leaves is not in flight", "(bursts_in_flight + 5'd1)", "bursts_in_flight", 10, "nothing_unasked"),
+];
+
 const LITE: Rows = &[
     (
         "a response does not wait to be taken",
@@ -106,5 +157,10 @@ const LITE: Rows = &[
     ),
 ];
 
-pub const TABLES: &[(&str, &str, Rows)] =
-    &[("axi_reads", "axi_read.v", READS), ("axi_writes", "axi_write.v", WRITES), ("axi_lite", "axi_control.v", LITE)];
+pub const TABLES: &[(&str, &str, Rows)] = &[
+    ("axi_reads", "axi_read.v", READS),
+    ("a read's whole way", "axi_read.v", READ_LINES),
+    ("axi_writes", "axi_write.v", WRITES),
+    ("a write's whole way", "axi_write.v", WRITE_LINES),
+    ("axi_lite", "axi_control.v", LITE),
+];
