@@ -105,7 +105,7 @@ mod linux {
         }
     }
 
-    /// Orders accesses of memory and registers, for the master too. On Arm a fence of Rust orders them for CPUs alone, so
+    /// Orders accesses of memory and registers, for the master too. On Arm a fence of Rust orders them for CPUs alone:
     /// this is the barrier that Linux's drivers have.
     fn order() {
         #[cfg(target_arch = "aarch64")]
