@@ -249,9 +249,15 @@ pub fn pipelined(
     model: &DelayModel,
     clock_mhz: f64,
 ) -> Result<Arc<Module>, BuildErrors> {
-    let combinational = build_as(operator, domain, Architecture::of(model))?;
-    cut(&combinational, model, clock_mhz)
+    let (domain, architecture) = (domain.into(), Architecture::of(model));
+    let combinational = build_as(operator, domain, architecture)?;
+    let by_table = architecture == Architecture::Table && architecture.is_possible(operator, domain);
+    cut(&combinational, model, if by_table { clock_mhz * BETWEEN_BLOCKS } else { clock_mhz })
 }
+
+/// Roots by table are cut for a clock that is higher by this factor: they go through seven blocks one after the other,
+/// and in a full device the ways between blocks are longer than in an operator by itself.
+const BETWEEN_BLOCKS: f64 = 1.1;
 
 /// The architecture of correct roots, if there are several.
 fn about_architecture(operator: Operator, domain: Domain, architecture: Architecture) -> Option<&'static str> {
