@@ -252,11 +252,12 @@ pub fn pipelined(
     let (domain, architecture) = (domain.into(), Architecture::of(model));
     let combinational = build_as(operator, domain, architecture)?;
     let by_table = architecture == Architecture::Table && architecture.is_possible(operator, domain);
-    cut(&combinational, model, if by_table { clock_mhz * BETWEEN_BLOCKS } else { clock_mhz })
+    let apart = by_table && operator == Operator::Recip;
+    cut(&combinational, model, if apart { clock_mhz * BETWEEN_BLOCKS } else { clock_mhz })
 }
 
-/// Roots by table are cut for a clock that is higher by this factor: they go through seven blocks one after the other,
-/// and in a full device the ways between blocks are longer than in an operator by itself.
+/// A reciprocal by table is cut for a clock that is higher by this factor. Its last step adds three products. In a full
+/// device their blocks are farther apart than in an operator by itself, where two sums fit into one stage.
 const BETWEEN_BLOCKS: f64 = 1.1;
 
 /// The architecture of correct roots, if there are several.

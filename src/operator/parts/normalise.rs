@@ -14,8 +14,8 @@ pub struct Normalised<'g> {
 
 /// `value` (at least 2 bits) shifted left until its top bit is set. Steps are named as in `name_by_8`.
 ///
-/// The longest step waits for most bits. So whether the top is clear after it is computed beside it, at both places that
-/// may come to the top.
+/// The longest step waits for most bits. So whether the top is clear after it is computed beside it, at both places
+/// that may come to the top.
 #[track_caller]
 pub fn normalise<'g>(value: Signal<'g>, name: &str) -> Normalised<'g> {
     let width = value.width();
