@@ -13,6 +13,7 @@ pub use search::{DECIDERS, LANES, Search, SearchError, TABLES};
 use serde::{Deserialize, Serialize};
 
 use crate::kernel::Reference;
+use crate::number::Roots;
 use crate::query::{Fields, Query};
 
 /// The numbers of SCPUs that an AFU can have.
@@ -20,6 +21,9 @@ pub const SCPUS: std::ops::RangeInclusive<u32> = 1..=64;
 
 /// The initiation intervals that an SCPU can have, in cycles.
 pub const INTERVALS: std::ops::RangeInclusive<u32> = 1..=64;
+
+/// The SCPUs in front of the others that only decide.
+pub const DECIDE: [u32; 3] = [1, 2, 4];
 
 /// The reads, and the writes, that an AFU can have in flight.
 pub const OUTSTANDING: std::ops::RangeInclusive<u32> = 16..=256;
@@ -58,6 +62,10 @@ pub struct Config {
     /// The sizes of the search, if spheres come in.
     #[serde(skip_serializing_if = "Search::is_default")]
     pub search: Search,
+    /// SCPUs that only decide whether a pair touches, one pair per cycle each, in front of those that compute contacts. 0:
+    /// each SCPU does both.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub decide: u32,
     /// The pairs for which the AFU returns a record.
     pub results: Results,
     /// The radius of all spheres, a length, as a constant of the hardware; records then have no radii. `None`: each
@@ -98,6 +106,7 @@ impl Default for Config {
             contact: Fields::ALL,
             input: Input::Direct,
             search: Search::default(),
+            decide: 0,
             results: Results::All,
             radius: None,
             record: RecordFormat::F32,
@@ -158,6 +167,12 @@ pub enum Error {
     /// Not one of [`BUSES`].
     #[error("bus of {0} bits: expected 128, 256 or 512")]
     Bus(u32),
+    /// Deciders where they make no sense.
+    #[error("decide {0} with {1}: {2}")]
+    Decide(u32, &'static str, &'static str),
+    /// Not one of [`DECIDE`].
+    #[error("decide {0}: expected 0, 1, 2 or 4 SCPUs that decide")]
+    DecideRange(u32),
     /// Spheres come in, and the search is not possible.
     #[error(transparent)]
     Search(#[from] SearchError),
@@ -221,7 +236,34 @@ impl Config {
             return Err(Error::RecordRadius(radius, self.record));
         }
         self.search.check(self)?;
-        Ok(())
+        self.check_decide()
+    }
+
+    fn check_decide(&self) -> Result<(), Error> {
+        if self.decide == 0 {
+            return Ok(());
+        }
+        let refused = [
+            (self.input == Input::Spheres, "input spheres", "spheres have deciders of their own; use deciders instead"),
+            (self.results == Results::All, "results all", "every pair has a record then; use results hits"),
+            (self.contact == Fields::HIT, "contact hit", "every SCPU only decides then; leave it out"),
+            (
+                self.profile.format().roots() == Roots::Faithful,
+                "faithful roots",
+                "the whole kernel decides by its root, and other pairs would touch; use correct roots",
+            ),
+        ];
+        match refused.into_iter().find(|(is_so, ..)| *is_so) {
+            Some((_, what, why)) => Err(Error::Decide(self.decide, what, why)),
+            None if !DECIDE.contains(&self.decide) => Err(Error::DecideRange(self.decide)),
+            None => Ok(()),
+        }
+    }
+
+    /// True if SCPUs compute contacts behind others that decided that they touch. Their number is then no parameter of
+    /// the Verilog, and at most one contact per cycle is computed.
+    pub fn has_deciders(&self) -> bool {
+        self.input == Input::Spheres || self.decide > 0
     }
 
     /// The reference kernel, with which every implementation of this configuration is compared.
@@ -267,6 +309,7 @@ impl Config {
             ("--box-bits", self.search.box_bits.to_string(), default.search.box_bits.to_string()),
             ("--lanes", self.search.lanes.to_string(), default.search.lanes.to_string()),
             ("--deciders", self.search.deciders.to_string(), default.search.deciders.to_string()),
+            ("--decide", self.decide.to_string(), default.decide.to_string()),
             ("--results", self.results.to_string(), default.results.to_string()),
             ("--radius", radius(self), radius(&default)),
             ("--record", self.record.to_string(), default.record.to_string()),
@@ -281,6 +324,11 @@ impl Config {
         let differing = pairs.into_iter().filter(|(_, mine, default)| mine != default);
         differing.flat_map(|(flag, mine, _)| [flag.to_owned(), mine]).collect()
     }
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+fn is_zero(number: &u32) -> bool {
+    *number == 0
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
@@ -345,6 +393,7 @@ mod tests {
     #[test]
     fn what_is_not_built_is_refused() {
         assert_eq!(Config::default().check(), Ok(()));
+        let hits = Config { results: Results::Hits, ..Config::default() };
         let bad = [
             (Config { scpus: 0, ..Config::default() }, "0 SCPUs"),
             (Config { scpus: 65, ..Config::default() }, "65 SCPUs"),
@@ -384,6 +433,14 @@ mod tests {
             (Config { prefix: Some(String::new()), ..Config::default() }, "prefix ``"),
             (Config { bus: 64, shell: Shell::Axi, ..Config::default() }, "bus of 64 bits: expected 128, 256 or 512"),
             (Config { bus: 128, ..Config::default() }, "bus of 128 bits below shell spl2"),
+            (Config { decide: 1, ..Config::default() }, "decide 1 with results all"),
+            (Config { decide: 1, contact: Fields::HIT, ..hits.clone() }, "decide 1 with contact hit"),
+            (
+                Config { decide: 1, profile: "wide+faithful".parse().expect("a profile"), ..hits.clone() },
+                "decide 1 with faithful",
+            ),
+            (Config { decide: 3, ..hits.clone() }, "decide 3: expected 0, 1, 2 or 4"),
+            (Config { decide: 1, profile: Profile::EXACT, ..hits }, "profile exact with results hits"),
         ];
         for (config, begins) in bad {
             let error = config.check().expect_err(begins).to_string();
