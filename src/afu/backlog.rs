@@ -9,8 +9,8 @@ use crate::hdl::{BuildErrors, Graph, Module};
 use super::Spec;
 use super::banks::{Turn, rotate, row};
 
-/// Builds the module `contact_afu_backlog` with `places` (a power of two) places and one bank per lane. At most `leaving`
-/// (a power of two) contacts leave in a cycle.
+/// Builds the module `contact_afu_backlog` with `places` (a power of two) places and one bank per lane. At most
+/// `leaving` (a power of two) contacts leave in a cycle.
 pub(super) fn backlog(spec: &Spec, places: u32, leaving: u32) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new("contact_afu_backlog");
     graph.about("keeps contacts, in their order, until the packer takes them");

@@ -92,8 +92,8 @@ pub(super) fn places(spec: &Spec, at_least: u32) -> u32 {
     at_least.next_power_of_two().max(spec.lanes() * MEMORY_DEPTH)
 }
 
-/// The SCPUs, with the outputs `may_come`, `comes` and `record`. The number of a hit comes a cycle after `carries`, which
-/// is `from_step` cycles after its step in the stage before, and its pair [`CYCLES_TO_WORD`] cycles after that.
+/// The SCPUs, with the outputs `may_come`, `comes` and `record`. The number of a hit comes a cycle after `carries`,
+/// which is `from_step` cycles after its step in the stage before, and its pair [`CYCLES_TO_WORD`] cycles after that.
 /// `may_come` says a cycle ahead whether there may be such a step.
 pub(super) fn resolve<'g>(
     graph: &'g Graph,
@@ -178,8 +178,8 @@ pub(super) struct Resolved<'g> {
     pub(super) all_out: Signal<'g>,
 }
 
-/// The signals around a resolver, in the top. `carries` is set as a hit enters it, which it may as long as the dispatcher
-/// `accepts` lines.
+/// The signals around a resolver, in the top. `carries` is set as a hit enters it, which it may as long as the
+/// dispatcher `accepts` lines.
 pub(super) fn resolved<'g>(
     graph: &'g Graph,
     spec: &Spec,

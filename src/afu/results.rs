@@ -60,8 +60,8 @@ pub(super) struct Parts {
     resolver: Option<[Arc<Module>; 2]>,
 }
 
-/// What the first of them gets: the beginning of a job, the number of its pairs, whether the delay lines are filled, and
-/// the slots' outputs by name, which arrive one cycle after `leaves` says on which lanes.
+/// What the first of them gets: the beginning of a job, the number of its pairs, whether the delay lines are filled,
+/// and the slots' outputs by name, which arrive one cycle after `leaves` says on which lanes.
 pub(super) struct Results<'a, 'g> {
     pub(super) begin: Signal<'g>,
     pub(super) count: Signal<'g>,

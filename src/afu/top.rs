@@ -13,8 +13,8 @@ use super::results::{OfHits, Parts, Results, Room};
 use super::{MAX_SCPUS, SCPU_BITS, Spec};
 use super::{collector, credits, dispatcher, feeder, resolver, slot, status};
 
-/// The top over the plain line port, around an SCPU. With `--decide` it is one that decides, and `resolving` the one that
-/// computes contacts.
+/// The top over the plain line port, around an SCPU. With `--decide` it is one that decides, and `resolving` the one
+/// that computes contacts.
 pub(super) fn line_top(
     spec: &Spec,
     unit: &Arc<Module>,

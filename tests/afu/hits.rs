@@ -59,8 +59,6 @@ fn the_same_hits_for_every_number_of_scpus_over_every_link() {
     }
 }
 
-/// Pairs of which one in eight touches take no more time with one decider and an SCPU that takes a pair every seven cycles
-/// than with an SCPU that takes one every cycle; where all touch, the SCPU sets the pace, and none is lost.
 #[test]
 fn deciders_give_the_same_hits_over_every_link() {
     for (decide, scpus, interval, contact) in
@@ -80,6 +78,8 @@ fn deciders_give_the_same_hits_over_every_link() {
     }
 }
 
+/// Pairs of which one in eight touches take no more time with one decider and an SCPU that takes a pair every seven
+/// cycles than with an SCPU that takes one every cycle; where all touch, the SCPU sets the pace, and none is lost.
 #[test]
 fn one_decider_takes_a_pair_every_cycle() {
     let alone = hits(1, "e8f3z", WHOLE);
