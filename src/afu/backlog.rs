@@ -4,16 +4,17 @@
 
 use std::sync::Arc;
 
-use crate::hdl::{BuildErrors, Graph, Module, Signal};
+use crate::hdl::{BuildErrors, Graph, Module};
 
 use super::Spec;
+use super::banks::{Turn, rotate, row};
 
-/// Builds the module `contact_afu_backlog` with `places` (a power of two) places and one bank per lane: the contacts of
-/// one cycle enter different banks, and leave from different banks.
-pub(super) fn backlog(spec: &Spec, places: u32) -> Result<Arc<Module>, BuildErrors> {
+/// Builds the module `contact_afu_backlog` with `places` (a power of two) places and one bank per lane. At most
+/// `leaving` (a power of two) contacts leave in a cycle.
+pub(super) fn backlog(spec: &Spec, places: u32, leaving: u32) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new("contact_afu_backlog");
     graph.about("keeps contacts, in their order, until the packer takes them");
-    let (lanes, leaving, entry_bits) = (spec.lanes(), spec.leaving(), spec.entry_bits());
+    let (lanes, entry_bits) = (spec.lanes(), spec.entry_bits());
     let place_bits = places.ilog2();
     let count_bits = place_bits + 1;
 
@@ -29,7 +30,7 @@ pub(super) fn backlog(spec: &Spec, places: u32) -> Result<Arc<Module>, BuildErro
     let readable = graph.register("readable", count_bits, 0);
 
     let many = readable.at_least(readable.same(u128::from(leaving)));
-    let leaving_bits = spec.leaving_bits();
+    let leaving_bits = leaving.ilog2() + 1;
     let most = graph.constant(leaving_bits, u128::from(leaving));
     let group = many.select(most, readable.low(leaving_bits)).gate(may_leave).named("leaving");
     let left = (stored.value() - group.extend(count_bits)).named("left");
@@ -60,36 +61,4 @@ pub(super) fn backlog(spec: &Spec, places: u32) -> Result<Arc<Module>, BuildErro
     }
     graph.output("empty", !stored.any() & !group_out.any());
     graph.finish()
-}
-
-enum Turn {
-    /// Entry j to place j + by.
-    Up,
-    /// Entry j + by to place j.
-    Down,
-}
-
-/// Rotates a row of a power of two entries by the low bits of `by`.
-fn rotate<'g>(mut row: Vec<Signal<'g>>, by: Signal<'g>, turn: Turn) -> Vec<Signal<'g>> {
-    let lanes = row.len();
-    for bit in 0..lanes.ilog2() {
-        let step = 1 << bit;
-        let from = |lane: usize| match turn {
-            Turn::Up => (lane + lanes - step) % lanes,
-            Turn::Down => (lane + step) % lanes,
-        };
-        row = (0..lanes).map(|lane| by.bit(bit).select(row[from(lane)], row[lane])).collect();
-    }
-    row
-}
-
-/// The row of the first place at or after `place` that lies in this bank.
-fn row<'g>(place: Signal<'g>, bank: u32, lanes: u32) -> Signal<'g> {
-    let bank_bits = lanes.ilog2();
-    let row = place.drop_low(bank_bits);
-    if bank + 1 == lanes {
-        return row; // It is the last bank of its row whatever `place` is.
-    }
-    let passed = place.low(bank_bits);
-    row + passed.greater_than(passed.same(u128::from(bank))).extend(row.width())
 }

@@ -143,3 +143,15 @@ pub(super) fn cycles<'g>(
     high.next_if(restart | (counts & *is_full), restart.select(high.same(0), high.plus(1)));
     high.concat(low.value()).named(name)
 }
+
+/// A pulse, `cycles` cycles later, zero after reset; `start` forgets those on their way.
+pub(super) fn later<'g>(start: Signal<'g>, pulse: Signal<'g>, cycles: u32, name: &str) -> Signal<'g> {
+    if cycles == 0 {
+        return pulse;
+    }
+    let graph = pulse.graph();
+    let way = graph.register(name, cycles, 0);
+    let next = if cycles == 1 { pulse } else { way.low(cycles - 1).concat(pulse) };
+    way.next(next.gate(!start));
+    way.msb()
+}

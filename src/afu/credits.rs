@@ -1,6 +1,6 @@
 //! Credits: a pair enters only if its result has a place. A pair takes its place when it enters, and a line frees its
 //! places when it leaves for memory. If only hits are written, a pair without contact frees its place as soon as the
-//! decision is known, and a contact when it leaves the backlog.
+//! decision is known, and a contact when it leaves the backlog; with `--decide`, when no pair before it is needed.
 //!
 //! It also knows when the delay lines beside the SCPUs are filled, before which no job begins.
 
@@ -16,6 +16,12 @@ pub(super) fn cycles_to_fill(slot_latency: u32, scpus: u32) -> u32 {
     slot_latency + scpus + 1
 }
 
+/// Bits of the number of places that are free again in a cycle, of `capacity`: those of a group and of another one, or
+/// all.
+pub(super) fn freed_bits(spec: &Spec, capacity: u32) -> u32 {
+    if spec.config.decide > 0 { capacity.ilog2() + 1 } else { spec.group_bits() + 1 }
+}
+
 /// Builds the module `contact_afu_credits`, for `capacity` results and slots of this latency.
 pub(super) fn credits(spec: &Spec, capacity: u32, slot_latency: u32) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new("contact_afu_credits");
@@ -29,7 +35,7 @@ pub(super) fn credits(spec: &Spec, capacity: u32, slot_latency: u32) -> Result<A
     let emerged = graph.input("emerged", spec.group_bits());
     let freed = match spec.config.results {
         Results::All => graph.input("line_left", 1),
-        Results::Hits => graph.input("places_freed", spec.group_bits() + 1),
+        Results::Hits => graph.input("places_freed", freed_bits(spec, capacity)),
     };
 
     // The content of a delay line is not reset. So what leaves counts only once the line has been filled since reset.

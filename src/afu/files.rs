@@ -95,10 +95,8 @@ impl Afu {
         let ports = self.ports();
         let ports: Vec<_> = ports.inputs.iter().chain(&ports.outputs).map(|port| (port.name, port.name)).collect();
         let config = &self.spec().config;
-        let parameters = match config.input {
-            Input::Direct => format!(" #(\n  .SCPUS(32'd{})\n)", config.scpus),
-            Input::Spheres => String::new(),
-        };
+        let parameters =
+            if config.has_deciders() { String::new() } else { format!(" #(\n  .SCPUS(32'd{})\n)", config.scpus) };
         format!(
             "// Instantiation template.\n{top}{parameters} u_{top} (\n{}\n);\n",
             connections("  ", &ports),

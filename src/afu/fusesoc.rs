@@ -2,7 +2,6 @@
 
 use super::Afu;
 use super::files::BENCH_FOLDER;
-use crate::config::Input;
 
 /// The declaration of the parameter.
 const SCPUS: &str = "
@@ -31,11 +30,9 @@ impl Afu {
         let (top, bench) = (self.top_name(), self.bench_name());
         let [sdc, xdc] = ["contact_afu.sdc", "contact_afu.xdc"].map(|name| self.spec().config.prefixed(name));
         let files: String = verilog.iter().map(|name| format!("      - {name}\n")).collect();
-        // An AFU that takes spheres has no SCPUs.
-        let (uses, parameters) = match self.spec().config.input {
-            Input::Direct => ("    parameters: [SCPUS]\n", SCPUS),
-            Input::Spheres => ("", ""),
-        };
+        // Behind deciders the number of SCPUs is fixed.
+        let (uses, parameters) =
+            if self.spec().config.has_deciders() { ("", "") } else { ("    parameters: [SCPUS]\n", SCPUS) };
         format!(
             "CAPI=2:
 name: {vlnv}

@@ -32,6 +32,8 @@ pub struct Afu {
     /// The module `contact_afu`, independent of the shell around it.
     core: Arc<Module>,
     kernel: Arc<Module>,
+    /// The kernel of the SCPUs that only decide, with `--decide`.
+    decision: Option<Arc<Module>>,
 }
 
 /// Why an accelerator could not be generated.
@@ -53,8 +55,9 @@ impl Afu {
     pub fn generate(spec: Spec) -> Result<Self, BuildError> {
         spec.check()?;
         let is_direct = spec.config.input == Input::Direct || spec.config.contact != Fields::HIT;
-        let valid_is_late = spec.config.interval <= 1 && is_direct;
-        let kernel = contact_kernel(&Settings { valid_is_late, ..settings(&spec) })?;
+        let touching = spec.config.has_deciders() && spec.config.contact != Fields::HIT;
+        let valid_is_late = spec.config.interval <= 1 && is_direct && !touching;
+        let kernel = contact_kernel(&Settings { valid_is_late, touching, ..settings(&spec) })?;
         Self::around(spec, kernel)
     }
 
@@ -70,14 +73,22 @@ impl Afu {
         if spec.word_bits != record_bits {
             return Err(SpecError::Word(spec.word_bits, record_bits).into());
         }
+        let mut decision_kernel = None;
+        let scpu_of = || scpu(&spec, "scpu", &kernel);
         let core = match spec.config.input {
-            Input::Direct => line_top(&spec, &scpu(&spec, &kernel)?)?,
+            Input::Direct => match spec.deciding() {
+                None => line_top(&spec, &scpu_of()?, None)?,
+                Some(deciding) => {
+                    let kernel = decision_kernel.insert(decision(&spec, true)?);
+                    line_top(&spec, &scpu(&deciding, "decider", kernel)?, Some(&scpu_of()?))?
+                }
+            },
             Input::Spheres if spec.config.contact == Fields::HIT => spheres_top(&spec, &kernel, None)?,
-            Input::Spheres => spheres_top(&spec, &decision(&spec)?, Some(&scpu(&spec, &kernel)?))?,
+            Input::Spheres => spheres_top(&spec, &decision(&spec, false)?, Some(&scpu_of()?))?,
         };
         let shell = shell::of(spec.config.shell);
         let top = shell.top(&spec, &core)?;
-        Ok(Self { spec, shell, top, core, kernel })
+        Ok(Self { spec, shell, top, core, kernel, decision: decision_kernel })
     }
 
     /// The accelerator of a specification around an SCPU of the caller's, which is then its own kernel. The SCPU is a
@@ -89,8 +100,8 @@ impl Afu {
     /// Returns an error if a value in `spec` is out of range, or if the ports do not fit.
     pub fn around_scpu(spec: Spec, scpu: Arc<Module>) -> Result<Self, BuildError> {
         spec.check()?;
-        let core = line_top(&spec, &scpu)?;
-        Ok(Self { spec, shell: shell::of(Shell::Line), top: core.clone(), core, kernel: scpu })
+        let core = line_top(&spec, &scpu, None)?;
+        Ok(Self { spec, shell: shell::of(Shell::Line), top: core.clone(), core, kernel: scpu, decision: None })
     }
 
     /// The specification that it was generated from.
@@ -126,6 +137,11 @@ impl Afu {
     /// The kernel inside each SCPU.
     pub fn kernel(&self) -> &Arc<Module> {
         &self.kernel
+    }
+
+    /// The kernel inside each SCPU that only decides; `None` without `--decide`.
+    pub fn decision(&self) -> Option<&Arc<Module>> {
+        self.decision.as_ref()
     }
 
     /// The Verilog, one file per module, each after those it instantiates: file name and text.
@@ -175,13 +191,14 @@ fn settings(spec: &Spec) -> Settings {
         clock_mhz: spec.config.cut_mhz(),
         interval: spec.config.interval,
         valid_is_late: false,
+        touching: false,
         model: spec.model(),
     }
 }
 
-/// The kernel that decides among spheres whether two touch.
-pub(super) fn decision(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
-    let settings = Settings { fields: Fields::HIT, interval: 1, ..settings(spec) };
+/// The kernel that decides which pairs touch.
+pub(super) fn decision(spec: &Spec, valid_is_late: bool) -> Result<Arc<Module>, BuildErrors> {
+    let settings = Settings { fields: Fields::HIT, interval: 1, valid_is_late, ..settings(spec) };
     let mut kernel = contact_kernel(&settings)?;
     if let Some(kernel) = Arc::get_mut(&mut kernel) {
         kernel.name = "sphere_decision".to_owned();

@@ -5,6 +5,7 @@
 
 mod awaited;
 mod backlog;
+mod banks;
 mod bench;
 mod collector;
 mod control;
@@ -22,7 +23,9 @@ mod package;
 mod packer;
 pub(crate) mod port;
 mod ports;
+mod queue;
 mod records;
+mod resolver;
 mod results;
 mod rounds;
 mod scpu;

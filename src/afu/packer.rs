@@ -76,18 +76,9 @@ fn of_hits(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
         .map(|lane| graph.input(&format!("record_{lane}"), entry_bits).extend(layout.contact_bits()))
         .collect();
     let all_out = graph.input("all_out", 1);
-    if layout.contacts_per_line() == 1 {
-        // A record fills a line, so nothing is gathered.
-        let comes = (!start & group).registered("line_comes");
-        let line_valid = (!start & comes).registered("line_valid");
-        graph.output("line_valid", line_valid);
-        graph.output("line", records[0].delay(1).named("line"));
-        graph.output("done", (!start & all_out & !comes & !line_valid).registered("done"));
-    } else {
-        let carries = (0..spec.leaving()).rev().map(|lane| group.greater_than(group.same(lane.into())));
-        let carries = carries.reduce(Signal::concat).unwrap_or(group).named("carries");
-        fill(&graph, spec, start, carries, records, all_out);
-    }
+    let carries = (0..spec.leaving()).rev().map(|lane| group.greater_than(group.same(lane.into())));
+    let carries = carries.reduce(Signal::concat).unwrap_or(group).named("carries");
+    fill(&graph, spec, start, carries, records, all_out);
     graph.finish()
 }
 
@@ -116,6 +107,15 @@ fn fill<'g>(
 ) {
     let layout = spec.layout();
     let mut per_line = layout.contacts_per_line();
+    if let ([record], 1) = (&records[..], per_line) {
+        // A record fills a line, so nothing is gathered.
+        let comes = (!start & carries).registered("line_comes");
+        let line_valid = (!start & comes).registered("line_valid");
+        graph.output("line_valid", line_valid);
+        graph.output("line", record.delay(1).named("line"));
+        graph.output("done", (!start & all_out & !comes & !line_valid).registered("done"));
+        return;
+    }
     if let Some(per_word) = per_word(spec) {
         let words = gather(graph, "word_", start, carries, &records, per_word, all_out);
         (carries, records, all_out) = (words.comes, vec![words.line], words.all_out);

@@ -4,7 +4,6 @@ use std::fmt::Write as _;
 
 use super::port::{Declaration, Ports};
 use super::{Afu, MAX_SCPUS};
-use crate::config::Input;
 
 impl Afu {
     /// All ports, the clock first.
@@ -43,7 +42,7 @@ impl Afu {
     /// The possible numbers of SCPUs, in words.
     fn scpus(&self) -> String {
         let spec = self.spec();
-        if spec.config.input == Input::Spheres {
+        if spec.config.has_deciders() {
             return String::new();
         }
         let mut out = format!("`SCPUS` (1 to {MAX_SCPUS}) is a Verilog parameter. ");

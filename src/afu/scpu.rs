@@ -7,10 +7,10 @@ use crate::query::{ContactRecord, DEPTH, FLAGS, Fields, Flow, Rule};
 
 use super::Spec;
 
-/// Builds the module `scpu` around a kernel, with detection of invalid pairs on the raw words, flags, and record
+/// Builds the module of this name around a kernel, with detection of invalid pairs on the raw words, flags, and record
 /// packing. Its latency is the kernel's.
-pub(super) fn scpu(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>, BuildErrors> {
-    let graph = Graph::new("scpu");
+pub(super) fn scpu(spec: &Spec, name: &str, kernel: &Arc<Module>) -> Result<Arc<Module>, BuildErrors> {
+    let graph = Graph::new(name);
     let latency = kernel.latency;
     let every = match spec.config.interval {
         0 | 1 => "cycle".to_owned(),
@@ -32,7 +32,9 @@ pub(super) fn scpu(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>, Bui
     // words from its effect on the pair, because the kernel uses the result one cycle later.
     let is_late = take.is_none();
     let mut invalid = graph.constant(1, 0);
-    for (word, input) in words.iter().zip(inputs()) {
+    // Behind deciders, the kernel decides nothing.
+    let decides = kernel.port("hit").is_some();
+    for (word, input) in words.iter().zip(inputs()).filter(|_| decides) {
         let name = input.name;
         let is_special = word.slice(record.fraction_bits(), record.exponent_bits()).all();
         let mut seen = vec![is_special.named(&format!("{name}_is_special"))];
@@ -41,18 +43,21 @@ pub(super) fn scpu(spec: &Spec, kernel: &Arc<Module>) -> Result<Arc<Module>, Bui
         }
         invalid = seen.into_iter().fold(invalid, |invalid, seen| invalid | seen.delay(u32::from(is_late)));
     }
-    let invalid = invalid.named("invalid");
+    let invalid = if decides { invalid.named("invalid") } else { invalid };
 
     let mut inputs: Vec<(&str, Signal<'_>)> = inputs().map(|input| input.name).zip(words).collect();
-    inputs.push(("valid", !invalid));
+    inputs.extend(decides.then(|| ("valid", !invalid)));
     inputs.extend(take.map(|take| ("take", take)));
     let kernel = graph.instance("kernel", kernel, &inputs);
-    let hit = kernel.output("hit").named("hit");
-    let invalid = match take {
-        Some(_) => kernel.output("invalid_pair"),
-        None => invalid.delay(latency - 1),
+    let (hit, invalid) = if decides {
+        let invalid = match take {
+            Some(_) => kernel.output("invalid_pair"),
+            None => invalid.delay(latency - 1),
+        };
+        (kernel.output("hit").named("hit"), invalid.named("invalid_out"))
+    } else {
+        (graph.constant(1, 1), graph.constant(1, 0))
     };
-    let invalid = invalid.named("invalid_out");
     let record = if spec.config.contact == Fields::HIT {
         Some(hit).filter(|_| layout.result_bits() > 0)
     } else {

@@ -72,12 +72,17 @@ pub(super) fn sieve(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
         put = put.gate(!start).registered(&format!("hits_rank_{rank}"));
         on_its_way = on_its_way | put.any();
     }
-    let dropped = (group - hits).gate(!start).registered("dropped_pairs");
     graph.output("put", put);
     for (lane, contact) in row.iter().enumerate() {
         graph.output(&format!("entry_{lane}"), contact.entry);
     }
-    graph.output("dropped", dropped);
+    if spec.config.decide > 0 {
+        // Who keeps the pairs wants to know how many are decided, and whether a hit among them is still here.
+        graph.output("emerged", emerged);
+        graph.output("none_here", !on_its_way);
+    } else {
+        graph.output("dropped", (group - hits).gate(!start).registered("dropped_pairs"));
+    }
     graph.output("all_out", all_seen & !on_its_way);
     status::count(&graph, start, emerged, &contacts, &invalids);
     graph.finish()

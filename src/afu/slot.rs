@@ -19,9 +19,9 @@ pub(super) fn latency(kernel_latency: u32) -> u32 {
     RANKS_BEFORE + kernel_latency
 }
 
-/// Builds the module `scpu_slot`.
-pub(super) fn slot(spec: &Spec, scpu: &Arc<Module>) -> Result<Arc<Module>, BuildErrors> {
-    let graph = Graph::new("scpu_slot");
+/// Builds the module of this name.
+pub(super) fn slot(spec: &Spec, name: &str, scpu: &Arc<Module>) -> Result<Arc<Module>, BuildErrors> {
+    let graph = Graph::new(name);
     graph.about("an SCPU's place in the chain: takes the pairs that name it, answers on the lane a pair came from");
     let (layout, lanes) = (spec.layout(), spec.lanes());
     let pair_bits = layout.pair_bits();
@@ -85,4 +85,42 @@ pub(super) fn slot(spec: &Spec, scpu: &Arc<Module>) -> Result<Arc<Module>, Build
         pass("invalid", unit.output("invalid_pair"));
     }
     graph.finish()
+}
+
+/// A row of so many slots, each the instance `NAME_i`, of those that pass in `passing` (each without `_in`): what
+/// passes behind the last one.
+pub(super) fn row<'g>(
+    graph: &'g Graph,
+    name: &str,
+    slot: &Arc<Module>,
+    units: u32,
+    mut passing: Vec<(String, Signal<'g>)>,
+) -> Vec<(String, Signal<'g>)> {
+    for unit in 0..units {
+        let names: Vec<_> = passing.iter().map(|(name, _)| format!("{name}_in")).collect();
+        let mut inputs: Vec<_> =
+            names.iter().map(String::as_str).zip(passing.iter().map(|(_, signal)| *signal)).collect();
+        inputs.push(("index", graph.constant(SCPU_BITS, unit.into())));
+        inputs.push(("scpus", graph.constant(SCPU_BITS, units.into())));
+        let slot = graph.instance(&format!("{name}_{unit}"), slot, &inputs);
+        for (name, signal) in &mut passing {
+            *signal = slot.output(&format!("{name}_out"));
+        }
+    }
+    passing
+}
+
+/// The same for a chain whose length is the parameter `scpus`.
+pub(super) fn chain<'g>(
+    graph: &'g Graph,
+    name: &str,
+    slot: &Arc<Module>,
+    scpus: Signal<'g>,
+    passing: Vec<(String, Signal<'g>)>,
+) -> Vec<(String, Signal<'g>)> {
+    let names: Vec<_> = passing.iter().map(|(name, _)| format!("{name}_in")).collect();
+    let inputs = names.iter().map(String::as_str).zip(passing.iter().map(|(_, signal)| *signal));
+    let inputs: Vec<_> = [("scpus", scpus)].into_iter().chain(inputs).collect();
+    let last = graph.chain(name, slot, scpus, &inputs);
+    passing.into_iter().map(|(name, _)| (name.clone(), last.output(&format!("{name}_out")))).collect()
 }

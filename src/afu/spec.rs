@@ -1,6 +1,6 @@
 //! The specification of an accelerator: the configuration, and options that only proofs and integrators change.
 
-use crate::config::{Config, INTERVALS, Input, Multipliers};
+use crate::config::{Config, INTERVALS, Multipliers};
 use crate::count::counted;
 use crate::hdl::verilog::Memories;
 use crate::hdl::{DelayModel, Reset};
@@ -50,6 +50,9 @@ pub enum SpecError {
     /// There is no room beyond the content of a pipeline, or more than memories can hold.
     #[error("{0} cycles in dispatch: expected 1 to 1024")]
     Dispatch(u32),
+    /// More deciders than a line has pairs.
+    #[error("decide {0}: a line has {1} pairs, so at most {1} can be decided in a cycle; use --decide {1} or fewer")]
+    Decide(u32, u32),
     /// Tags cannot represent this number of requests.
     #[error("{0} outstanding requests: expected a power of two from 2 to 256")]
     Outstanding(u32),
@@ -84,14 +87,23 @@ impl Spec {
         Layout::of(self.line_bits, &self.config).with_words_of(self.word_bits)
     }
 
+    /// The specification of the part that decides which pairs touch: SCPUs that compute nothing else, one pair per
+    /// cycle each. `None` if the SCPUs that compute contacts decide too.
+    pub(crate) fn deciding(&self) -> Option<Self> {
+        let Config { decide, .. } = self.config;
+        let config = Config { scpus: decide, interval: 1, contact: Fields::HIT, ..self.config.clone() };
+        (decide > 0).then(|| Self { config, max_hops: decide, ..self.clone() })
+    }
+
     /// Bits of a tag: the job's epoch and a slot.
     pub(crate) fn tag_bits(&self) -> u32 {
         EPOCH_BITS + self.max_outstanding.ilog2()
     }
 
-    /// Pairs that can be handed to SCPUs in one cycle: those of one line.
+    /// Pairs that can be handed to SCPUs in one cycle: those of one line; to deciders, as many as there are.
     pub fn lanes(&self) -> u32 {
-        self.layout().pairs_per_line()
+        let of_line = self.layout().pairs_per_line();
+        if self.config.decide > 0 { of_line.min(self.config.decide) } else { of_line }
     }
 
     /// The number of SCPUs that take turns at an interval: all, or as many as take a whole number of full lines per
@@ -99,8 +111,8 @@ impl Spec {
     pub fn scpus_in_turn(&self, interval: u32) -> u32 {
         let whole = self.lanes() * interval;
         match self.config.scpus {
-            // Of spheres that touch, one contact per cycle is computed.
-            scpus if self.config.input == Input::Spheres => scpus.min(interval.max(1)),
+            // Behind deciders, one contact per cycle is computed.
+            scpus if self.config.has_deciders() => scpus.min(interval.max(1)),
             scpus if interval > 1 && scpus > whole => scpus / whole * whole,
             scpus => scpus,
         }
@@ -117,7 +129,7 @@ impl Spec {
     pub fn unused_scpus(&self) -> Option<String> {
         let Config { scpus, interval, .. } = self.config;
         let built = self.scpus_in_turn(interval);
-        if self.config.input == Input::Spheres {
+        if self.config.has_deciders() {
             return (built < scpus && self.config.contact != Fields::HIT).then(|| {
                 format!(
                     "{} at interval {interval}: {built} of them compute one contact per cycle, and the rest are not \
@@ -137,7 +149,8 @@ impl Spec {
     /// The longest interval at which the SCPUs take `pairs_a_cycle`, or the pairs of a line if that is less. 1 if they
     /// do not at any interval.
     pub fn longest_interval(&self, pairs_a_cycle: f64) -> u32 {
-        let wanted = pairs_a_cycle.min(f64::from(self.lanes())) * (1.0 - 1e-9);
+        let most = if self.config.has_deciders() { 1 } else { self.lanes() };
+        let wanted = pairs_a_cycle.min(f64::from(most)) * (1.0 - 1e-9);
         let takes = |interval: u32| f64::from(self.scpus_in_turn(interval)) / f64::from(interval);
         INTERVALS.rev().find(|interval| takes(*interval) >= wanted).unwrap_or(1)
     }
@@ -194,6 +207,9 @@ impl Spec {
         let layout = self.layout();
         if !self.line_bits.is_power_of_two() || self.line_bits < layout.pair_bits().max(layout.contact_bits()) {
             return Err(SpecError::Line(self.line_bits));
+        }
+        if self.config.decide > layout.pairs_per_line() {
+            return Err(SpecError::Decide(self.config.decide, layout.pairs_per_line()));
         }
         if !self.max_outstanding.is_power_of_two() || !(2..=256).contains(&self.max_outstanding) {
             return Err(SpecError::Outstanding(self.max_outstanding));

@@ -38,7 +38,12 @@ pub struct Timing {
 impl Afu {
     /// The AFU's capability word, which [`Capability`] decodes.
     pub fn capability(&self) -> u64 {
-        Capability::new(&self.spec().config, self.kernel().latency).bits()
+        Capability::new(&self.spec().config, self.latency_cycles()).bits()
+    }
+
+    /// Cycles from a pair to its contact in an SCPU; with deciders, in both.
+    pub fn latency_cycles(&self) -> u32 {
+        self.kernel().latency + self.decision().map_or(0, |kernel| kernel.latency)
     }
 
     /// The cycles of each part.

@@ -2,39 +2,58 @@
 
 use std::sync::Arc;
 
-use crate::config::Results;
+use crate::config;
+use crate::count::counted;
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
 use crate::record::Capability;
 
 use super::control::control;
-use super::credits::credits;
 use super::port::{JobInputs, JobOutputs, ReadInputs, ReadOutputs, WriteInputs, WriteOutputs, outputs};
-use super::results::{Parts, Room};
+use super::results::{OfHits, Parts, Results, Room};
 use super::{MAX_SCPUS, SCPU_BITS, Spec};
-use super::{collector, dispatcher, feeder, slot, status};
+use super::{collector, credits, dispatcher, feeder, resolver, slot, status};
 
-/// The top over the plain line port, around an SCPU.
-pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, BuildErrors> {
-    let (lanes, group_bits) = (spec.lanes(), spec.group_bits());
+/// The top over the plain line port, around an SCPU. With `--decide` it is one that decides, and `resolving` the one
+/// that computes contacts.
+pub(super) fn line_top(
+    spec: &Spec,
+    unit: &Arc<Module>,
+    resolving: Option<&Arc<Module>>,
+) -> Result<Arc<Module>, BuildErrors> {
+    let deciding = spec.deciding();
+    // The specification of the slots, and of what gives them pairs and takes their results.
+    let of_slots = deciding.as_ref().unwrap_or(spec);
+    let lanes = spec.lanes();
     let slot_latency = slot::latency(unit.latency);
-    let has_records = spec.layout().result_bits() > 0;
-    let only_hits = spec.config.results == Results::Hits;
-    let places = Room::of(spec, slot_latency);
+    let has_records = of_slots.layout().result_bits() > 0;
+    let only_hits = spec.config.results == config::Results::Hits;
+    let places = Room::of(of_slots, slot_latency, resolving.map(|scpu| (spec, &**scpu)));
 
     let control = control(spec)?;
-    let credits = credits(spec, places.results, slot_latency)?;
+    let credits = credits::credits(of_slots, places.results, slot_latency)?;
     let collector = collector::collector(spec)?;
-    let feeder = feeder::feeder(spec)?;
-    let slot = slot::slot(spec, unit)?;
-    let results = Parts::new(spec, places)?;
+    let feeder = feeder::feeder(of_slots)?;
+    let name = if deciding.is_some() { "decider_slot" } else { "scpu_slot" };
+    let slot = slot::slot(of_slots, name, unit)?;
+    let results = Parts::new(spec, places, resolving)?;
     let dispatcher = dispatcher::dispatcher(spec, places.lines)?;
 
     let graph = Graph::new("contact_afu");
-    graph.about("collision-detection accelerator: a controller and SCPUS sphere collision processing units");
-    graph.about(format!("an SCPU's latency is {} cycles, and one more for each SCPU in the chain", unit.latency));
-    let scpus = graph.parameter("SCPUS", spec.config.scpus, 1..=MAX_SCPUS, SCPU_BITS);
+    let scpus = if let Some(deciding) = &deciding {
+        let (deciders, resolvers) = (deciding.config.scpus, resolver::units(spec));
+        graph.about(format!(
+            "collision-detection accelerator: a controller, {}, and {} for the pairs that touch",
+            counted(deciders.into(), "decider"),
+            counted(resolvers.into(), "SCPU")
+        ));
+        graph.constant(SCPU_BITS, deciders.into())
+    } else {
+        graph.about("collision-detection accelerator: a controller and SCPUS sphere collision processing units");
+        graph.about(format!("an SCPU's latency is {} cycles, and one more for each SCPU in the chain", unit.latency));
+        graph.parameter("SCPUS", spec.config.scpus, 1..=MAX_SCPUS, SCPU_BITS)
+    };
     // SCPUs that never have a turn are not built.
-    let in_turn = match spec.full_rate() {
+    let in_turn = match of_slots.full_rate() {
         Some(multiple) if multiple < MAX_SCPUS => graph.rounded_down("SCPUS_IN_TURN", scpus, multiple),
         _ => scpus,
     };
@@ -50,8 +69,12 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, B
         .chain(["waits_for_input", "waits_for_output"])
         .chain(only_hits.then_some("overflowed"));
     let told_to_control: Vec<_> = told_to_control.map(|name| wire(name, 1)).collect();
-    let freed = if only_hits { wire("places_freed", group_bits + 1) } else { wire("line_left", 1) };
-    let told_to_credits = vec![wire("entered", group_bits), wire("emerged", group_bits), freed];
+    let freed = if only_hits {
+        wire("places_freed", credits::freed_bits(of_slots, places.results))
+    } else {
+        wire("line_left", 1)
+    };
+    let told_to_credits = vec![wire("entered", spec.group_bits()), wire("emerged", spec.group_bits()), freed];
     let (_, may_enter) = wire("may_enter", 1);
     let (_, taken) = wire("line_taken", 1);
     let (_, head) = wire("line_place", spec.max_outstanding.ilog2());
@@ -102,24 +125,29 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, B
     let kinds = ["record", "contact", "invalid"].into_iter().filter(|kind| has_records || *kind != "record");
     let passing: Vec<String> =
         (0..lanes).flat_map(|lane| kinds.clone().map(move |kind| format!("{kind}_{lane}"))).collect();
-    let arriving: Vec<String> = passing.iter().map(|name| format!("{name}_in")).collect();
-    let mut slot_inputs = vec![
-        ("scpus", in_turn),
-        ("carries_in", feeder.output("carries")),
-        ("targets_in", feeder.output("targets")),
-        ("pairs_in", feeder.output("pairs")),
-        ("leaves_in", graph.constant(lanes, 0)),
-    ];
-    for name in &arriving {
-        let width = slot.port(name).map_or(1, |(_, port)| port.width);
-        slot_inputs.push((name, graph.constant(width, 0)));
-    }
-    let slots = graph.chain("slots", &slot, in_turn, &slot_inputs);
-    let leaves = slots.output("leaves_out");
-    let lane_outputs: Vec<(String, Signal<'_>)> =
-        passing.iter().map(|name| (name.clone(), slots.output(&format!("{name}_out")))).collect();
-    let status = [begin("packer"), control.output("job_count"), credits.output("filled"), leaves];
-    let packed_results = results.instances(&graph, status, &lane_outputs, accepts);
+    let passing = passing.into_iter().map(|name| {
+        let width = slot.port(&format!("{name}_in")).map_or(1, |(_, port)| port.width);
+        (name, graph.constant(width, 0))
+    });
+    let (carries, pairs) = (feeder.output("carries"), feeder.output("pairs"));
+    let first = [("carries", carries), ("targets", feeder.output("targets")), ("pairs", pairs)];
+    let first = first.into_iter().chain([("leaves", graph.constant(lanes, 0))]);
+    let passing: Vec<_> = first.map(|(name, signal)| (name.to_owned(), signal)).chain(passing).collect();
+    let passed = match &deciding {
+        Some(deciding) => slot::row(&graph, "decider", &slot, deciding.config.scpus, passing),
+        None => slot::chain(&graph, "slots", &slot, in_turn, passing),
+    };
+    let leaves = passed.iter().find(|(name, _)| name == "leaves").map_or(carries, |(_, leaves)| *leaves);
+    let lane_outputs: Vec<_> = passed.into_iter().filter(|(name, _)| name.contains('_')).collect();
+    let all = Results {
+        begin: begin("packer"),
+        count: control.output("job_count"),
+        filled: credits.output("filled"),
+        leaves,
+        lanes: &lane_outputs,
+    };
+    let of_hits = accepts.map(|accepts| OfHits { run, accepts, enters: carries, pairs });
+    let packed_results = results.instances(&graph, spec, &all, of_hits);
     let packer = packed_results.packer;
     let mut dispatcher_inputs = writes.named();
     dispatcher_inputs.extend([
@@ -163,7 +191,7 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, B
         cycles_busy: control.output("cycles_busy"),
         cycles_input: control.output("cycles_input"),
         cycles_output: control.output("cycles_output"),
-        capability: capability(&graph, spec, scpus, unit.latency),
+        capability: capability(&graph, spec, scpus, unit.latency + resolving.map_or(0, |scpu| scpu.latency)),
     };
     outputs(&graph, told.named());
     outputs(&graph, ReadOutputs::of(spec).map(|port| collector.output(port.name)).named());
@@ -171,9 +199,12 @@ pub(super) fn line_top(spec: &Spec, unit: &Arc<Module>) -> Result<Arc<Module>, B
     graph.finish()
 }
 
-/// Properties that the host may rely on: see [`Capability`]. The parameter gives the number of SCPUs.
+/// Properties that the host may rely on: see [`Capability`]. The parameter, if there is one, gives the number of SCPUs.
 fn capability<'g>(graph: &'g Graph, spec: &Spec, scpus: Signal<'g>, latency: u32) -> Signal<'g> {
     let word = u128::from(Capability::new(&spec.config, latency).bits());
+    if spec.config.has_deciders() {
+        return graph.constant(64, word);
+    }
     let constant = |low: u32, width: u32| graph.constant(width, word >> low & ((1 << width) - 1));
     Signal::join(&[constant(32, 32), constant(16, 16), constant(8, 8), scpus.extend(8)])
 }

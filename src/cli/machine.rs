@@ -64,8 +64,14 @@ pub struct Machine {
     /// Kernels that decide candidates, for --input spheres: a power of two, 1 to 16 [default: 4]
     #[arg(long, value_name = "N")]
     pub deciders: Option<u32>,
-    /// Pairs that the AFU returns: all, or hits (pairs that touch, each with its index) [default: all; for input
-    /// spheres hits]
+    /// SCPUs that only decide which pairs touch, in front of those that compute contacts: 1, 2 or 4 [default: none]
+    ///
+    /// A decider takes a pair every cycle and needs a third of an SCPU's area. The others compute the contacts of the
+    /// pairs that touch, one SCPU by default. What comes back has the same bits.
+    #[arg(long, value_name = "N")]
+    pub decide: Option<u32>,
+    /// Pairs that the AFU returns: all, or hits (pairs that touch, each with its index) [default: all; with --decide
+    /// and for input spheres hits]
     #[arg(long, value_name = "WHICH")]
     pub results: Option<Results>,
     /// One radius for all spheres, finite and at least 0 [default: each sphere has its own]
@@ -170,6 +176,10 @@ impl Machine {
         set(&mut config.search.box_bits, &self.box_bits);
         set(&mut config.search.lanes, &self.lanes);
         set(&mut config.search.deciders, &self.deciders);
+        set(&mut config.decide, &self.decide);
+        if self.decide.is_some_and(|number| number > 0) && self.config.is_none() {
+            config.results = Results::Hits;
+        }
         set(&mut config.results, &self.results);
         config.radius = self.radius.or(config.radius);
         set(&mut config.record, &self.record);
@@ -232,10 +242,8 @@ impl One {
             );
             return Err(Failure::new(Kind::Usage, message));
         }
-        set(
-            &mut config.scpus,
-            &self.scpus.or((config.input == Input::Spheres && config.contact != Fields::HIT).then_some(1)),
-        );
+        let resolves = config.has_deciders() && config.contact != Fields::HIT && self.machine.config.is_none();
+        set(&mut config.scpus, &self.scpus.or(resolves.then_some(1)));
         let unsaid = if self.machine.config.is_none() { Some(unsaid) } else { None };
         match self.interval.as_deref().or(unsaid) {
             None => {}
@@ -272,6 +280,7 @@ impl One {
             ("--box-bits", m.box_bits.is_some()),
             ("--lanes", m.lanes.is_some()),
             ("--deciders", m.deciders.is_some()),
+            ("--decide", m.decide.is_some()),
             ("--results", m.results.is_some()),
             ("--radius", m.radius.is_some()),
             ("--record", m.record.is_some()),

@@ -117,9 +117,9 @@ pub fn run(options: &Rtl) -> Result<(), Failure> {
     let config = &afu.spec().config;
     warn_of_unused_scpus(config);
     let (unit, number) = match config.input {
-        Input::Direct => ("SCPU", config.scpus),
+        Input::Direct if config.decide == 0 => ("SCPU", config.scpus),
         Input::Spheres if config.contact == Fields::HIT => ("decider", config.search.deciders),
-        Input::Spheres => ("SCPU", config.scpus.min(config.interval)),
+        _ => ("SCPU", config.scpus.min(config.interval)),
     };
     let article = if unit == "SCPU" { "an" } else { "a" };
     let text = format!(

@@ -16,7 +16,7 @@ use super::{output, progress};
 /// A scene is a TOML file of bodies, effects such as gravity and friction, and the outputs you want. docs/scene.md
 /// lists its keys; examples/scenes has five scenes. The AFU computes only the fields of a contact that the scene needs,
 /// and only the effects of the scene run in ODE, the Open Dynamics Engine.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 pub struct Scene {
     /// Scene to run, a TOML file
     #[arg(value_name = "FILE")]
@@ -39,6 +39,11 @@ pub struct Scene {
     /// Bits of the AXI4 master's data, only for --shell axi: 128, 256 or 512 [default: 512]
     #[arg(long, value_name = "BITS")]
     bus: Option<u32>,
+    /// SCPUs that only decide which pairs touch, in front of one that computes a contact in eight pairs: 1, 2 or 4
+    ///
+    /// With --plan the cost is shown beside the one without them.
+    #[arg(long, value_name = "N")]
+    decide: Option<u32>,
     /// Folder to write: report.html, manifest.json, and the outputs of the scene as CSV
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -82,8 +87,15 @@ pub fn run(options: &Scene) -> Result<(), Failure> {
         return output::show(&plan.difference(&other_plan, &costs.0, &costs.1), false);
     }
     if options.plan {
-        let cost = options.cost(&plan.config)?;
-        return output::show(&format!("{}\n\n{}", plan.text(), cost.text()), false);
+        let costs = match options.decide {
+            None => options.cost(&plan.config)?.text(),
+            Some(_) => {
+                let without = Scene { decide: None, ..options.clone() }.plan(&story)?;
+                let costs = [options.compared(&without.config)?, options.compared(&plan.config)?];
+                scene::costs(&[("without deciders", &costs[0]), ("with them", &costs[1])])
+            }
+        };
+        return output::show(&format!("{}\n\n{costs}", plan.text()), false);
     }
     // Fails before a model is built in vain.
     #[cfg(not(feature = "ode"))]
@@ -117,6 +129,10 @@ impl Scene {
         let plan = Plan::of(story)?;
         let bus = self.bus.unwrap_or(plan.config.bus);
         let plan = plan.below(self.shell, bus);
+        let plan = match self.decide {
+            Some(deciders) => plan.decided_by(deciders),
+            None => plan,
+        };
         plan.config.check()?;
         Ok(plan)
     }

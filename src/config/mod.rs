@@ -1,11 +1,13 @@
 //! The configuration of an AFU: one value, read from options or a file, that generator, simulation and reports share.
 
 mod choices;
+mod error;
 mod file;
 mod profile;
 mod search;
 
 pub use choices::{Input, Multipliers, RecordFormat, Results, Shell};
+pub use error::Error;
 pub use file::{MANIFEST_SCHEMA, ReadError, read};
 pub use profile::Profile;
 pub use search::{DECIDERS, LANES, Search, SearchError, TABLES};
@@ -13,6 +15,7 @@ pub use search::{DECIDERS, LANES, Search, SearchError, TABLES};
 use serde::{Deserialize, Serialize};
 
 use crate::kernel::Reference;
+use crate::number::Roots;
 use crate::query::{Fields, Query};
 
 /// The numbers of SCPUs that an AFU can have.
@@ -20,6 +23,9 @@ pub const SCPUS: std::ops::RangeInclusive<u32> = 1..=64;
 
 /// The initiation intervals that an SCPU can have, in cycles.
 pub const INTERVALS: std::ops::RangeInclusive<u32> = 1..=64;
+
+/// The SCPUs in front of the others that only decide.
+pub const DECIDE: [u32; 3] = [1, 2, 4];
 
 /// The reads, and the writes, that an AFU can have in flight.
 pub const OUTSTANDING: std::ops::RangeInclusive<u32> = 16..=256;
@@ -58,6 +64,10 @@ pub struct Config {
     /// The sizes of the search, if spheres come in.
     #[serde(skip_serializing_if = "Search::is_default")]
     pub search: Search,
+    /// SCPUs that only decide whether a pair touches, one pair per cycle each, in front of those that compute contacts.
+    /// 0: each SCPU does both.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub decide: u32,
     /// The pairs for which the AFU returns a record.
     pub results: Results,
     /// The radius of all spheres, a length, as a constant of the hardware; records then have no radii. `None`: each
@@ -98,6 +108,7 @@ impl Default for Config {
             contact: Fields::ALL,
             input: Input::Direct,
             search: Search::default(),
+            decide: 0,
             results: Results::All,
             radius: None,
             record: RecordFormat::F32,
@@ -110,60 +121,6 @@ impl Default for Config {
             prefix: None,
         }
     }
-}
-
-/// Why a configuration is refused.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Error {
-    /// Outside [`SCPUS`].
-    #[error("{0} SCPUs: expected 1 to 64")]
-    Scpus(u32),
-    /// Outside [`INTERVALS`].
-    #[error("interval {0}: expected 1 to 64 cycles")]
-    Interval(u32),
-    /// Not a power of two within [`OUTSTANDING`].
-    #[error("{0} requests in flight: expected 16, 32, 64, 128 or 256")]
-    Outstanding(u32),
-    /// More than SPL2 takes.
-    #[error("{0} requests in flight: expected at most 64 below shell spl2; use shell axi or line for more")]
-    OutstandingOverSpl2(u32),
-    /// A clock out of range.
-    #[error("clock {0} MHz: expected 1 to 2000 MHz")]
-    Clock(f64),
-    /// A prefix that cannot begin a Verilog name.
-    #[error("prefix `{0}`: expected 1 to {LONGEST_PREFIX} letters, digits and `_`, and no digit at the start")]
-    Prefix(String),
-    /// A record of one bit cannot mark a pair as unsettled.
-    #[error("profile exact with contact hit alone: one bit cannot mark a pair as unsettled; ask for the depth too")]
-    ExactHit,
-    /// If records come back only for contacts, unsettled pairs would be lost.
-    #[error(
-        "profile exact with results hits: unsettled pairs would not come back for the host to resolve; use results all"
-    )]
-    ExactHits,
-    /// An option that exists for sphere-sphere only.
-    #[error("query {0} with {1}: {1} is for sphere-sphere only; leave it out")]
-    SpheresAlone(Query, &'static str),
-    /// A radius that is negative, infinite or a NaN.
-    #[error("radius {0}: expected a finite length of at least 0")]
-    Radius(f32),
-    /// A radius that overflows in the records' format.
-    #[error("radius {0}: infinite in {1} records; use a smaller radius or record f32")]
-    RecordRadius(f32, RecordFormat),
-    /// The profile `exact` would be exact for rounded pairs only.
-    #[error(
-        "profile exact with record {0}: results would be exact for the rounded pairs only, not for yours; use record f32"
-    )]
-    ExactRecord(RecordFormat),
-    /// Not one of [`BUSES`].
-    #[error("bus of {0} bits: expected 128, 256 or 512")]
-    Bus(u32),
-    /// Spheres come in, and the search is not possible.
-    #[error(transparent)]
-    Search(#[from] SearchError),
-    /// A width for a bus that the shell does not have.
-    #[error("bus of {0} bits below shell {1}: only shell axi has a bus of another width; leave it out")]
-    NoBus(u32, Shell),
 }
 
 impl Config {
@@ -221,7 +178,34 @@ impl Config {
             return Err(Error::RecordRadius(radius, self.record));
         }
         self.search.check(self)?;
-        Ok(())
+        self.check_decide()
+    }
+
+    fn check_decide(&self) -> Result<(), Error> {
+        if self.decide == 0 {
+            return Ok(());
+        }
+        let refused = [
+            (self.input == Input::Spheres, "input spheres", "spheres have deciders of their own; use deciders instead"),
+            (self.results == Results::All, "results all", "every pair has a record then; use results hits"),
+            (self.contact == Fields::HIT, "contact hit", "every SCPU only decides then; leave it out"),
+            (
+                self.profile.format().roots() == Roots::Faithful,
+                "faithful roots",
+                "the whole kernel decides by its root, and other pairs would touch; use correct roots",
+            ),
+        ];
+        match refused.into_iter().find(|(is_so, ..)| *is_so) {
+            Some((_, what, why)) => Err(Error::Decide(self.decide, what, why)),
+            None if !DECIDE.contains(&self.decide) => Err(Error::DecideRange(self.decide)),
+            None => Ok(()),
+        }
+    }
+
+    /// True if SCPUs compute contacts behind others that decided that they touch. Their number is then no parameter of
+    /// the Verilog, and at most one contact per cycle is computed.
+    pub fn has_deciders(&self) -> bool {
+        self.input == Input::Spheres || self.decide > 0
     }
 
     /// The reference kernel, with which every implementation of this configuration is compared.
@@ -267,6 +251,7 @@ impl Config {
             ("--box-bits", self.search.box_bits.to_string(), default.search.box_bits.to_string()),
             ("--lanes", self.search.lanes.to_string(), default.search.lanes.to_string()),
             ("--deciders", self.search.deciders.to_string(), default.search.deciders.to_string()),
+            ("--decide", self.decide.to_string(), default.decide.to_string()),
             ("--results", self.results.to_string(), default.results.to_string()),
             ("--radius", radius(self), radius(&default)),
             ("--record", self.record.to_string(), default.record.to_string()),
@@ -281,6 +266,11 @@ impl Config {
         let differing = pairs.into_iter().filter(|(_, mine, default)| mine != default);
         differing.flat_map(|(flag, mine, _)| [flag.to_owned(), mine]).collect()
     }
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+fn is_zero(number: &u32) -> bool {
+    *number == 0
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
@@ -345,6 +335,7 @@ mod tests {
     #[test]
     fn what_is_not_built_is_refused() {
         assert_eq!(Config::default().check(), Ok(()));
+        let hits = Config { results: Results::Hits, ..Config::default() };
         let bad = [
             (Config { scpus: 0, ..Config::default() }, "0 SCPUs"),
             (Config { scpus: 65, ..Config::default() }, "65 SCPUs"),
@@ -384,6 +375,14 @@ mod tests {
             (Config { prefix: Some(String::new()), ..Config::default() }, "prefix ``"),
             (Config { bus: 64, shell: Shell::Axi, ..Config::default() }, "bus of 64 bits: expected 128, 256 or 512"),
             (Config { bus: 128, ..Config::default() }, "bus of 128 bits below shell spl2"),
+            (Config { decide: 1, ..Config::default() }, "decide 1 with results all"),
+            (Config { decide: 1, contact: Fields::HIT, ..hits.clone() }, "decide 1 with contact hit"),
+            (
+                Config { decide: 1, profile: "wide+faithful".parse().expect("a profile"), ..hits.clone() },
+                "decide 1 with faithful",
+            ),
+            (Config { decide: 3, ..hits.clone() }, "decide 3: expected 0, 1, 2 or 4"),
+            (Config { decide: 1, profile: Profile::EXACT, ..hits }, "profile exact with results hits"),
         ];
         for (config, begins) in bad {
             let error = config.check().expect_err(begins).to_string();

@@ -29,6 +29,9 @@ pub struct Settings {
     /// True if `valid` arrives one cycle after the pair, because its logic examines the whole pair. Not at an interval
     /// above 1.
     pub valid_is_late: bool,
+    /// True if every pair that matters touches, because another kernel decided it. Then nothing is decided here: there
+    /// is no `valid`, `hit` or `invalid_pair`, and what comes out for another pair is undefined.
+    pub touching: bool,
     /// The target's delay model.
     pub model: DelayModel,
 }
@@ -47,7 +50,7 @@ pub struct Settings {
 /// # Errors
 /// Returns the first error that a graph recorded, or an error if an operator cannot be cut for the clock.
 pub fn contact_kernel(settings: &Settings) -> Result<Arc<Module>, BuildErrors> {
-    let kernel = trace(settings.query.shape().kernel, |ports| read(ports, settings))?;
+    let kernel = trace(settings.query.shape().kernel, |ports| read(ports, settings))?.supposed();
     match settings.interval {
         0 | 1 => kernel.pipeline(&settings.model, settings.clock_mhz),
         interval => kernel.pipeline_every(&settings.model, settings.clock_mhz, interval),
@@ -69,6 +72,7 @@ pub fn is_normal(query: Query, arithmetic: Arithmetic, fields: Fields) -> Result
         clock_mhz: 100.0,
         interval: 1,
         valid_is_late: false,
+        touching: false,
         model: DelayModel::default(),
     };
     Ok(trace(query.shape().kernel, |ports| read(ports, &settings))?.not_normal().is_none())
@@ -90,9 +94,10 @@ fn read(ports: &Ports, settings: &Settings) {
             of_all.map_or_else(|| ports.input(input.name, record), |(radius, word)| word.constant(radius.into())),
         );
     }
-    let valid = match settings.valid_is_late {
-        true => ports.input_bit_after("valid", 1),
-        false => ports.input_bit("valid"),
+    let valid = match (settings.touching, settings.valid_is_late) {
+        (true, _) => ports.always(),
+        (_, true) => ports.input_bit_after("valid", 1),
+        (_, false) => ports.input_bit("valid"),
     };
     let inputs = || shape.inputs.iter().zip(&words).filter(|(input, _)| radius.is_none() || !input.is_radius);
     for not_negative in [false, true] {
@@ -112,10 +117,14 @@ fn read(ports: &Ports, settings: &Settings) {
         }
     };
 
-    if settings.interval > 1 {
-        ports.output_bit("invalid_pair", !valid);
+    if settings.touching {
+        ports.suppose(contact.hit);
+    } else {
+        if settings.interval > 1 {
+            ports.output_bit("invalid_pair", !valid);
+        }
+        ports.output_bit("hit", contact.hit);
     }
-    ports.output_bit("hit", contact.hit);
     if shape.flows.contains(&Flow::Coincident) {
         ports.output_bit("grazing", contact.coincident);
     }

@@ -17,9 +17,10 @@ pub(super) struct Guards {
 impl Guards {
     pub fn new(kernel: &Kernel) -> Self {
         let wrong: Vec<ValueId> = kernel.promises.iter().map(|promise| promise.value).collect();
-        let broken = kernel.promises.iter().map(|promise| Supposed::from([(promise.condition, false)]));
+        let may_break = kernel.promises.iter().filter(|promise| kernel.as_constant(promise.condition) != Some(1));
+        let broken = may_break.map(|promise| Supposed::from([(promise.condition, false)]));
         let hidden = broken.map(|supposed| !shows(kernel, &wrong, &supposed)).reduce(|all, one| all && one);
-        Self { hide_broken_promises: hidden.unwrap_or(false) }
+        Self { hide_broken_promises: hidden.unwrap_or(!kernel.promises.is_empty()) }
     }
 
     /// True if no output depends on a quotient whose divisor is zero, as far as the kernel tests this by comparing the

@@ -83,6 +83,8 @@ pub struct Kernel {
     /// Inputs that arrive some cycles after the others.
     pub(super) late: Vec<(ValueId, u32)>,
     pub(super) promises: Vec<Promise>,
+    /// A Boolean that is supposed to be set.
+    pub(super) supposed: Option<ValueId>,
     pub(super) errors: Vec<Error>,
     known: HashMap<(Source, Vec<ValueId>, Kind), ValueId>,
 }
@@ -97,9 +99,55 @@ impl Kernel {
             outputs: Vec::new(),
             late: Vec::new(),
             promises: Vec::new(),
+            supposed: None,
             errors: Vec::new(),
             known: HashMap::new(),
         }
+    }
+
+    /// The same kernel where what is supposed is known, without what no output needs then.
+    pub(super) fn supposed(self) -> Self {
+        let Some(supposed) = self.supposed else { return self };
+        let mut new = Self { about: self.about.clone(), ..Self::new(&self.name) };
+        let is_set = new.constant(Kind::Bit, 1);
+        let mut needed = vec![false; self.values.len()];
+        self.outputs.iter().for_each(|(_, id)| needed[id.index()] = true);
+        for (index, value) in self.values.iter().enumerate().rev() {
+            if needed[index] && index != supposed.index() {
+                value.operands.iter().for_each(|id| needed[id.index()] = true);
+            }
+        }
+        let mut moved = vec![is_set; self.values.len()];
+        for (index, value) in self.values.iter().enumerate() {
+            let old = ValueId(index as u32);
+            let operands: Vec<_> = value.operands.iter().map(|id| moved[id.index()]).collect();
+            let id = match (value.source, operands.as_slice()) {
+                _ if old == supposed => is_set,
+                (Source::Input(_), _) => new.input(value.name.as_deref().unwrap_or_default(), value.kind),
+                _ if !needed[index] => continue,
+                (Source::Select, &[condition, yes, no]) => match new.as_constant(condition) {
+                    Some(0) => no,
+                    Some(_) => yes,
+                    None => new.shared(value.source, value.kind, operands),
+                },
+                (Source::And | Source::Or, &[a, b]) => new.logic(value.source, a, b),
+                (Source::Not, &[a]) => new.not(a),
+                _ => new.shared(value.source, value.kind, operands),
+            };
+            if new.as_constant(id).is_none() && value.name.is_some() {
+                new.values[id.index()].name.clone_from(&value.name);
+            }
+            moved[index] = id;
+        }
+        let at = |id: ValueId| moved[id.index()];
+        new.outputs = self.outputs.into_iter().map(|(name, id)| (name, at(id))).collect();
+        new.late = self.late.into_iter().map(|(id, cycles)| (at(id), cycles)).collect();
+        new.promises = self
+            .promises
+            .into_iter()
+            .map(|promise| Promise { value: at(promise.value), condition: at(promise.condition), ..promise })
+            .collect();
+        new
     }
 
     pub(super) fn value(&self, id: ValueId) -> &Value {

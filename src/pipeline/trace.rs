@@ -113,6 +113,21 @@ impl Ports {
         Bit(input(name, Kind::Bit, Location::caller()))
     }
 
+    /// A Boolean that is always set.
+    #[track_caller]
+    pub(super) fn always(&self) -> Bit {
+        Bit(make("always", &[], Location::caller(), |kernel, _| Ok(kernel.constant(Kind::Bit, 1))))
+    }
+
+    /// Supposes that a Boolean is always set, which is known from elsewhere: see [`Kernel::supposed`].
+    #[track_caller]
+    pub(super) fn suppose(&self, bit: Bit) {
+        make("suppose", &[bit.0], Location::caller(), |kernel, ids| {
+            kernel.supposed = Some(ids[0]);
+            Ok(ids[0])
+        });
+    }
+
     /// A Boolean input that arrives some cycles after the others.
     #[track_caller]
     pub(crate) fn input_bit_after(&self, name: &str, cycles: u32) -> Bit {

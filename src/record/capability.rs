@@ -81,7 +81,7 @@ pub struct Capability {
     pub record: RecordFormat,
     /// The kind of pair; `None` if this version does not know it.
     pub query: Option<Query>,
-    /// The latency of an SCPU, in cycles.
+    /// The latency of an SCPU, in cycles; with deciders, that of both.
     pub scpu_cycles: u32,
     /// The sizes of the search, if spheres come in.
     pub search: Option<Search>,
@@ -91,7 +91,8 @@ impl Capability {
     /// The capability of an AFU whose SCPUs have this latency in cycles.
     pub fn new(config: &Config, scpu_cycles: u32) -> Self {
         Self {
-            scpus: config.scpus,
+            // Behind deciders, one contact per cycle is computed.
+            scpus: if config.decide > 0 { config.scpus.min(config.interval) } else { config.scpus },
             interval: config.interval,
             fields: config.contact,
             results: config.results,

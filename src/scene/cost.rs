@@ -29,6 +29,10 @@ pub struct Cost {
     pub luts: Option<u64>,
     /// DSP blocks of an SCPU, likewise.
     pub dsps: Option<u64>,
+    /// LUTs of all SCPUs, those that only decide among them; `None` if they were not counted.
+    pub luts_of_all: Option<u64>,
+    /// DSP blocks of all SCPUs, likewise.
+    pub dsps_of_all: Option<u64>,
     /// Host time of a step without the engine's part, in nanoseconds; `None` if it was not measured.
     pub host_step_ns: Option<f64>,
 }
@@ -46,12 +50,14 @@ impl Cost {
         Ok(Self {
             operators: operators.into_iter().map(|operator| (operator.module, operator.instances)).collect(),
             modules: afu.top().hierarchy().len(),
-            latency_cycles: afu.kernel().latency,
+            latency_cycles: afu.latency_cycles(),
             bytes_sent: line / f64::from(layout.pairs_per_line()),
             bytes_returned: line / f64::from(layout.contacts_per_line()),
             returns_misses: config.results == crate::config::Results::All,
             luts: None,
             dsps: None,
+            luts_of_all: None,
+            dsps_of_all: None,
             host_step_ns: None,
         })
     }
@@ -62,8 +68,20 @@ impl Cost {
     /// Returns an error if Yosys is missing or fails.
     pub fn count(&mut self, config: &Config) -> Result<(), SceneError> {
         let options = Options { target: Target::Ecp5, seeds: Vec::new() };
-        let area = synthesise(&Unit::scpu(config)?, &options, |_| {})?.area;
-        (self.luts, self.dsps) = (Some(area.luts), Some(area.dsps));
+        let count = |config: &Config| -> Result<[u64; 2], SceneError> {
+            let area = synthesise(&Unit::scpu(config)?, &options, |_| {})?.area;
+            Ok([area.luts, area.dsps])
+        };
+        let spec = Spec::from(config.clone());
+        let one = count(config)?;
+        let built = u64::from(spec.scpus_in_turn(config.interval));
+        let mut all = one.map(|cells| cells * built);
+        if let Some(deciding) = spec.deciding() {
+            let decider = count(&Config { decide: 0, ..deciding.config })?;
+            all = [0, 1].map(|kind| all[kind] + u64::from(config.decide) * decider[kind]);
+        }
+        (self.luts, self.dsps) = (Some(one[0]), Some(one[1]));
+        (self.luts_of_all, self.dsps_of_all) = (Some(all[0]), Some(all[1]));
         Ok(())
     }
 

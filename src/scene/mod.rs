@@ -40,3 +40,4 @@ pub use results::{Energy, Meeting, SCHEMA, SceneRun, Summary, Touching};
 pub use run::run;
 pub use start::check_start;
 pub use still::{Still, query};
+pub use text::costs;

@@ -6,7 +6,11 @@ use super::file::{Given, Pull, Scene, Shape};
 use super::{SceneError, bodies};
 use crate::afu::Spec;
 use crate::config::{Config, Profile, Results, Shell};
+use crate::count::counted;
 use crate::query::Fields;
+
+/// Where deciders are asked for, the SCPU behind them takes a contact in so many pairs.
+const PAIRS_PER_CONTACT: u32 = 8;
 
 /// A line that calls for something.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -111,6 +115,23 @@ impl Plan {
     #[must_use]
     pub fn below(mut self, shell: Shell, bus: u32) -> Self {
         (self.config.shell, self.config.bus) = (shell, bus);
+        self
+    }
+
+    /// The same plan with so many SCPUs that only decide, in front of one that takes a contact in eight pairs.
+    #[must_use]
+    pub fn decided_by(mut self, deciders: u32) -> Self {
+        let config = &mut self.config;
+        (config.decide, config.scpus) = (deciders, 1);
+        config.interval = (PAIRS_PER_CONTACT / deciders.max(1)).max(1);
+        let value = format!(
+            "{} in front of an SCPU that takes a contact every {}",
+            counted(deciders.into(), "decider"),
+            counted(config.interval.into(), "cycle")
+        );
+        if let Some(row) = self.rows.iter_mut().find(|row| row.name == Part::Scpus.name()) {
+            row.value = value;
+        }
         self
     }
 

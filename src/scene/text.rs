@@ -69,7 +69,7 @@ fn energy(value: f64) -> String {
 }
 
 /// Costs side by side.
-pub(super) fn costs(all: &[(&str, &Cost)]) -> String {
+pub fn costs(all: &[(&str, &Cost)]) -> String {
     let heading: Vec<&str> = std::iter::once("").chain(all.iter().map(|(name, _)| *name)).collect();
     table(&heading, cost_rows(&all.iter().map(|(_, cost)| *cost).collect::<Vec<_>>()))
 }
@@ -90,6 +90,8 @@ pub(super) fn cost_rows(all: &[&Cost]) -> Vec<Vec<String>> {
         }),
         row("LUTs per SCPU", &|cost| counted(cost.luts)),
         row("DSP blocks per SCPU", &|cost| counted(cost.dsps)),
+        row("LUTs of all SCPUs", &|cost| counted(cost.luts_of_all)),
+        row("DSP blocks of all SCPUs", &|cost| counted(cost.dsps_of_all)),
         row("host time per step, µs", &|cost| {
             cost.host_step_ns.map_or_else(|| "not measured".to_owned(), |ns| format!("{:.1}", ns / 1000.0))
         }),

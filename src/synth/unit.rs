@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::afu::{Afu, Spec};
 use crate::config::{Config, Input, Profile};
+use crate::count::counted;
 use crate::hdl::verilog::{Style, emit};
 use crate::hdl::{BuildErrors, DelayModel, Module};
 use crate::operator::{Architecture, Domain, Operator, Values, pipelined};
@@ -100,14 +101,13 @@ impl Unit {
     fn of(config: &Config, afu: &Afu) -> Self {
         Self {
             name: match config.input {
-                Input::Direct => {
-                    format!(
-                        "afu of {} SCPU{}, {}",
-                        config.scpus,
-                        if config.scpus == 1 { "" } else { "s" },
-                        config.shell
-                    )
-                }
+                Input::Direct if config.decide > 0 => format!(
+                    "afu of {} and {}, {}",
+                    counted(config.decide.into(), "decider"),
+                    counted(config.scpus.min(config.interval).into(), "SCPU"),
+                    config.shell
+                ),
+                Input::Direct => format!("afu of {}, {}", counted(config.scpus.into(), "SCPU"), config.shell),
                 Input::Spheres => format!("afu of spheres, {}", config.shell),
             },
             profile: config.profile.clone(),

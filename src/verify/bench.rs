@@ -191,12 +191,12 @@ pub fn rtl_sha256(config: &Config) -> Result<String, VerifyError> {
 }
 
 /// The Verilog of a configuration. The number of SCPUs remains a parameter, so that models share their code, unless
-/// spheres come in.
+/// there are deciders.
 fn generated(config: &Config) -> Result<Source, VerifyError> {
     let scpus = Config::default().scpus;
     Spec::from(config.clone()).check().map_err(crate::afu::BuildError::from)?;
     // A prefix does not change the behaviour, so a model without a prefix serves every prefix.
-    let built = if config.input == config::Input::Spheres { config.scpus } else { scpus };
+    let built = if config.has_deciders() { config.scpus } else { scpus };
     let plain = Config { scpus: built, prefix: None, ..config.clone() };
     let afu = Afu::generate(Spec::from(plain))?;
     let files = afu.verilog().into_iter().map(|(name, text)| File { name, text }).collect();
@@ -204,7 +204,5 @@ fn generated(config: &Config) -> Result<Source, VerifyError> {
 }
 
 fn with_scpus(source: Source, config: &Config, default: u32) -> Source {
-    // With spheres as input the number is no parameter.
-    let is_fixed = config.input == config::Input::Spheres;
-    if config.scpus == default || is_fixed { source } else { source.parameter(SCPUS, config.scpus.into()) }
+    if config.scpus == default || config.has_deciders() { source } else { source.parameter(SCPUS, config.scpus.into()) }
 }

@@ -37,9 +37,15 @@ pub fn config(scpus: u32, profile: &str, contact: &str) -> Config {
 /// The Verilog of a configuration as generated now. The number of SCPUs is a parameter and not in the text, so models
 /// share what they have in common.
 pub fn source(config: &Config) -> Source {
-    let afu = Afu::generate(Spec::from(Config { scpus: Config::default().scpus, ..config.clone() })).unwrap();
+    let scpus = if config.has_deciders() { config.scpus } else { Config::default().scpus };
+    let afu = Afu::generate(Spec::from(Config { scpus, ..config.clone() })).unwrap();
     let files = afu.verilog().into_iter().map(|(name, text)| File { name, text }).collect();
-    Source::new("contact_afu", files).parameter("SCPUS", config.scpus.into())
+    with_scpus(Source::new("contact_afu", files), config)
+}
+
+/// With the number of SCPUs as a parameter, unless there are deciders, behind which it is fixed.
+pub fn with_scpus(source: Source, config: &Config) -> Source {
+    if config.has_deciders() { source } else { source.parameter("SCPUS", config.scpus.into()) }
 }
 
 /// A model of the Verilog as generated now.

@@ -10,7 +10,7 @@ use contact_afu::link::{Direction, Fault, Link, LinkModel, Order};
 use contact_afu::pairs::Set;
 use contact_afu::verify::{Bench, Verdict};
 
-use crate::bench::{Case, committed, config, driver, of, source};
+use crate::bench::{Case, committed, config, driver, of, source, with_scpus};
 
 /// Changes the right-hand side of the only assignment in `text` whose line contains `left`.
 fn change(text: &str, left: &str, right: impl Fn(&str) -> String) -> String {
@@ -126,7 +126,7 @@ pub fn model_of_faults(config: &Config, faults: &[Planted]) -> Model {
         let chosen = format!("contact_afu.control.job_watchdog[31:{SELECTOR_BIT}] == 4'd{planted}");
         file.text = change(&file.text, left, |right| format!("({chosen}) ? ({wrong}) : ({right})"));
     }
-    let source = Source::new("contact_afu", files).parameter("SCPUS", config.scpus.into());
+    let source = with_scpus(Source::new("contact_afu", files), config);
     Model::build(&source, Trace::Off).unwrap()
 }
 

@@ -59,6 +59,47 @@ fn the_same_hits_for_every_number_of_scpus_over_every_link() {
     }
 }
 
+#[test]
+fn deciders_give_the_same_hits_over_every_link() {
+    for (decide, scpus, interval, contact) in
+        [(1, 1, 7, WHOLE), (2, 1, 1, "depth"), (2, 3, 5, WHOLE), (1, 2, 2, "depth")]
+    {
+        let config = Config { decide, interval, ..hits(scpus, "e8f3z", contact) };
+        let model = generated(&config);
+        for (link, seed) in LinkModel::PRESETS.into_iter().zip(1..) {
+            let afu = model.instance(seed).unwrap();
+            let mut driver = driver(&afu, link, seed);
+            for case in &cases(&config) {
+                let what = format!("{decide} deciders, {scpus} SCPUs at {interval}, {contact}, {link}");
+                let outcome = driver.run(&case.job()).unwrap_or_else(|e| panic!("{what}: {e}"));
+                case.check(&outcome, &what);
+            }
+        }
+    }
+}
+
+/// Pairs of which one in eight touches take no more time with one decider and an SCPU that takes a pair every seven
+/// cycles than with an SCPU that takes one every cycle; where all touch, the SCPU sets the pace, and none is lost.
+#[test]
+fn one_decider_takes_a_pair_every_cycle() {
+    let alone = hits(1, "e8f3z", WHOLE);
+    let with_decider = Config { decide: 1, interval: 7, ..alone.clone() };
+    let pairs = |touching: fn(u16) -> bool| (0..8_000).map(|number| pair(touching(number), number)).collect::<Vec<_>>();
+    let cycles = |config: &Config, touching: fn(u16) -> bool| {
+        let case = Case::new(config, pairs(touching));
+        let outcome = driver(&generated(config).instance(1).unwrap(), "ideal", 1).run(&case.job()).unwrap();
+        case.check(&outcome, "on its own");
+        outcome.cycles
+    };
+    // One in eight, in bursts of thirty.
+    let bursts: fn(u16) -> bool = |number| number % 240 < 30;
+    let (alone, decided) = (cycles(&alone, bursts), cycles(&with_decider, bursts));
+    assert!(decided < alone + 250, "{decided} cycles, {alone} without a decider");
+    // All touch: an SCPU at interval 7.
+    let all = cycles(&with_decider, |_| true);
+    assert!((56_000..56_400).contains(&all), "{all} cycles");
+}
+
 fn afu(scpus: u32) -> Instance {
     generated(&hits(scpus, "e8f3z", WHOLE)).instance(1).unwrap()
 }
@@ -97,11 +138,16 @@ fn more_hits_than_room_end_in_an_error_of_their_own() {
 #[test]
 fn aborts_resets_and_faults_of_the_link_leave_nothing_to_the_next_job() {
     let config = hits(3, "e8f3z", WHOLE);
-    let spoilt = Case::new(&config, (0..301).map(|number| pair(number % 4 > 0, number)).collect());
-    let next = Case::random(&config, 57, 22);
-    let afu = afu(3);
+    aborted_and_reset(&config, &afu(3));
+    let decided = Config { decide: 2, interval: 3, ..hits(2, "e8f3z", WHOLE) };
+    aborted_and_reset(&decided, &generated(&decided).instance(1).unwrap());
+}
+
+fn aborted_and_reset(config: &Config, afu: &Instance) {
+    let spoilt = Case::new(config, (0..301).map(|number| pair(number % 4 > 0, number)).collect());
+    let next = Case::random(config, 57, 22);
     for (link, seed) in LinkModel::PRESETS.into_iter().zip(1..) {
-        let mut driver = driver(&afu, link, seed);
+        let mut driver = driver(afu, link, seed);
         for moment in (0..40).chain((40..700).step_by(53)) {
             let what = format!("{link}, after {moment} cycles");
             driver.start(&spoilt.job()).unwrap();
@@ -150,6 +196,29 @@ const FAULTS: [Planted; 4] = [
     ("contact_afu_sieve.v", "hits_to_0 = ", 3, "2'd0"),
     ("contact_afu_packer.v", "wire flushes = ", 4, "1'b0"),
 ];
+
+/// With deciders: a place that is free before its contact is computed, another bank, a place that is never free, a hit
+/// that comes while its SCPU still has another.
+const FAULTS_OF_DECIDERS: [Planted; 4] = [
+    ("contact_afu_resolver.v", "wire [10:0] next_needed = ", 1, "decided[10:0]"),
+    ("contact_afu_resolver.v", "bank_1_soon <= ", 2, "1'b0"),
+    ("contact_afu_resolver.v", "freed <= start", 3, "11'd0"),
+    ("contact_afu_resolver.v", "assign may_come = ", 4, "1'b1"),
+];
+
+#[test]
+fn planted_faults_of_deciders_are_found() {
+    let config = Config { decide: 2, interval: 4, ..hits(1, "e8f3z", WHOLE) };
+    let pairs = (0..5_000).map(|number| pair(number % 3 > 0, number)).collect();
+    let case = Case::new(&config, pairs);
+    let model = model_of_faults(&config, &FAULTS_OF_DECIDERS);
+    for fault in 0..=4 {
+        let afu = model.instance(1).unwrap();
+        let job = Job { watchdog: fault << SELECTOR_BIT, max_cycles: Some(60_000), ..case.job() };
+        let found = judge(&case, driver(&afu, "shuffled", 1).run(&job));
+        assert_eq!(found == Found::Nothing, fault == 0, "fault {fault}: {found:?}");
+    }
+}
 
 /// The comparison can fail.
 #[test]

@@ -158,8 +158,8 @@ const FAULTS_OF_CONTACTS: [(&str, &str, &str, &str); 2] = [
     (
         "a contact more than there are SCPUs for",
         "contact_afu.v",
-        "contact_queue_has_room & resolver_may_come",
-        "contact_queue_has_room",
+        "dispatcher_accepts & resolver_may_come",
+        "dispatcher_accepts",
     ),
 ];
 

@@ -23,6 +23,7 @@ fn kernel(arithmetic: Arithmetic, fields: Fields, interval: u32) -> Arc<Module> 
         clock_mhz: 200.0,
         interval,
         valid_is_late: false,
+        touching: false,
         model,
     })
     .unwrap()

@@ -22,9 +22,13 @@ fn kernel_of(arithmetic: Arithmetic, fields: Fields) -> Arc<Module> {
 }
 
 fn kernel_in(arithmetic: Arithmetic, fields: Fields, record: Format) -> Arc<Module> {
+    contact_kernel(&settings(arithmetic, fields, record)).unwrap()
+}
+
+fn settings(arithmetic: Arithmetic, fields: Fields, record: Format) -> Settings {
     let model = DelayModel::default();
     let record = arithmetic.record(record);
-    contact_kernel(&Settings {
+    Settings {
         query: Query::SphereSphere,
         arithmetic,
         record,
@@ -33,9 +37,42 @@ fn kernel_in(arithmetic: Arithmetic, fields: Fields, record: Format) -> Arc<Modu
         clock_mhz: 200.0,
         interval: 1,
         valid_is_late: false,
+        touching: false,
         model,
-    })
-    .unwrap()
+    }
+}
+
+/// A kernel that knows that its pairs touch gives them the same bits with less hardware, whatever comes between them.
+#[test]
+fn a_kernel_of_touching_pairs_gives_the_bits_of_one_that_decides() {
+    let pairs = pairs(20_000, 11);
+    for arithmetic in [Format::WIDE, Format::BINARY32, "e8f10".parse().unwrap()] {
+        let settings = settings(Arithmetic::Rounded(arithmetic), Fields::ALL, Format::BINARY32);
+        let deciding = contact_kernel(&settings).unwrap();
+        let touching = contact_kernel(&Settings { touching: true, ..settings }).unwrap();
+        assert!(touching.latency <= deciding.latency && touching.port("hit").is_none());
+        let wanted = run(&deciding, &pairs);
+        let mut evaluator = Evaluator::new(&touching, &[]).unwrap();
+        let inputs: Vec<_> = Query::SphereSphere.shape().names().map(|name| evaluator.pin(name).unwrap()).collect();
+        let outputs = OUTPUTS.map(|name| evaluator.pin(name).unwrap());
+        let coincident = evaluator.pin("grazing").unwrap();
+        let latency = touching.latency as usize;
+        let mut compared = 0;
+        for cycle in 0..pairs.len() + latency {
+            if let Some(wanted) = cycle.checked_sub(latency).map(|number| wanted[number])
+                && wanted.is_contact()
+            {
+                let words = outputs.map(|pin| evaluator.read(pin) as u32);
+                assert_eq!(words[..], wanted.0[..7], "{arithmetic}, {wanted:?}");
+                assert_eq!(evaluator.read(coincident) == 1, wanted.flow() == Some(Flow::Coincident));
+                compared += 1;
+            }
+            let pair = pairs.get(cycle).copied().unwrap_or(PairRecord([0x7FC0_0001; 8]));
+            inputs.iter().zip(pair.0).for_each(|(pin, word)| evaluator.write(*pin, word.into()));
+            evaluator.step();
+        }
+        assert!(compared > 5_000, "{compared}");
+    }
 }
 
 /// The pipeline's results for the pairs, one pair per cycle.

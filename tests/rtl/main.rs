@@ -71,6 +71,8 @@ fn configurations() -> Vec<Config> {
         Config { shell: Shell::Axi, outstanding: 256, ..Config::shipped() },
         Config { results: Results::Hits, ..with("half", "hit", 200.0) },
         Config { results: Results::Hits, ..with("half", "depth", 200.0) },
+        Config { decide: 2, interval: 3, scpus: 2, results: Results::Hits, ..with("half", "depth", 200.0) },
+        Config { decide: 1, interval: 8, scpus: 1, results: Results::Hits, ..Config::default() },
         spheres(Search::default()),
         spheres(Search { table: 65_536, lanes: 64, deciders: 8, box_bits: 18 }),
         spheres(Search { table: 512, lanes: 256, deciders: 16, ..Search::default() }),
@@ -140,7 +142,7 @@ fn clean_under_wall_of_both_verilators() {
         for mut verilator in verilators() {
             let output = verilator
                 .args(["--lint-only", "-Wall", "--top-module", &top_name(&config)])
-                .args((config.input == Input::Direct).then_some("-GSCPUS=2"))
+                .args((config.input == Input::Direct && !config.has_deciders()).then_some("-GSCPUS=2"))
                 // Vitis finds the pin by the name `interrupt`, which is a word of C++ libraries.
                 .args((config.shell == Shell::Axi).then_some("-Wno-SYMRSVDWORD"))
                 .args(&verilog)

@@ -36,6 +36,8 @@ fn configurations() -> Vec<Config> {
         hits("hit"),
         hits("depth"),
         hits("hit,depth,normal,position"),
+        Config { decide: 1, interval: 8, scpus: 1, ..hits("hit,depth,normal,position") },
+        Config { decide: 2, interval: 5, scpus: 3, shell: Shell::Axi, ..hits("depth") },
         super::spheres(Search::default()),
         super::spheres(Search { table: 65_536, lanes: 256, deciders: 1, ..Search::default() }),
         Config { shell: Shell::Axi, ..super::spheres(Search::default()) },

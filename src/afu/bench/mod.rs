@@ -21,10 +21,15 @@ impl Afu {
         let Example { source, expected, count, contacts, candidates, invalid, first_invalid, last_line } =
             Example::of(self);
         let first_invalid = first_invalid.map_or(u32::MAX >> (u32::BITS - COUNT_BITS), |number| number as u32);
-        // An AFU that takes spheres has no SCPUs.
-        let (what, parameter) = match config.input {
-            Input::Direct => ("pairs", "  parameter [31:0] SCPUS = 32'd@SCPUS@;\n"),
-            Input::Spheres => ("spheres", ""),
+        let what = match config.input {
+            Input::Direct => "pairs",
+            Input::Spheres => "spheres",
+        };
+        // Behind deciders the number of SCPUs is fixed.
+        let (parameter, passed) = if config.has_deciders() {
+            ("", "")
+        } else {
+            ("  parameter [31:0] SCPUS = 32'd@SCPUS@;\n", " #(\n    .SCPUS(SCPUS)\n  )")
         };
         let BenchText { text, first_line } = self.shell().bench(self);
         let lines = |lines: &[Line], text: &dyn Fn(usize, &str) -> String| {
@@ -37,6 +42,7 @@ impl Afu {
             ("@VERSION@", env!("CARGO_PKG_VERSION").to_owned()),
             ("@COMMAND@", self.command()),
             ("@PARAMETER@\n", parameter.to_owned()),
+            ("@PARAMETERS@", passed.to_owned()),
             ("@SCPUS@", config.scpus.to_string()),
             ("@COUNT@", count.to_string()),
             ("@WHAT@", what.to_owned()),

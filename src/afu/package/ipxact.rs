@@ -233,8 +233,8 @@ fn model(xml: &mut Xml, afu: &Afu) -> io::Result<()> {
             text(xml, "name", RTL)?;
             text(xml, "language", "Verilog")?;
             text(xml, "moduleName", &afu.top_name())?;
-            // An AFU that takes spheres has no SCPUs.
-            if afu.spec().config.input == Input::Direct {
+            // Behind deciders the number of SCPUs is fixed.
+            if !afu.spec().config.has_deciders() {
                 group(xml, "moduleParameters", |xml| parameter_scpus(xml, afu.spec().config.scpus))?;
             }
             [RTL, CONSTRAINTS]

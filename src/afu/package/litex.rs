@@ -2,15 +2,15 @@
 
 use super::super::shell::axi::most_lines;
 use super::super::{Afu, file_list};
-use crate::config::Input;
 
 /// The text of the Python file.
 pub(super) fn module(afu: &Afu) -> String {
     let spec = afu.spec();
-    // An AFU that takes spheres has no SCPUs.
-    let (argument, parameter) = match spec.config.input {
-        Input::Direct => (format!("scpus={}, ", spec.config.scpus), "p_SCPUS=scpus, "),
-        Input::Spheres => (String::new(), ""),
+    // Behind deciders the number of SCPUs is fixed.
+    let (argument, parameter) = if spec.config.has_deciders() {
+        (String::new(), "")
+    } else {
+        (format!("scpus={}, ", spec.config.scpus), "p_SCPUS=scpus, ")
     };
     let values = [
         ("@ORIGIN@", afu.origin()),

@@ -1,7 +1,7 @@
 //! What goes from one stage of the search to the next one, through a queue.
 
-use super::queue::queue;
 use super::{ROW, ROW_BITS, ROW_NUMBER_BITS, SLACK};
+use crate::afu::queue::queue;
 use crate::hdl::{BuildErrors, Graph, Instantiated, Signal};
 
 /// Inputs, with names that live long enough.

@@ -7,8 +7,9 @@ use super::bits::{count, every, number};
 use super::bounds::{CYCLES_TO_MEET, meet};
 use super::nth::{count_up_to_slices, cycles_to_count, cycles_to_nth, nth};
 use super::store::{CYCLES_TO_WORD, Store};
-use super::walk::{Item, later, walk};
+use super::walk::{Item, walk};
 use super::{KEPT_ROWS, ROW, ROW_BITS, ROW_NUMBER_BITS, SLACK, Sizes};
+use crate::afu::counter::later;
 use crate::afu::{COUNT_BITS, Spec};
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
 

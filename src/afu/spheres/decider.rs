@@ -5,11 +5,12 @@ use std::sync::Arc;
 
 use super::bits::{number, place_of};
 use super::bounds::SPHERE_BITS;
-use super::queue::queue;
 use super::store::{CYCLES_TO_WORD, Store};
-use super::walk::{Item, later, walk};
+use super::walk::{Item, walk};
 use super::{KEPT_ROWS, SLACK, Sizes};
 use crate::afu::Spec;
+use crate::afu::counter::later;
+use crate::afu::queue::queue;
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
 use crate::query::Query;
 

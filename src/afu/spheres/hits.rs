@@ -5,10 +5,11 @@ use std::sync::Arc;
 
 use super::bits::{count, number, place_of};
 use super::nth::{count_up_to_slices, cycles_to_count, cycles_to_nth, nth};
-use super::queue::queue;
-use super::walk::{Item, later, walk};
+use super::walk::{Item, walk};
 use super::{NUMBER_BITS, QUEUE, ROW, ROW_BITS, ROW_NUMBER_BITS, SLACK, Sizes};
 use crate::afu::COUNT_BITS;
+use crate::afu::counter::later;
+use crate::afu::queue::queue;
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
 /// Numbers of hits that leave in a cycle, at most.

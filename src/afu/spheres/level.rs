@@ -6,9 +6,10 @@ use std::sync::Arc;
 use super::bits::number;
 use super::bounds::{CYCLES_TO_MEET, meet};
 use super::store::{CYCLES_TO_WORD, Store, kept_boxes};
-use super::walk::{Item, later, walk};
+use super::walk::{Item, walk};
 use super::{ROW, ROW_BITS, ROW_NUMBER_BITS, Sizes};
 use crate::afu::Spec;
+use crate::afu::counter::later;
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
 /// Cycles from a step to what it found.

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use super::bits::{chosen, count as number_of};
 use super::bounds::{SPHERE_BITS, sphere_box};
-use super::walk::later;
 use super::{KEPT_ROWS, ROW_BITS, ROW_NUMBER_BITS, Sizes};
+use crate::afu::counter::later;
 use crate::afu::counter::{up_down, waiting};
 use crate::afu::lines::CYCLES_TO_WORD;
 use crate::afu::{COUNT_BITS, Spec};

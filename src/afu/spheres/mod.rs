@@ -16,7 +16,6 @@ mod loader;
 mod model;
 mod near;
 mod nth;
-mod queue;
 mod resolver;
 mod rows;
 mod store;

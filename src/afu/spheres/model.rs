@@ -149,7 +149,7 @@ impl SearchModel {
     pub fn predict(&self, config: &Config) -> Result<Predicted, PredictError> {
         let search = config::Search { box_bits: self.box_bits, ..config.search };
         let sizes = Sizes::of(&Config { search, ..config.clone() })?;
-        let decision = decision(&Spec::from(config.clone()))?.latency;
+        let decision = decision(&Spec::from(config.clone()), false)?.latency;
         let rows = self.rows.iter().enumerate().map(|(row, trace)| item(&sizes, row, trace, &self.hits)).collect();
         let lanes = if config.contact == Fields::HIT { LANES.into() } else { 1 };
         Ok(run(&sizes, self.before, rows, lanes, decision.into()))

@@ -6,9 +6,10 @@ use super::bits::number;
 use super::bounds::{CYCLES_TO_MEET, meet};
 use super::nth::{count_up_to_slices, cycles_to_count};
 use super::store::{CYCLES_TO_WORD, Store};
-use super::walk::{Item, later, walk};
+use super::walk::{Item, walk};
 use super::{KEPT_ROWS, ROW, ROW_NUMBER_BITS, SLACK, Sizes};
 use crate::afu::Spec;
+use crate::afu::counter::later;
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
 /// Cycles from a step to the spheres that it found.

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::bounds::Edges;
-use super::walk::later;
 use super::{ROW, ROW_BITS, ROW_NUMBER_BITS, Sizes};
+use crate::afu::counter::later;
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
 /// Cycles from a complete row to its search: the last row that it is compared with, and the words of groups up to

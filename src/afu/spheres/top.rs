@@ -4,18 +4,15 @@ use std::sync::Arc;
 
 use super::between::{Parts, named, parts, stage_queue, word_of};
 use super::level::{Level, level};
-use super::queue::queue;
-use super::{
-    KEPT_ROWS, LONG_QUEUE, QUEUE, ROW, ROW_BITS, Sizes, candidates, decider, hits, loader, near, resolver, rows,
-};
+use super::resolver::resolver;
+use super::{KEPT_ROWS, LONG_QUEUE, QUEUE, ROW, ROW_BITS, Sizes, candidates, decider, hits, loader, near, rows};
 use crate::afu::control::control;
-use crate::afu::counter::up_down;
 use crate::afu::port::{JobInputs, JobOutputs, ReadInputs, ReadOutputs, WriteInputs, WriteOutputs, outputs};
-use crate::afu::{Spec, collector, dispatcher, packer};
+use crate::afu::{Spec, collector, dispatcher, packer, resolver};
 use crate::hdl::{BuildErrors, Error, Graph, Module, Signal};
 use crate::record::Capability;
 
-/// Lines that the dispatcher holds.
+/// Lines that the dispatcher holds if only numbers come back.
 const LINES: u32 = 32;
 
 /// The top over the plain line port, around a kernel of `--contact hit` that decides, and the SCPU that computes the
@@ -303,6 +300,8 @@ pub(in crate::afu) fn spheres_top(
     row_ends.drive(hits.output("row_ends"));
 
     // The contacts, in the order of their hits.
+    let to_numbers = hits::cycles_to_numbers(sizes.compared);
+    let lines = scpu.map_or(LINES, |scpu| resolver::lines(spec, scpu, to_numbers));
     let mut packer_inputs = vec![("start", begin("packer"))];
     let records: Vec<_> = (0..lanes).map(|lane| format!("record_{lane}")).collect();
     if let Some(scpu) = scpu {
@@ -317,23 +316,12 @@ pub(in crate::afu) fn spheres_top(
             ("write_kept_row", row.low(kept_bits)),
         ];
         inputs.extend(named(&spheres));
-        let to_numbers = hits::cycles_to_numbers(sizes.compared);
-        let resolver = resolver::resolver(spec, &sizes, scpu, to_numbers - 1)?;
-        let resolver = graph.instance("resolver", &resolver, &inputs);
-        // A contact may be anywhere between the step of its hit and the queue when this is full.
-        let on_the_way = to_numbers + resolver::latency(spec, scpu) + 2;
-        let (take, depth) = (graph.wire("contact_leaves", 1), (2 * on_the_way).next_power_of_two());
-        let record = resolver.output("record");
-        let inputs = [("start", start), ("put", resolver.output("put")), ("word", record), ("take", take)];
-        let contacts = graph.instance("contact_queue", &queue(depth, record.width(), on_the_way)?, &inputs);
-        take.drive(contacts.output("valid") & line_has_room);
-        may_resolve
-            .drive((contacts.output("has_room") & resolver.output("may_come") & run).registered("hit_may_leave"));
-        let inside = graph.register("contacts_inside", depth.ilog2() + 1, 0);
-        up_down(inside, start, hits.output("carries"), take);
-        let all_out = (hits.output("all_out") & !inside.any() & !start).registered("contacts_all_out");
-        packer_inputs.extend([("carries", take), ("all_out", all_out)]);
-        packer_inputs.push(("record_0", contacts.output("oldest").delay(1).named("contact")));
+        let resolver = graph.instance("resolver", &resolver(spec, &sizes, scpu, to_numbers - 1)?, &inputs);
+        let about = [start, run, hits.output("carries"), hits.output("all_out"), accepts];
+        let contacts = resolver::resolved(&graph, spec, scpu, &resolver, about);
+        may_resolve.drive(contacts.may_leave);
+        packer_inputs.extend([("carries", contacts.comes), ("all_out", contacts.all_out)]);
+        packer_inputs.push(("record_0", contacts.record));
     } else {
         may_resolve.drive(one);
         packer_inputs.extend([("carries", hits.output("carries")), ("all_out", hits.output("all_out"))]);
@@ -353,7 +341,7 @@ pub(in crate::afu) fn spheres_top(
         ("line", packer.output("line")),
         ("lines", control.output("job_destination_lines")),
     ]);
-    let dispatcher = graph.instance("dispatcher", &dispatcher::dispatcher(spec, LINES)?, &inputs);
+    let dispatcher = graph.instance("dispatcher", &dispatcher::dispatcher(spec, lines)?, &inputs);
     accepts.drive(dispatcher.output("accepts"));
     for (name, wire) in told {
         wire.drive(match name {

@@ -45,15 +45,3 @@ pub(super) fn walk<'g>(graph: &'g Graph, start: Signal<'g>, item: &Item<'g>, may
     about.next_if(takes, item.about);
     Walk { takes, steps, bit, about: about.value(), is_last, is_active: active.value() }
 }
-
-/// A pulse, `cycles` cycles later, zero after reset; `start` forgets those on their way.
-pub(super) fn later<'g>(start: Signal<'g>, pulse: Signal<'g>, cycles: u32, name: &str) -> Signal<'g> {
-    if cycles == 0 {
-        return pulse;
-    }
-    let graph = pulse.graph();
-    let way = graph.register(name, cycles, 0);
-    let next = if cycles == 1 { pulse } else { way.low(cycles - 1).concat(pulse) };
-    way.next(next.gate(!start));
-    way.msb()
-}

@@ -65,11 +65,10 @@ impl ShellDesign for Axi {
 
     fn bench(&self, afu: &Afu) -> BenchText {
         let config = &afu.spec().config;
-        // An AFU that takes spheres has no SCPUs, and two registers more.
-        let (passed, others, candidates) = match config.input {
-            Input::Direct => (" #(\n    .SCPUS(SCPUS)\n  )", String::new(), String::new()),
+        // An AFU that takes spheres has two registers more.
+        let (others, candidates) = match config.input {
+            Input::Direct => (String::new(), String::new()),
             Input::Spheres => (
-                "",
                 format!("      write_register(12'h{:x}, 32'd0);\n", map::OTHERS.offset),
                 format!(
                     "        read_register(12'h{:x});\n        if (value != 32'd@CANDIDATES@) fault(\"another number of \
@@ -78,7 +77,7 @@ impl ShellDesign for Axi {
                 ),
             ),
         };
-        let text = include_str!("bench.v").replace("@BUS@", &config.bus.to_string()).replace("@PARAMETERS@", passed);
+        let text = include_str!("bench.v").replace("@BUS@", &config.bus.to_string());
         let text = text.replace("@OTHERS@\n", &others).replace("@CHECK_CANDIDATES@\n", &candidates);
         BenchText { text, first_line: 0 }
     }

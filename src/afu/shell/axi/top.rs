@@ -6,7 +6,6 @@ use super::port::{ControlInputs, ControlOutputs, MemoryInputs, MemoryOutputs};
 use super::{control, read, write};
 use crate::afu::port::{JobInputs, JobOutputs, ReadInputs, ReadOutputs, WriteInputs, WriteOutputs, outputs};
 use crate::afu::{EPOCH_BITS, MAX_SCPUS, SCPU_BITS, Spec};
-use crate::config::Input;
 use crate::hdl::{BuildErrors, Graph, Module};
 
 /// The top's name.
@@ -20,8 +19,8 @@ pub(super) const RESET: &str = "ap_rst_n";
 pub(super) fn top(spec: &Spec, core: &Arc<Module>) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new(NAME);
     graph.about("collision-detection accelerator behind an AXI4 master and an AXI4-Lite slave");
-    // An AFU that takes spheres has no SCPUs.
-    if spec.config.input == Input::Direct {
+    // Behind deciders the number of SCPUs is fixed.
+    if !spec.config.has_deciders() {
         graph.parameter("SCPUS", spec.config.scpus, 1..=MAX_SCPUS, SCPU_BITS);
     }
     graph.clocked_by(CLOCK);

@@ -7,7 +7,6 @@ use std::sync::Arc;
 use super::{BenchText, ShellDesign};
 use crate::afu::port::{self, Ports};
 use crate::afu::{Afu, Spec};
-use crate::config::Input;
 use crate::hdl::{BuildErrors, Module};
 
 /// The shell.
@@ -49,12 +48,6 @@ impl ShellDesign for Line {
         let ports: Vec<_> = inputs.iter().chain(&outputs).map(|port| (port.name, value(port.name))).collect();
         let wires: String = outputs.iter().map(|port| port.wire()).collect();
         let text = include_str!("bench.v");
-        // An AFU that takes spheres has no SCPUs.
-        let passed = match afu.spec().config.input {
-            Input::Direct => " #(\n    .SCPUS(SCPUS)\n  )",
-            Input::Spheres => "",
-        };
-        let text = text.replace("@PARAMETERS@", passed);
         let text = text.replace("@OUTPUTS@\n", &wires).replace("@PORTS@", &port::connections("    ", &ports));
         BenchText { text, first_line: 0 }
     }

@@ -48,14 +48,14 @@ impl ShellDesign for Spl2 {
     }
 
     fn bench(&self, afu: &Afu) -> BenchText {
-        // An AFU that takes spheres has no SCPUs, and a field more in its status.
-        let (passed, candidates) = match afu.spec().config.input {
-            Input::Direct => (" #(\n    .SCPUS(SCPUS)\n  )", ""),
+        // An AFU that takes spheres has a field more in its status.
+        let candidates = match afu.spec().config.input {
+            Input::Direct => "",
             Input::Spheres => {
-                ("", "        if (status[415:384] != 32'd@CANDIDATES@) fault(\"another number of candidates\");\n")
+                "        if (status[415:384] != 32'd@CANDIDATES@) fault(\"another number of candidates\");\n"
             }
         };
-        let text = include_str!("bench.v").replace("@PARAMETERS@", passed).replace("@CHECK_CANDIDATES@\n", candidates);
+        let text = include_str!("bench.v").replace("@CHECK_CANDIDATES@\n", candidates);
         BenchText { text, first_line: map::DATA_LINE as usize }
     }
 

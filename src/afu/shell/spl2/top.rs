@@ -6,7 +6,6 @@ use super::words::{self, MDATA_BITS, is_core_s};
 use super::{SplInputs, SplOutputs, acknowledge, registers, sequence, transmit};
 use crate::afu::port::{JobInputs, JobOutputs, ReadInputs, ReadOutputs, WriteInputs, WriteOutputs, outputs};
 use crate::afu::{EPOCH_BITS, JobError, MAX_SCPUS, SCPU_BITS, Spec};
-use crate::config::Input;
 use crate::hdl::{BuildErrors, Graph, Module};
 
 /// The top's name.
@@ -16,8 +15,8 @@ pub(super) const NAME: &str = "afu_top";
 pub(super) fn afu_top(spec: &Spec, core: &Arc<Module>) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new(NAME);
     graph.about("collision-detection accelerator below SPL2 of Intel HARP v1");
-    // An AFU that takes spheres has no SCPUs.
-    if spec.config.input == Input::Direct {
+    // Behind deciders the number of SCPUs is fixed.
+    if !spec.config.has_deciders() {
         graph.parameter("SCPUS", spec.config.scpus, 1..=MAX_SCPUS, SCPU_BITS);
     }
     let slot_bits = spec.max_outstanding.ilog2();
