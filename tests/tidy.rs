@@ -50,8 +50,8 @@ const HOUSE: &[(&str, &[&str])] = &[
     (
         "synth",
         &[
-            "study", "store", "query", "record", "tools", "config", "afu", "pipeline", "operator", "hdl", "number",
-            "files",
+            "count", "study", "store", "query", "record", "tools", "config", "afu", "pipeline", "operator", "hdl",
+            "number", "files",
         ],
     ),
     (

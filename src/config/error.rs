@@ -6,13 +6,13 @@ use crate::query::Query;
 /// Why a configuration is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Error {
-    /// Outside [`SCPUS`].
+    /// Outside [`super::SCPUS`].
     #[error("{0} SCPUs: expected 1 to 64")]
     Scpus(u32),
-    /// Outside [`INTERVALS`].
+    /// Outside [`super::INTERVALS`].
     #[error("interval {0}: expected 1 to 64 cycles")]
     Interval(u32),
-    /// Not a power of two within [`OUTSTANDING`].
+    /// Not a power of two within [`super::OUTSTANDING`].
     #[error("{0} requests in flight: expected 16, 32, 64, 128 or 256")]
     Outstanding(u32),
     /// More than SPL2 takes.
@@ -46,13 +46,13 @@ pub enum Error {
         "profile exact with record {0}: results would be exact for the rounded pairs only, not for yours; use record f32"
     )]
     ExactRecord(RecordFormat),
-    /// Not one of [`BUSES`].
+    /// Not one of [`super::BUSES`].
     #[error("bus of {0} bits: expected 128, 256 or 512")]
     Bus(u32),
     /// Deciders where they make no sense.
     #[error("decide {0} with {1}: {2}")]
     Decide(u32, &'static str, &'static str),
-    /// Not one of [`DECIDE`].
+    /// Not one of [`super::DECIDE`].
     #[error("decide {0}: expected 0, 1, 2 or 4 SCPUs that decide")]
     DecideRange(u32),
     /// Spheres come in, and the search is not possible.
