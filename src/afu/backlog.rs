@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use crate::hdl::{BuildErrors, Graph, Module};
+use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
 use super::Spec;
 use super::banks::{Turn, rotate, row};
@@ -15,14 +15,48 @@ pub(super) fn backlog(spec: &Spec, places: u32, leaving: u32) -> Result<Arc<Modu
     let graph = Graph::new("contact_afu_backlog");
     graph.about("keeps contacts, in their order, until the packer takes them");
     let (lanes, entry_bits) = (spec.lanes(), spec.entry_bits());
-    let place_bits = places.ilog2();
-    let count_bits = place_bits + 1;
-
     let start = graph.input("start", 1);
     let put = graph.input("put", spec.group_bits());
     let entries: Vec<_> = (0..lanes).map(|lane| graph.input(&format!("entry_{lane}"), entry_bits)).collect();
     let may_leave = graph.input("may_leave", 1);
 
+    let kept = keep(&graph, [start, may_leave], put, &entries, (places, leaving));
+    let group_out = kept.group.gate(!start).registered("group_out");
+    graph.output("group", group_out);
+    for (lane, entry) in kept.oldest.into_iter().take(leaving as usize).enumerate() {
+        // The packer gets their number one cycle ahead and merges all lanes: a lane without a contact is zero.
+        let taken = kept.group.greater_than(kept.group.same(lane as u128));
+        graph.output(&format!("record_{lane}"), entry.gate(taken).delay(2).named(&format!("leaving_{lane}")));
+    }
+    graph.output("empty", !kept.stored.any() & !group_out.any());
+    graph.finish()
+}
+
+/// What banks keep.
+pub(super) struct Kept<'g> {
+    /// The number of those that leave in this cycle.
+    pub(super) group: Signal<'g>,
+    /// The oldest entries, as many as there are banks, the first one first. If fewer are `readable`, the others are
+    /// anything.
+    pub(super) oldest: Vec<Signal<'g>>,
+    /// The number of all.
+    pub(super) stored: Signal<'g>,
+    /// The number of those that stand at the outputs of the banks or behind these.
+    pub(super) readable: Signal<'g>,
+}
+
+/// Keeps entries in order, in a bank for each that may come in a cycle, with so many places together (a power of two).
+/// The first `put` of `entries` come, and the first `leaving` (a power of two) leave, at most, where they may.
+pub(super) fn keep<'g>(
+    graph: &'g Graph,
+    [start, may_leave]: [Signal<'g>; 2],
+    put: Signal<'g>,
+    entries: &[Signal<'g>],
+    (places, leaving): (u32, u32),
+) -> Kept<'g> {
+    let (lanes, entry_bits) = (entries.len() as u32, entries[0].width());
+    let place_bits = places.ilog2();
+    let count_bits = place_bits + 1;
     let tail = graph.register("tail", place_bits, 0);
     let head = graph.register("head", place_bits, 0);
     let stored = graph.register("stored", count_bits, 0);
@@ -50,15 +84,6 @@ pub(super) fn backlog(spec: &Spec, places: u32, leaving: u32) -> Result<Arc<Modu
         store.write(entry.msb(), row(tail.value(), bank, lanes), entry.low(entry_bits));
         read.push(store.read(row(next_head, bank, lanes)).named(&format!("oldest_{bank}")));
     }
-    let leaves = rotate(read, head.value(), Turn::Down);
-
-    let group_out = group.gate(!start).registered("group_out");
-    graph.output("group", group_out);
-    for (lane, entry) in leaves.into_iter().take(leaving as usize).enumerate() {
-        // The packer gets their number one cycle ahead and merges all lanes: a lane without a contact is zero.
-        let taken = group.greater_than(group.same(lane as u128));
-        graph.output(&format!("record_{lane}"), entry.gate(taken).delay(2).named(&format!("leaving_{lane}")));
-    }
-    graph.output("empty", !stored.any() & !group_out.any());
-    graph.finish()
+    let oldest = rotate(read, head.value(), Turn::Down);
+    Kept { group, oldest, stored: stored.value(), readable: readable.value() }
 }

@@ -54,10 +54,7 @@ impl Afu {
     /// Returns an error if a value in `spec` is out of range, or if the generator has a fault.
     pub fn generate(spec: Spec) -> Result<Self, BuildError> {
         spec.check()?;
-        let is_direct = spec.config.input == Input::Direct || spec.config.contact != Fields::HIT;
-        let touching = spec.config.has_deciders() && spec.config.contact != Fields::HIT;
-        let valid_is_late = spec.config.interval <= 1 && is_direct && !touching;
-        let kernel = contact_kernel(&Settings { valid_is_late, touching, ..settings(&spec) })?;
+        let kernel = kernel(&spec)?;
         Self::around(spec, kernel)
     }
 
@@ -194,6 +191,14 @@ fn settings(spec: &Spec) -> Settings {
         touching: false,
         model: spec.model(),
     }
+}
+
+/// The kernel that computes contacts, or decides if only hits are asked for.
+pub(super) fn kernel(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
+    let is_direct = spec.config.input == Input::Direct || spec.config.contact != Fields::HIT;
+    let touching = spec.config.has_deciders() && spec.config.contact != Fields::HIT;
+    let valid_is_late = spec.config.interval <= 1 && is_direct && !touching;
+    contact_kernel(&Settings { valid_is_late, touching, ..settings(spec) })
 }
 
 /// The kernel that decides which pairs touch.

@@ -20,9 +20,14 @@ const BACKLOG_TO_CARRIES: u32 = 1;
 /// The same, to the hit's number.
 pub(super) const BACKLOG_TO_NUMBER: u32 = BACKLOG_TO_CARRIES + 1;
 
-/// SCPUs that resolve: as many as take one contact per cycle, at most. The others are not built.
+/// The SCPUs of a resolver: as many as take one contact per cycle, at most. The others are not built.
 pub(super) fn units(spec: &Spec) -> u32 {
-    spec.scpus_in_turn(spec.config.interval)
+    spec.scpus_in_turn(spec.config.interval) / lanes(spec)
+}
+
+/// Resolvers side by side, each with its SCPUs.
+pub(super) fn lanes(spec: &Spec) -> u32 {
+    spec.contact_lanes(spec.config.interval)
 }
 
 /// Cycles from the numbers of a hit to its contact, for SCPUs of that latency.
@@ -154,43 +159,46 @@ pub(super) fn resolve<'g>(
     Ok(())
 }
 
-/// Records that are on their way behind a stage that is told that no hit may leave, at most, and cycles with them: two
-/// until it hears of it, `to_number` from its step to the number of a hit, and those to the dispatcher.
+/// Cycles with records that are on their way behind a stage that is told that no hit may leave, at most: two until it
+/// hears of it, `to_number` from its step to the number of a hit, and those to the dispatcher.
 fn on_the_way(spec: &Spec, scpu: &Module, to_number: u32) -> u32 {
     2 + to_number + latency(spec, scpu) + packer::cycles_to_line(spec) + packer::cycles_to_flush(spec)
 }
 
 /// Lines of the dispatcher behind a resolver (a power of two): half of them hold all that is on its way.
 pub(super) fn lines(spec: &Spec, scpu: &Module, to_number: u32) -> u32 {
-    let of_lines = on_the_way(spec, scpu, to_number).div_ceil(spec.layout().contacts_per_line()) + 1;
+    let records = lanes(spec) * on_the_way(spec, scpu, to_number);
+    let of_lines = records.div_ceil(spec.layout().contacts_per_line()) + 1;
     (2 * of_lines).next_power_of_two()
 }
 
-/// What a resolver gives to the packer and to the stage before.
+/// What resolvers give to the packer and to the stage before.
 pub(super) struct Resolved<'g> {
-    /// True if a hit may leave for the resolver in this cycle.
+    /// True if hits may leave for the resolvers in this cycle.
     pub(super) may_leave: Signal<'g>,
-    /// True if a contact comes in the next cycle.
+    /// The resolvers whose contact comes in the next cycle, a bit each.
     pub(super) comes: Signal<'g>,
-    /// The contact.
-    pub(super) record: Signal<'g>,
-    /// True if none is in the resolver, and `hits_out` said that no hit comes.
+    /// The contact of each.
+    pub(super) records: Vec<Signal<'g>>,
+    /// True if none is in a resolver, and `hits_out` said that no hit comes.
     pub(super) all_out: Signal<'g>,
 }
 
-/// The signals around a resolver, in the top. `carries` is set as a hit enters it, which it may as long as the
-/// dispatcher `accepts` lines.
+/// The signals around resolvers side by side, in the top. `carries` has a bit for each that a hit enters, from the
+/// first one on. They may enter as long as the dispatcher `accepts` lines. All resolvers take the same cycles.
 pub(super) fn resolved<'g>(
     graph: &'g Graph,
     spec: &Spec,
     scpu: &Module,
-    resolver: &Instantiated<'g>,
+    resolvers: &[Instantiated<'g>],
     [start, run, carries, hits_out, accepts]: [Signal<'g>; 5],
 ) -> Resolved<'g> {
-    let may_leave = (accepts & resolver.output("may_come") & run).registered("hit_may_leave");
-    let comes = resolver.output("comes");
+    let may_leave = (accepts & resolvers[0].output("may_come") & run).registered("hit_may_leave");
+    let comes: Vec<_> = resolvers.iter().rev().map(|resolver| resolver.output("comes")).collect();
+    let comes = Signal::join(&comes);
     let inside = graph.register("contacts_inside", latency(spec, scpu).ilog2() + 1, 0);
-    up_down(inside, start, carries, comes);
+    up_down(inside, start, carries.bit(0), comes.bit(0));
     let all_out = (hits_out & !inside.any() & !start).registered("contacts_all_out");
-    Resolved { may_leave, comes, record: resolver.output("record"), all_out }
+    let records = resolvers.iter().map(|resolver| resolver.output("record")).collect();
+    Resolved { may_leave, comes, records, all_out }
 }

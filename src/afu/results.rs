@@ -150,10 +150,10 @@ impl Parts {
             ];
             let resolver = graph.instance("resolver", resolver, &inputs);
             let about = [results.begin, run, carries, all_out, accepts];
-            let contacts = resolver::resolved(graph, spec, scpu, &resolver, about);
+            let contacts = resolver::resolved(graph, spec, scpu, std::slice::from_ref(&resolver), about);
             may_leave.drive(contacts.may_leave);
-            let inputs =
-                [start, ("carries", contacts.comes), ("record_0", contacts.record), ("all_out", contacts.all_out)];
+            let (carries, record) = (contacts.comes, contacts.records[0]);
+            let inputs = [start, ("carries", carries), ("record_0", record), ("all_out", contacts.all_out)];
             let packer = graph.instance("packer", &self.packer, &inputs);
             return Packed { packer, status: sieve_out, places_freed: Some(resolver.output("freed")) };
         }

@@ -1,12 +1,13 @@
 //! The specification of an accelerator: the configuration, and options that only proofs and integrators change.
 
-use crate::config::{Config, INTERVALS, Multipliers};
+use crate::config::{Config, INTERVALS, Input, Multipliers};
 use crate::count::counted;
 use crate::hdl::verilog::Memories;
 use crate::hdl::{DelayModel, Reset};
 use crate::query::Fields;
 
 use super::EPOCH_BITS;
+use super::spheres::HIT_LANES;
 use crate::record::{COUNT_BITS, LINE_BITS, Layout};
 
 /// Everything that affects the generated Verilog.
@@ -111,11 +112,24 @@ impl Spec {
     pub fn scpus_in_turn(&self, interval: u32) -> u32 {
         let whole = self.lanes() * interval;
         match self.config.scpus {
-            // Behind deciders, one contact per cycle is computed.
-            scpus if self.config.has_deciders() => scpus.min(interval.max(1)),
+            scpus if self.config.has_deciders() => {
+                let lanes = self.contact_lanes(interval);
+                lanes * (scpus / lanes).min(interval.max(1))
+            }
             scpus if interval > 1 && scpus > whole => scpus / whole * whole,
             scpus => scpus,
         }
+    }
+
+    /// Behind deciders, the contacts whose computation begins in the same cycle, side by side. Of pairs it is one. Of
+    /// spheres it is a power of two: as many as the SCPUs take per cycle at an interval, as fit in a line, and as
+    /// numbers of hits come, at most.
+    pub(crate) fn contact_lanes(&self, interval: u32) -> u32 {
+        if self.config.input != Input::Spheres || self.config.contact == Fields::HIT {
+            return 1;
+        }
+        let per_cycle = (self.config.scpus / interval.max(1)).max(1);
+        (1 << per_cycle.ilog2()).min(HIT_LANES).min(self.layout().contacts_per_line())
     }
 
     /// The number of SCPUs that takes a full line per cycle. A larger number must be a multiple of it. `None` if any
@@ -131,10 +145,18 @@ impl Spec {
         let built = self.scpus_in_turn(interval);
         if self.config.has_deciders() {
             return (built < scpus && self.config.contact != Fields::HIT).then(|| {
+                let lanes = self.contact_lanes(interval);
+                let more =
+                    Self { config: Config { scpus: 2 * lanes * interval, ..self.config.clone() }, ..self.clone() };
+                let more = match more.contact_lanes(interval) {
+                    twice if twice > lanes => format!("{built} or {}", more.config.scpus),
+                    _ => format!("at most {built}"),
+                };
                 format!(
-                    "{} at interval {interval}: {built} of them compute one contact per cycle, and the rest are not \
-                     built. Use at most {built}",
-                    counted(scpus.into(), "SCPU")
+                    "{} at interval {interval}: {built} of them compute {} per cycle, and the rest are not built. Use \
+                     {more}",
+                    counted(scpus.into(), "SCPU"),
+                    if lanes == 1 { "one contact".to_owned() } else { format!("{lanes} contacts") }
                 )
             });
         }
@@ -221,6 +243,7 @@ impl Spec {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::config::Results;
 
     #[test]
     fn the_longest_interval_takes_what_comes() {
@@ -234,5 +257,28 @@ mod tests {
         assert_eq!([1, 10, 20, 60].map(|scpus| at_five(scpus).unused_scpus()), [const { None }; 4]);
         assert!(at_five(64).unused_scpus().is_some_and(|text| text.contains("60 of them")));
         assert_eq!([0.5, 0.3, 1.0, 1.1, 0.01].map(|rate| of(10, rate)), [20, 33, 10, 9, 64]);
+    }
+
+    #[test]
+    fn contacts_of_spheres_are_computed_side_by_side() {
+        let of = |contact, scpus, interval| {
+            let (input, results) = (Input::Spheres, Results::Hits);
+            Spec::from(Config { input, results, contact, scpus, interval, ..Config::default() })
+        };
+        let built = |(scpus, interval)| {
+            let spec = of(Fields::ALL, scpus, interval);
+            assert_eq!(spec.unused_scpus().is_none(), spec.scpus_in_turn(interval) == scpus);
+            (spec.contact_lanes(interval), spec.scpus_in_turn(interval))
+        };
+        let cases = [(1, 1), (2, 1), (3, 1), (1, 5), (5, 5), (9, 5), (10, 5), (64, 5), (64, 64)];
+        assert_eq!(cases.map(built), [(1, 1), (2, 2), (2, 2), (1, 1), (1, 5), (1, 5), (2, 10), (2, 10), (1, 64)]);
+        // A line has eight contacts of depth alone, and four hits come per cycle.
+        let depth: Fields = "depth".parse().expect("fields");
+        assert_eq!([1, 2, 3, 4, 8].map(|scpus| of(depth, scpus, 1).contact_lanes(1)), [1, 2, 2, 4, 4]);
+        let text = |spec: Spec| spec.unused_scpus().unwrap_or_default();
+        assert!(text(of(depth, 3, 1)).contains("2 of them compute 2 contacts per cycle"));
+        assert!(
+            text(of(depth, 3, 1)).ends_with("Use 2 or 4") && text(of(Fields::ALL, 9, 1)).ends_with("Use at most 2")
+        );
     }
 }

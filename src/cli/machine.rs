@@ -199,14 +199,18 @@ impl Machine {
 /// One AFU.
 #[derive(Args, Debug)]
 pub struct One {
-    /// Number of SCPUs (sphere collision processing units), 1 to 64 [default: 10]
+    /// Number of SCPUs (sphere collision processing units), 1 to 64 [default: 10; with --decide and for input
+    /// spheres 1]
+    ///
+    /// With --input spheres, N SCPUs at interval II compute N/II contacts per cycle: 2 per cycle at most with all
+    /// fields, which is a full line, and 4 with depth alone. Above 1 per cycle the rate is a power of two.
     #[arg(long, value_name = "N", help_heading = "The AFU")]
     pub scpus: Option<u32>,
     /// Initiation interval: an SCPU takes one pair per II cycles, 1 to 64, or auto [default: auto; for synth and
     /// paper 1]
     ///
     /// With a longer interval operations share operators: an SCPU is smaller, but its latency increases. `auto` is
-    /// the longest interval that keeps the AFU link-bound.
+    /// the longest interval that keeps the AFU link-bound; for input spheres it is 1.
     #[arg(long, value_name = "II", help_heading = "The AFU")]
     pub interval: Option<String>,
     #[command(flatten)]

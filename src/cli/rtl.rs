@@ -119,7 +119,7 @@ pub fn run(options: &Rtl) -> Result<(), Failure> {
     let (unit, number) = match config.input {
         Input::Direct if config.decide == 0 => ("SCPU", config.scpus),
         Input::Spheres if config.contact == Fields::HIT => ("decider", config.search.deciders),
-        _ => ("SCPU", config.scpus.min(config.interval)),
+        _ => ("SCPU", afu.spec().scpus_in_turn(config.interval)),
     };
     let article = if unit == "SCPU" { "an" } else { "a" };
     let text = format!(

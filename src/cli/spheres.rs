@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use contact_afu::afu::SearchModel;
+use contact_afu::afu::{PredictError, SearchModel};
 use contact_afu::config::{self, Config, Input, Profile, Results, Shell, TABLES};
 use contact_afu::pairs::check_name;
 use contact_afu::query::Fields;
@@ -52,7 +52,8 @@ pub struct Spheres {
     /// Predict how fast hardware of several sizes finds what touches; nothing else is written
     ///
     /// A model counts the cycles of `--input spheres` for each number of --lanes and --deciders, with a table that
-    /// holds the first set, at 200 MHz and behind a link that does not limit it.
+    /// holds the first set, at 200 MHz and behind a link that does not limit it. It counts those for numbers alone and,
+    /// with more fields of --contact, those for contacts by one and by two SCPUs at interval 1.
     #[arg(long, conflicts_with_all = ["out", "hits", "json"])]
     plan: bool,
     /// Arithmetic that decides: wide, exact, or eXfY with at least 10 exponent bits
@@ -125,6 +126,9 @@ pub(super) fn sorted(spheres: &[Sphere]) -> Vec<Sphere> {
 /// The lanes and the deciders that a plan compares.
 const PLANNED: [(u32, u32); 8] = [(16, 1), (16, 4), (32, 4), (64, 4), (64, 8), (128, 8), (256, 8), (256, 16)];
 
+/// The SCPUs behind them, each of which begins a contact per cycle.
+const PLANNED_SCPUS: [u32; 2] = [1, 2];
+
 fn plan(options: &Spheres, sets: &Sets) -> Result<(), Failure> {
     let table_of = sets.first.len().next_power_of_two().try_into().unwrap_or(u32::MAX).max(*TABLES.start());
     if table_of > *TABLES.end() {
@@ -132,29 +136,37 @@ fn plan(options: &Spheres, sets: &Sets) -> Result<(), Failure> {
             format!("{}: {} spheres; the largest table holds {}", options.source, sets.first.len(), TABLES.end());
         return Err(Failure::new(Kind::Usage, message));
     }
-    let config = |lanes, deciders| {
+    let config = |lanes, deciders, contact, scpus| {
         let search = config::Search { table: table_of, lanes, deciders, box_bits: options.box_bits };
         let base = Config { input: Input::Spheres, results: Results::Hits, shell: Shell::Line, ..Config::default() };
-        Config { profile: options.profile.clone(), contact: Fields::HIT, search, ..base }
+        Config { profile: options.profile.clone(), contact, scpus, interval: 1, search, ..base }
     };
-    let model = SearchModel::new(&config(16, 1), sets).map_err(|error| Failure::new(Kind::Usage, error.to_string()))?;
+    let failure = |error: PredictError| Failure::new(Kind::Usage, error.to_string());
+    let model = SearchModel::new(&config(16, 1, Fields::HIT, 1), sets).map_err(failure)?;
     let count = (sets.first.len() + sets.second.as_ref().map_or(0, Vec::len)).max(1) as f64;
     let mut rows = Vec::new();
     for (lanes, deciders) in PLANNED {
-        let config = config(lanes, deciders);
-        config.check()?;
-        let predicted = model.predict(&config).map_err(|error| Failure::new(Kind::Usage, error.to_string()))?;
-        let per_sphere = predicted.cycles as f64 / count;
-        rows.push(vec![
-            lanes.to_string(),
-            deciders.to_string(),
-            grouped(predicted.cycles),
-            format!("{per_sphere:.2}"),
-            format!("{:.1}", per_sphere * config.cycle_ns()),
-            predicted.slowest().to_owned(),
-        ]);
+        let predicted = |contact, scpus| {
+            let config = config(lanes, deciders, contact, scpus);
+            config.check()?;
+            let predicted = model.predict(&config).map_err(failure)?;
+            let ns = format!("{:.1}", predicted.cycles as f64 / count * config.cycle_ns());
+            Ok::<_, Failure>((predicted, ns))
+        };
+        let (numbers, ns) = predicted(Fields::HIT, 1)?;
+        let mut row = vec![lanes.to_string(), deciders.to_string(), grouped(numbers.cycles)];
+        row.extend([format!("{:.2}", numbers.cycles as f64 / count), ns, numbers.slowest().to_owned()]);
+        if options.contact != Fields::HIT {
+            for scpus in PLANNED_SCPUS {
+                row.push(predicted(options.contact, scpus)?.1);
+            }
+        }
+        rows.push(row);
     }
-    let head = ["lanes", "deciders", "cycles", "per sphere", "ns per sphere", "slowest stage"];
+    let mut head = vec!["lanes", "deciders", "cycles", "per sphere", "ns per sphere", "slowest stage"];
+    if options.contact != Fields::HIT {
+        head.extend(["contacts: ns, 1 SCPU", "2 SCPUs"]);
+    }
     let title = format!("{}: predicted, table of {}, 200 MHz", options.source, grouped(table_of.into()));
     output::show(&format!("{title}\n{}", table(&head, rows)), false)
 }

@@ -238,14 +238,19 @@ impl Config {
     /// because its default on the command line depends on SCPUs and link.
     pub fn flags(&self) -> Vec<String> {
         let default = Self::default();
+        // Input spheres has fields by default that are its own, and SCPUs behind deciders a number, so these are always
+        // named.
+        let contact = if self.input == Input::Spheres { String::new() } else { default.contact.to_string() };
+        let resolves = self.has_deciders() && self.contact != Fields::HIT;
+        let scpus = if resolves { String::new() } else { default.scpus.to_string() };
         let radius = |config: &Self| config.radius.map_or(String::new(), |radius| radius.to_string());
         let cut = |config: &Self| config.cut_mhz.map_or(String::new(), |clock| clock.to_string());
         let pairs = [
-            ("--scpus", self.scpus.to_string(), default.scpus.to_string()),
+            ("--scpus", self.scpus.to_string(), scpus),
             ("--interval", self.interval.to_string(), String::new()),
             ("--query", self.query.to_string(), default.query.to_string()),
             ("--profile", self.profile.to_string(), default.profile.to_string()),
-            ("--contact", self.contact.to_string(), default.contact.to_string()),
+            ("--contact", self.contact.to_string(), contact),
             ("--input", self.input.to_string(), default.input.to_string()),
             ("--table", self.search.table.to_string(), default.search.table.to_string()),
             ("--box-bits", self.search.box_bits.to_string(), default.search.box_bits.to_string()),
@@ -330,6 +335,10 @@ mod tests {
         assert_eq!(reached.flags(), ["--interval", "1", "--clock", "169.1", "--cut-for", "200"]);
         let far = Config { outstanding: 256, shell: Shell::Line, ..Config::default() };
         assert_eq!(far.flags(), ["--interval", "1", "--shell", "line", "--outstanding", "256"]);
+        let spheres = Config { input: Input::Spheres, results: Results::Hits, ..Config::default() };
+        let named =
+            ["--scpus", "10", "--interval", "1", "--contact", "hit,depth,normal,position", "--input", "spheres"];
+        assert_eq!(spheres.flags()[..8], named);
     }
 
     #[test]

@@ -66,19 +66,15 @@ fn every_link_gives_every_hit_in_order() {
 
 #[test]
 fn any_size_of_the_search_gives_the_same() {
-    let sets = [sorted(set("gas:1500:0.3")), set("gas:500:0.3"), tangents()];
+    // Where every pair touches, all rows that may be inside are, and most of them wait before the first stage.
+    let crowd = Spheres { first: vec![Sphere::new([1.0, 2.0, 3.0, 0.5]); 600], second: None };
+    let sets = [sorted(set("gas:1500:0.3")), set("gas:500:0.3"), tangents(), crowd];
     let mut found: Vec<Vec<_>> = vec![Vec::new(); sets.len()];
     for (lanes, deciders, box_bits) in [(16, 1, 24), (64, 8, 18), (256, 16, 32)] {
         let search = Search { table: 2048, lanes, deciders, box_bits };
         let config = config(search);
         let bench = Bench::new(&config).unwrap();
-        // The model's cycles are those of the RTL, to 3 %.
-        for set in [sorted(set("gas:2000:0.3")), sorted(set("diamond:11")), set("probes:2000:2000")] {
-            let verdict = run(&bench, &set, "ideal", 1).unwrap();
-            let model = SearchModel::new(&config, &set).unwrap().predict(&config).unwrap();
-            let ratio = model.cycles as f64 / verdict.outcome.cycles as f64;
-            assert!((ratio - 1.0).abs() < 0.03, "{search:?}: {} cycles, predicted {model:?}", verdict.outcome.cycles);
-        }
+        cycles_are_predicted(&bench, &config);
         for (spheres, found) in sets.iter().zip(&mut found) {
             let verdict = run(&bench, spheres, "hostile", 2).unwrap();
             assert!(verdict.is_good(), "{search:?}: {:?}", verdict.failed_checks);
@@ -87,6 +83,18 @@ fn any_size_of_the_search_gives_the_same() {
     }
     for found in found {
         assert!(!found[0].is_empty() && found.iter().all(|hits| *hits == found[0]));
+    }
+}
+
+/// The model's cycles are those of the RTL, to 3 %.
+fn cycles_are_predicted(bench: &Bench, config: &Config) {
+    for set in [sorted(set("gas:2000:0.3")), sorted(set("diamond:11")), set("probes:2000:2000")] {
+        let verdict = run(bench, &set, "ideal", 1).unwrap();
+        assert!(verdict.is_good(), "{:?}: {:?}", config.search, verdict.failed_checks);
+        let model = SearchModel::new(config, &set).unwrap().predict(config).unwrap();
+        let ratio = model.cycles as f64 / verdict.outcome.cycles as f64;
+        let (search, cycles) = (config.search, verdict.outcome.cycles);
+        assert!((ratio - 1.0).abs() < 0.03, "{search:?}: {cycles} cycles, predicted {model:?}");
     }
 }
 
@@ -105,10 +113,13 @@ fn with_contacts(search: Search, scpus: u32, interval: u32) -> Config {
 #[test]
 fn contacts_come_with_all_their_fields() {
     let search = Search { table: 2048, lanes: 64, deciders: 8, ..Search::default() };
-    for (search, scpus, interval) in [(search, 1, 1), (Search { lanes: 16, ..search }, 2, 5)] {
-        let bench = Bench::new(&with_contacts(search, scpus, interval)).unwrap();
+    let two_per_cycle = Search { lanes: 256, deciders: 16, ..search };
+    for (search, scpus, interval) in [(search, 1, 1), (Search { lanes: 16, ..search }, 2, 5), (two_per_cycle, 2, 1)] {
+        let config = with_contacts(search, scpus, interval);
+        let bench = Bench::new(&config).unwrap();
+        cycles_are_predicted(&bench, &config);
         let crowd = Spheres { first: vec![Sphere::new([1.0, 2.0, 3.0, 0.5]); 50], second: None };
-        for link in ["ideal", "hostile"] {
+        for link in LinkModel::PRESETS {
             for spheres in [&sorted(set("gas:700:0.3")), &set("probes:100:300"), &tangents(), &crowd] {
                 let verdict = run(&bench, spheres, link, 4).unwrap();
                 assert!(verdict.is_good(), "{link}: {:?}", verdict.failed_checks);
@@ -163,12 +174,33 @@ const FAULTS_OF_CONTACTS: [(&str, &str, &str, &str); 2] = [
     ),
 ];
 
-/// Each fault is found in one of four jobs, by the hits, by the counts, or because the job does not end.
+/// The same with two SCPUs side by side, and with two rows that are compared at once.
+const FAULTS_OF_TWO: [(&str, &str, &str, &str); 2] = [
+    (
+        "lanes are exchanged",
+        "contact_afu.v",
+        ".numbers         (waiting_hits_record_0)",
+        ".numbers         (waiting_hits_record_1)",
+    ),
+    (
+        "rows end before their hits have left",
+        "contact_afu_waiting_hits.v",
+        "rows_until = ",
+        "rows_until = 1'b1 ? rows_came : ",
+    ),
+];
+const FAULTS_OF_TWO_ROWS: [(&str, &str, &str, &str); 1] =
+    [("the even row instead of the odd one", "contact_afu_candidates.v", "is_odd_row = ", "is_odd_row = 1'b0 & ")];
+
+/// Each fault is found in one of four jobs over one of two links, by the hits, by the counts, or because the job does
+/// not end.
 #[test]
 fn planted_faults_are_found() {
     let search = Search { table: 512, lanes: 16, deciders: 2, box_bits: 32 };
     found(&config(search), &FAULTS);
     found(&with_contacts(search, 1, 4), &FAULTS_OF_CONTACTS);
+    found(&with_contacts(search, 2, 1), &FAULTS_OF_TWO);
+    found(&config(Search { lanes: 128, ..search }), &FAULTS_OF_TWO_ROWS);
 }
 
 fn found(config: &Config, faults: &[(&str, &str, &str, &str)]) {
@@ -184,7 +216,9 @@ fn found(config: &Config, faults: &[(&str, &str, &str, &str)]) {
         }
         plant(&folder.path().join(file), old, new);
         let bench = Bench::of_folder(folder.path(), None, Trace::Off).unwrap();
-        let is_found = sets.iter().any(|spheres| run(&bench, spheres, "ideal", 1).map_or(true, |v| !v.is_good()));
+        let jobs = ["ideal", "hostile"].into_iter().flat_map(|link| sets.iter().map(move |spheres| (spheres, link)));
+        let is_found =
+            jobs.into_iter().any(|(spheres, link)| run(&bench, spheres, link, 1).map_or(true, |v| !v.is_good()));
         assert!(is_found, "{what}: {file}");
     }
 }

@@ -8,7 +8,7 @@ use super::bounds::{CYCLES_TO_MEET, meet};
 use super::nth::{count_up_to_slices, cycles_to_count, cycles_to_nth, nth};
 use super::store::{CYCLES_TO_WORD, Store};
 use super::walk::{Item, walk};
-use super::{KEPT_ROWS, ROW, ROW_BITS, ROW_NUMBER_BITS, SLACK, Sizes};
+use super::{ROW, ROW_BITS, ROW_NUMBER_BITS, SLACK, Sizes};
 use crate::afu::counter::later;
 use crate::afu::{COUNT_BITS, Spec};
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
@@ -28,17 +28,29 @@ pub(super) fn candidates(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, Buil
     let start = graph.input("start", 1);
     let run = graph.input("run", 1);
     let may_step = graph.input("may_step", 1);
-    let near = graph.input("item_near", ROW);
+    let sides = sizes.near_rows;
+    let other_bits = sizes.row_bits - sides.ilog2();
+    let near = graph.input("item_near", sides * ROW);
     let row = graph.input("item_row", ROW_NUMBER_BITS);
-    let other = graph.input("item_other", sizes.row_bits);
+    let other = graph.input("item_other", other_bits);
     let last = graph.input("item_last", 1);
     let item = Item {
         valid: graph.input("item_valid", 1),
-        mask: graph.input("item_mask", sizes.turns()),
+        mask: graph.input("item_mask", sides * sizes.turns()),
         about: Signal::join(&[near, row, other, last]),
     };
     let walk = walk(&graph, start, &item, may_step);
-    let near = walk.about.high(ROW).named("near_spheres");
+    let near = walk.about.high(sides * ROW);
+    let other = walk.about.slice(1, other_bits);
+    // Of two other rows, one after the other.
+    let (near, other, turn_bit) = if sides == 1 {
+        (near, other, walk.bit)
+    } else {
+        let turns = sizes.turns();
+        let is_odd = walk.bit.high(turns).any().named("is_odd_row");
+        (is_odd.select(near.high(ROW), near.low(ROW)), other.concat(is_odd), walk.bit.high(turns) | walk.bit.low(turns))
+    };
+    let near = near.named("near_spheres");
 
     // The places of the next spheres; all of a row stand side by side if so many are compared.
     let is_row = sizes.places_bits() == 0;
@@ -47,7 +59,7 @@ pub(super) fn candidates(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, Buil
     let places = if is_row {
         (0..ROW).map(|place| graph.constant(ROW_BITS, place.into())).collect()
     } else {
-        let turn = if sizes.turns() > 1 { number(walk.bit) } else { graph.constant(1, 0) };
+        let turn = if sizes.turns() > 1 { number(turn_bit) } else { graph.constant(1, 0) };
         let lanes = compared.ilog2();
         let ranks: Vec<_> = (0..compared)
             .map(|lane| if lanes == 0 { turn } else { turn.concat(graph.constant(lanes, lane.into())) })
@@ -55,7 +67,7 @@ pub(super) fn candidates(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, Buil
         nth(&graph, "near", near, &[], &ranks)?
     };
     let near_count = count_up_to_slices("near_now", near)[0];
-    let turn = walk.bit.delay(cycles_to_count(1)).named("turn_counted");
+    let turn = turn_bit.delay(cycles_to_count(1)).named("turn_counted");
     let are_near: Vec<_> = (0..compared)
         .map(|lane| {
             if is_row {
@@ -70,11 +82,11 @@ pub(super) fn candidates(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, Buil
             there.delay(cycles - cycles_to_count(1)).named(&format!("is_near_{lane}"))
         })
         .collect();
-    let other = walk.about.slice(1, sizes.row_bits).delay(cycles_to_places).named("other_row");
-    let row = walk.about.slice(1 + sizes.row_bits, ROW_NUMBER_BITS).delay(cycles_to_places).named("row_in_hand");
+    let other = other.delay(cycles_to_places).named("other_row");
+    let row = walk.about.slice(1 + other_bits, ROW_NUMBER_BITS).delay(cycles_to_places).named("row_in_hand");
 
     // The boxes of these spheres: a memory for each.
-    let kept = KEPT_ROWS.ilog2();
+    let kept = sizes.kept_bits;
     let column = graph.input("write_column", sizes.loaded_bits());
     let write_own = graph.input("write_own", 1);
     let write_row = graph.input("write_row", ROW_NUMBER_BITS);

@@ -7,7 +7,7 @@ use super::bits::{number, place_of};
 use super::bounds::SPHERE_BITS;
 use super::store::{CYCLES_TO_WORD, Store};
 use super::walk::{Item, walk};
-use super::{KEPT_ROWS, SLACK, Sizes};
+use super::{SLACK, Sizes};
 use crate::afu::Spec;
 use crate::afu::counter::later;
 use crate::afu::queue::queue;
@@ -23,7 +23,7 @@ pub(super) fn decider(spec: &Spec, sizes: &Sizes, kernel: &Arc<Module>) -> Resul
     graph.about("decides which candidates touch: those with the columns of this decider");
     let (share_bits, column_bits, places_bits) = (sizes.share(), sizes.column_bits(), sizes.places_bits());
     let start = graph.input("start", 1);
-    let kept_bits = KEPT_ROWS.ilog2();
+    let kept_bits = sizes.kept_bits;
     let put = graph.input("put", 1);
     let share = graph.input("share", share_bits);
     let kept = graph.input("kept", kept_bits);

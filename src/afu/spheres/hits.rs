@@ -13,7 +13,7 @@ use crate::afu::queue::queue;
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
 /// Numbers of hits that leave in a cycle, at most.
-pub(super) const LANES: u32 = 4;
+pub(in crate::afu) const HIT_LANES: u32 = 4;
 /// Cycles from a step of hits to their numbers, for so many spheres that are compared side by side.
 pub(super) const fn cycles_to_numbers(compared: u32) -> u32 {
     cycles_to_nth(compared) + 3

@@ -69,7 +69,7 @@ pub(super) fn level(spec: &Spec, sizes: &Sizes, level: Level) -> Result<Arc<Modu
     let write_word = graph.input("write_word", index_bits);
     let write_box = graph.input("write_box", sizes.box_bits());
     let row = walk.about.high(ROW_NUMBER_BITS).named("row_in_hand");
-    let query = kept_boxes(&graph, spec, "query", row)?;
+    let query = kept_boxes(&graph, spec, sizes, "query", row)?;
     let mut meets = Vec::new();
     for column in 0..ROW {
         let name = format!("column_{column}");

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::bits::{chosen, count as number_of};
 use super::bounds::{SPHERE_BITS, sphere_box};
-use super::{KEPT_ROWS, ROW_BITS, ROW_NUMBER_BITS, Sizes};
+use super::{ROW_BITS, ROW_NUMBER_BITS, Sizes};
 use crate::afu::counter::later;
 use crate::afu::counter::{up_down, waiting};
 use crate::afu::lines::CYCLES_TO_WORD;
@@ -44,7 +44,7 @@ pub(super) fn loader(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, BuildErr
     let any_left = left.any().named("any_left");
     let searched = (!has_others | *second).named("is_searched");
     // A row that is searched needs a place among the rows that are kept.
-    let inside_bits = KEPT_ROWS.ilog2() + 1;
+    let inside_bits = sizes.kept_bits + 1;
     let inside = graph.register("rows_inside", inside_bits, 0);
     let may_begin = !searched | !inside.msb();
     let goes = (run & *line_waits & any_left & (column.any() | may_begin)).named("goes");

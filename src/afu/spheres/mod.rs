@@ -22,9 +22,11 @@ mod store;
 #[cfg(test)]
 mod tests;
 mod top;
+mod waiting;
 mod walk;
 
 pub(super) use bounds::SPHERE_BITS;
+pub(super) use hits::HIT_LANES;
 pub use model::{PredictError, Predicted, SearchModel};
 pub(super) use top::spheres_top;
 
@@ -40,8 +42,6 @@ const ROW_BITS: u32 = ROW.ilog2();
 const NUMBER_BITS: u32 = 16;
 /// Bits of the number of a row.
 const ROW_NUMBER_BITS: u32 = NUMBER_BITS - ROW_BITS;
-/// Rows that are searched or wait for it, at most: their spheres are kept beside the deciders.
-const KEPT_ROWS: u32 = 16;
 /// Words of a queue between two stages of the search.
 const QUEUE: u32 = 16;
 /// Words of a queue before a stage whose steps find little for some items and much for others.
@@ -64,6 +64,11 @@ struct Sizes {
     deciders: u32,
     /// Spheres that are loaded in a cycle, side by side: 1 or 2.
     loaded: u32,
+    /// Bits of the number of a row among those that are searched or wait for it, whose spheres are kept beside the
+    /// deciders: 16 rows or, where rows leave so fast that 16 would not fill all stages, 32.
+    kept_bits: u32,
+    /// Rows that each sphere of the row that is searched is compared with in a cycle, side by side: 1 or 2.
+    near_rows: u32,
     /// Steps of the last comparison whose decisions are not joined yet, at most. So many even out how many candidates
     /// the deciders get.
     undecided: u32,
@@ -71,6 +76,9 @@ struct Sizes {
 
 /// With so many lanes, two spheres are loaded in a cycle.
 const LANES_FOR_TWO: u32 = 64;
+/// With so many lanes, spheres are compared with the boxes of two rows in a cycle, and more rows are searched at the
+/// same time. Fewer lanes are slower by themselves.
+const LANES_FOR_TWO_ROWS: u32 = 128;
 /// Least and most steps that are not decided. A decision takes some 35 cycles.
 const UNDECIDED: std::ops::RangeInclusive<u32> = 64..=256;
 
@@ -78,6 +86,7 @@ impl Sizes {
     fn of(config: &Config) -> Result<Self, RefusedArithmetic> {
         let rule = BoundsRule::new(config.profile.arithmetic(), config.search.box_bits)?;
         let above = |bits: u32| bits.saturating_sub(ROW_BITS).max(1);
+        let is_fast = config.search.lanes >= LANES_FOR_TWO_ROWS;
         // There are at least two groups.
         let group_bits = above(config.search.table.ilog2() - ROW_BITS);
         Ok(Self {
@@ -89,8 +98,15 @@ impl Sizes {
             deciders: config.search.deciders,
             // Few lanes are slower than one sphere per cycle, and one decider has the spheres of all columns.
             loaded: if config.search.lanes >= LANES_FOR_TWO && config.search.deciders > 1 { 2 } else { 1 },
+            kept_bits: if is_fast { 5 } else { 4 },
+            near_rows: if is_fast { 2 } else { 1 },
             undecided: (4 * config.search.lanes).clamp(*UNDECIDED.start(), *UNDECIDED.end()),
         })
+    }
+
+    /// Rows that are searched or wait for it, at most.
+    fn kept_rows(&self) -> u32 {
+        1 << self.kept_bits
     }
 
     /// Bits of a box.

@@ -5,10 +5,12 @@
 
 use std::collections::{HashMap, VecDeque};
 
-use super::hits::LANES;
-use super::{KEPT_ROWS, LONG_QUEUE, QUEUE, ROW, SLACK, Sizes};
+use super::hits::{HIT_LANES, cycles_to_numbers};
+use super::waiting::{PLACES, hits_on_the_way};
+use super::{LONG_QUEUE, QUEUE, ROW, SLACK, Sizes};
 use crate::afu::Spec;
-use crate::afu::generate::decision;
+use crate::afu::generate::{decision, kernel};
+use crate::afu::resolver;
 use crate::config::{self, Config};
 use crate::hdl::BuildErrors;
 use crate::kernel::EngineError;
@@ -149,10 +151,10 @@ impl SearchModel {
     pub fn predict(&self, config: &Config) -> Result<Predicted, PredictError> {
         let search = config::Search { box_bits: self.box_bits, ..config.search };
         let sizes = Sizes::of(&Config { search, ..config.clone() })?;
-        let decision = decision(&Spec::from(config.clone()), false)?.latency;
+        let spec = Spec::from(config.clone());
+        let decision = decision(&spec, false)?.latency;
         let rows = self.rows.iter().enumerate().map(|(row, trace)| item(&sizes, row, trace, &self.hits)).collect();
-        let lanes = if config.contact == Fields::HIT { LANES.into() } else { 1 };
-        Ok(run(&sizes, self.before, rows, lanes, decision.into()))
+        Ok(run(&sizes, self.before, rows, Takers::of(&spec, &sizes)?, decision.into()))
     }
 }
 
@@ -169,13 +171,18 @@ fn item(sizes: &Sizes, row: usize, trace: &RowTrace, hits: &Hits) -> Item {
             let is_asked = share.iter().any(|candidates| *candidates > 0);
             is_asked.then(|| Item { decided: Some((share, found)), ..Item::default() })
         };
-        let steps: Vec<_> = member.near.chunks(sizes.compared as usize).map(step).collect();
-        (!steps.is_empty()).then(|| Item { steps, ..Item::default() })
+        member.near.chunks(sizes.compared as usize).map(step).collect::<Vec<_>>()
     };
     let word = |word: usize| {
         let groups = trace.met.iter().filter(|group| group.number / ROW as usize == word);
         let step = |group: &GroupTrace| {
-            let steps: Vec<_> = group.met.iter().map(members).collect();
+            let together = |member: &MemberTrace| member.number / sizes.near_rows as usize;
+            let sides = group.met.chunk_by(|one, other| together(one) == together(other));
+            let side_by_side = |rows: &[MemberTrace]| {
+                let steps: Vec<_> = rows.iter().flat_map(members).collect();
+                (!steps.is_empty()).then(|| Item { steps, ..Item::default() })
+            };
+            let steps: Vec<_> = sides.map(side_by_side).collect();
             (!steps.is_empty()).then(|| Item { steps, ..Item::default() })
         };
         let steps: Vec<_> = groups.map(step).collect();
@@ -201,12 +208,91 @@ fn end(sizes: &Sizes, item: &mut Item, stage: usize) {
     }
 }
 
+/// What takes the hits: lines for numbers alone, or SCPUs.
+#[derive(Debug)]
+struct Takers {
+    /// Hits that leave the stage before in a cycle, at most.
+    lanes: u64,
+    /// SCPUs side by side; none for numbers alone.
+    side_by_side: u64,
+    /// They take hits in the first so many cycles of each interval.
+    units: u64,
+    interval: u64,
+    /// Cycles from a hit to its contact, and from its step to where it waits.
+    latency: u64,
+    to_place: u64,
+    /// Hits that may wait before the stage before is stopped.
+    most: u64,
+    /// Hits that wait: the cycle from which they do, how many, and whether their row ends.
+    waiting: VecDeque<(u64, u64, bool)>,
+    /// Cycles in which SCPUs take hits.
+    busy: u64,
+}
+
+impl Takers {
+    fn of(spec: &Spec, sizes: &Sizes) -> Result<Self, BuildErrors> {
+        let is_resolved = spec.config.contact != Fields::HIT;
+        let (side_by_side, units) = if is_resolved { (resolver::lanes(spec), resolver::units(spec)) } else { (0, 1) };
+        let latency = if is_resolved { kernel(spec)?.latency } else { 0 };
+        Ok(Self {
+            lanes: if side_by_side == 1 { 1 } else { HIT_LANES.into() },
+            side_by_side: side_by_side.into(),
+            units: units.into(),
+            interval: if is_resolved { spec.config.interval.max(1).into() } else { 1 },
+            latency: latency.into(),
+            to_place: cycles_to_numbers(sizes.compared).into(),
+            most: (PLACES - hits_on_the_way(sizes.compared)).into(),
+            waiting: VecDeque::new(),
+            busy: 0,
+        })
+    }
+
+    /// Whether hits may leave the stage before.
+    fn may_come(&self, now: u64) -> bool {
+        let there = self.waiting.iter().filter(|(cycle, ..)| *cycle <= now);
+        let has_turn = self.side_by_side > 1 || now % self.interval < self.units;
+        has_turn && there.map(|(_, hits, _)| hits).sum::<u64>() < self.most
+    }
+
+    /// Some hits come. Returns the number of rows that end at once.
+    fn put(&mut self, now: u64, hits: u64, ends_row: bool) -> usize {
+        if self.side_by_side > 1 {
+            self.waiting.push_back((now + self.to_place, hits, ends_row));
+            return 0;
+        }
+        self.busy += u64::from(hits > 0);
+        usize::from(ends_row)
+    }
+
+    /// A cycle of SCPUs side by side. Returns the number of rows that end.
+    fn cycle(&mut self, now: u64) -> usize {
+        let mut free = if now % self.interval < self.units { self.side_by_side } else { 0 };
+        let mut rows = 0;
+        let before = free;
+        while let Some((cycle, hits, ends_row)) = self.waiting.front_mut() {
+            let taken = free.min(*hits);
+            if *cycle > now {
+                break;
+            }
+            *hits -= taken;
+            free -= taken;
+            if *hits > 0 {
+                break;
+            }
+            rows += usize::from(*ends_row);
+            self.waiting.pop_front();
+        }
+        self.busy += u64::from(free < before);
+        rows
+    }
+}
+
 /// The stages before the deciders, and the queue before each.
 const STAGES: [(&str, u32); 4] =
     [("groups", QUEUE), ("rows of groups", QUEUE), ("near", LONG_QUEUE), ("box by box", LONG_QUEUE)];
 
 /// Runs rows through all stages, behind so many rows that are loaded alone.
-fn run(sizes: &Sizes, before: u64, rows: Vec<Item>, lanes: u64, decision: u64) -> Predicted {
+fn run(sizes: &Sizes, before: u64, rows: Vec<Item>, mut takers: Takers, decision: u64) -> Predicted {
     let room = |inside: usize, depth: u32| inside < (depth - SLACK - 1) as usize;
     let (count, per_row) = (rows.len(), u64::from(ROW / sizes.loaded));
     let mut rows = rows.into_iter();
@@ -224,7 +310,7 @@ fn run(sizes: &Sizes, before: u64, rows: Vec<Item>, lanes: u64, decision: u64) -
     while ended < count {
         now += 1;
         // The loader: a row begins only where it can be kept.
-        if loading > 0 || (begun < count && begun - ended < KEPT_ROWS as usize) {
+        if loading > 0 || (begun < count && begun - ended < sizes.kept_rows() as usize) {
             begun += usize::from(loading == 0);
             loading += 1;
             if loading == per_row {
@@ -265,11 +351,15 @@ fn run(sizes: &Sizes, before: u64, rows: Vec<Item>, lanes: u64, decision: u64) -
             }
         }
         // Hits of the step in hand leave, and a row ends with its last ones.
-        if let Some((left, ends_row)) = &mut leaving {
-            *left -= 1;
+        ended += takers.cycle(now);
+        if let Some((left, ends_row)) = &mut leaving
+            && takers.may_come(now)
+        {
+            let hits = takers.lanes.min(*left);
+            *left -= hits;
             leave_steps += 1;
+            ended += takers.put(now, hits, *ends_row && *left == 0);
             if *left == 0 {
-                ended += usize::from(*ends_row);
                 leaving = None;
             }
         }
@@ -288,7 +378,7 @@ fn run(sizes: &Sizes, before: u64, rows: Vec<Item>, lanes: u64, decision: u64) -
                 answers.remove(&(number, decider));
             }
             if hits > 0 || ends_row {
-                joined.push_back((hits.div_ceil(lanes).max(1), ends_row));
+                joined.push_back((hits, ends_row));
             }
         }
     }
@@ -296,5 +386,8 @@ fn run(sizes: &Sizes, before: u64, rows: Vec<Item>, lanes: u64, decision: u64) -
     told.insert(0, ("loader", (before + count as u64) * per_row));
     told.push(("deciders", decided / u64::from(sizes.deciders)));
     told.push(("hits", leave_steps));
-    Predicted { cycles: now + CYCLES_TO_END, stages: told }
+    if takers.side_by_side > 0 {
+        told.push(("SCPUs", takers.busy));
+    }
+    Predicted { cycles: now + CYCLES_TO_END + takers.latency, stages: told }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::bounds::SPHERE_BITS;
 use super::store::Store;
-use super::{KEPT_ROWS, NUMBER_BITS, ROW_BITS, Sizes};
+use super::{NUMBER_BITS, ROW_BITS, Sizes};
 use crate::afu::Spec;
 use crate::afu::resolver::resolve;
 use crate::hdl::{BuildErrors, Graph, Module};
@@ -30,7 +30,7 @@ pub(super) fn resolver(
     let column = graph.input("write_column", sizes.loaded_bits());
     let mut both = Vec::new();
     for (name, number, row_bits) in
-        [("table", numbers.low(NUMBER_BITS), sizes.row_bits), ("kept", numbers.high(NUMBER_BITS), KEPT_ROWS.ilog2())]
+        [("table", numbers.low(NUMBER_BITS), sizes.row_bits), ("kept", numbers.high(NUMBER_BITS), sizes.kept_bits)]
     {
         let write = graph.input(&format!("write_{name}"), 1);
         let write_place = graph.input(&format!("write_{name}_row"), row_bits).concat(column);

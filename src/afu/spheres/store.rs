@@ -1,7 +1,7 @@
 //! Memories of the search, each a word two cycles after its place: in look-up tables if it is shallow, otherwise in
 //! block memory.
 
-use super::{KEPT_ROWS, ROW_NUMBER_BITS};
+use super::{ROW_NUMBER_BITS, Sizes};
 use crate::afu::Spec;
 use crate::afu::lines::{self, Access, line_memory};
 use crate::hdl::{BuildErrors, Graph, Signal};
@@ -16,14 +16,14 @@ const DEEPEST_IN_TABLES: u32 = 64;
 pub(super) fn kept_boxes<'g>(
     graph: &'g Graph,
     spec: &Spec,
+    sizes: &Sizes,
     name: &str,
     row: Signal<'g>,
 ) -> Result<Signal<'g>, BuildErrors> {
-    let kept = KEPT_ROWS.ilog2();
-    let bits = 6 * spec.config.search.box_bits;
+    let kept = sizes.kept_bits;
     let write = graph.input(&format!("write_{name}"), 1);
     let write_row = graph.input(&format!("write_{name}_row"), ROW_NUMBER_BITS).low(kept);
-    let bounds = graph.input(&format!("write_{name}_box"), bits);
+    let bounds = graph.input(&format!("write_{name}_box"), sizes.box_bits());
     Store::new(spec, kept).column(graph, &format!("{name}_boxes"), [write, write_row, bounds], row.low(kept))
 }
 

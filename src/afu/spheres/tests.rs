@@ -223,6 +223,10 @@ fn contacts_are_resolved_in_the_order_of_their_hits() {
         ("normal", 16, 1, 1, 4),
         ("depth", 32, 4, 2, 2),
         ("hit,depth,normal,position", 256, 16, 2, 5),
+        // Two and four side by side; of these SCPUs two, and one, are not built.
+        ("hit,depth,normal,position", 16, 4, 2, 1),
+        ("depth,normal", 128, 8, 12, 5),
+        ("depth", 64, 8, 5, 1),
     ] {
         let config = Config {
             contact: contact.parse().expect("fields"),
@@ -319,7 +323,7 @@ fn slow_writes_hold_everything_back_and_lose_nothing() {
     let config = config(Sizes { table: 512, lanes: 256, deciders: 16, ..Sizes::default() });
     let mut bench = Bench::new(&config);
     let set = vec![Sphere::new([1.0, 2.0, 3.0, 0.5]); 150];
-    for pace in [1, 7, 40] {
+    for pace in [40, 7, 1] {
         bench.write_pace = pace;
         check(&mut bench, &config, &set, None);
     }
@@ -330,6 +334,16 @@ fn slow_writes_hold_everything_back_and_lose_nothing() {
     bench.waits = ["group_rows", "near", "box_pairs", "hits"].map(|stage| (stage, 0)).to_vec();
     check(&mut bench, &config, &[Sphere::new([1.0, 2.0, 3.0, 0.5]); 512], None);
     assert!(bench.waits.iter().all(|(_, cycles)| *cycles > 100), "{:?}", bench.waits);
+    // With two SCPUs, hits wait for these, and rows for their hits. With many lanes, 32 rows wait.
+    let config =
+        Config { contact: Fields::ALL, scpus: 2, ..self::config(Sizes { lanes: 256, deciders: 16, ..config.search }) };
+    let mut bench = Bench { write_pace: 40, ..Bench::new(&config) };
+    bench.waits = vec![("hits", 0)];
+    let apart = |place: usize| Sphere::new([(place / 3) as f32, 0.0, 0.0, 0.5]);
+    for set in [(0..512).map(apart).collect(), vec![Sphere::new([1.0, 2.0, 3.0, 0.5]); 100]] {
+        check(&mut bench, &config, &set, None);
+    }
+    assert!(bench.waits[0].1 > 100, "{:?}", bench.waits);
 }
 
 /// Whenever a job is aborted or the AFU is reset, the next job is right.

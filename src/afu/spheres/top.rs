@@ -5,10 +5,12 @@ use std::sync::Arc;
 use super::between::{Parts, named, parts, stage_queue, word_of};
 use super::level::{Level, level};
 use super::resolver::resolver;
-use super::{KEPT_ROWS, LONG_QUEUE, QUEUE, ROW, ROW_BITS, Sizes, candidates, decider, hits, loader, near, rows};
+use super::waiting::waiting_hits;
+use super::{LONG_QUEUE, QUEUE, ROW, ROW_BITS, Sizes, candidates, decider, hits, loader, near, rows};
 use crate::afu::control::control;
 use crate::afu::port::{JobInputs, JobOutputs, ReadInputs, ReadOutputs, WriteInputs, WriteOutputs, outputs};
 use crate::afu::{Spec, collector, dispatcher, packer, resolver};
+use crate::count::counted;
 use crate::hdl::{BuildErrors, Error, Graph, Module, Signal};
 use crate::record::Capability;
 
@@ -24,6 +26,16 @@ pub(in crate::afu) fn spheres_top(
 ) -> Result<Arc<Module>, BuildErrors> {
     let graph = Graph::new("contact_afu");
     graph.about("collision-detection accelerator: spheres in, the numbers of those that touch out");
+    let side_by_side = resolver::lanes(spec);
+    if scpu.is_some() {
+        let units = side_by_side * resolver::units(spec);
+        let per = match spec.config.interval {
+            0 | 1 => "cycle".to_owned(),
+            interval => format!("{interval} cycles"),
+        };
+        graph
+            .about(format!("contacts are computed by {}: {units} every {per}, at most", counted(units.into(), "SCPU")));
+    }
     let sizes = Sizes::of(&spec.config).map_err(|refused| {
         let place = std::panic::Location::caller();
         BuildErrors(vec![Error { module: "contact_afu".to_owned(), message: refused.to_string(), place }])
@@ -110,7 +122,7 @@ pub(in crate::afu) fn spheres_top(
     let words = stage_queue(
         &graph,
         start,
-        ("row_queue", QUEUE),
+        ("row_queue", sizes.kept_rows()),
         rows.output("launches"),
         &[rows.output("launched_row"), rows.output("words"), one],
         groups_takes,
@@ -214,7 +226,7 @@ pub(in crate::afu) fn spheres_top(
         candidates_take,
     )?;
     near_may.drive(queue_of_near.output("has_room"));
-    let item = Parts::new(&queue_of_near, sizes.turns());
+    let item = Parts::new(&queue_of_near, sizes.near_rows * sizes.turns());
     let mut inputs = vec![
         ("start", start),
         ("run", run),
@@ -231,8 +243,9 @@ pub(in crate::afu) fn spheres_top(
     ];
     let table_boxes = each("box", "write_box");
     inputs.extend(named(&table_boxes));
-    inputs.extend(item.place.map(|place| ("item_other", place.drop_low(ROW))));
-    inputs.extend(item.place.map(|place| ("item_near", place.low(ROW))));
+    let near_bits = sizes.near_rows * ROW;
+    inputs.extend(item.place.map(|place| ("item_other", place.drop_low(near_bits))));
+    inputs.extend(item.place.map(|place| ("item_near", place.low(near_bits))));
     let candidates = graph.instance("box_pairs", &candidates::candidates(spec, &sizes)?, &inputs);
     candidates_take.drive(candidates.output("takes"));
     let put = candidates.output("put");
@@ -245,11 +258,11 @@ pub(in crate::afu) fn spheres_top(
     let decider = decider::decider(spec, &sizes, kernel)?;
     // Numbers go into lines as soon as there is room; contacts wait for it behind their SCPU.
     let line_has_room = (accepts & run).registered("line_has_room");
-    let (_, may_resolve) = wire("may_resolve", 1);
+    let (_, hits_may_leave) = wire("hits_may_leave", 1);
     let mut hits_inputs = vec![
         ("start", begin("hits")),
         ("run", run),
-        ("may_leave", if scpu.is_some() { may_resolve } else { line_has_room }),
+        ("may_leave", if scpu.is_some() { hits_may_leave } else { line_has_room }),
         ("put", put),
         ("own_row", own_row),
         ("row", candidates.output("other")),
@@ -259,7 +272,7 @@ pub(in crate::afu) fn spheres_top(
     hits_inputs.extend(places);
     let (asks, valids, answers) = (names("asks"), names("answer_valid"), names("answer"));
     let spheres = each("sphere", "write_sphere");
-    let kept_bits = KEPT_ROWS.ilog2();
+    let kept_bits = sizes.kept_bits;
     let column_low = sizes.deciders.ilog2();
     for number in 0..sizes.deciders {
         let index = number as usize;
@@ -291,45 +304,71 @@ pub(in crate::afu) fn spheres_top(
         hits_inputs.push((&valids[index], unit.output("answer_valid")));
         hits_inputs.push((&answers[index], unit.output("answer")));
     }
-    let lanes = if scpu.is_some() { 1 } else { hits::LANES };
+    // Behind SCPUs that take one hit per cycle, or none, there is nothing to be joined.
+    let lanes = if scpu.is_some() && side_by_side == 1 { 1 } else { hits::HIT_LANES };
     let hits = graph.instance("hits", &hits::hits(&sizes, lanes)?, &hits_inputs);
     for (take, name) in takes.into_iter().zip(names("take_answer")) {
         take.drive(hits.output(&name));
     }
     has_room.drive(hits.output("has_room"));
-    row_ends.drive(hits.output("row_ends"));
-
-    // The contacts, in the order of their hits.
-    let to_numbers = hits::cycles_to_numbers(sizes.compared);
-    let lines = scpu.map_or(LINES, |scpu| resolver::lines(spec, scpu, to_numbers));
+    let records: Vec<_> = (0..hits::HIT_LANES).map(|lane| format!("record_{lane}")).collect();
     let mut packer_inputs = vec![("start", begin("packer"))];
-    let records: Vec<_> = (0..lanes).map(|lane| format!("record_{lane}")).collect();
+    let mut lines = LINES;
     if let Some(scpu) = scpu {
-        let mut inputs = vec![
-            ("start", begin("hits")),
-            ("carries", hits.output("carries")),
-            ("numbers", hits.output("record_0")),
-            ("write_column", column),
-            ("write_table", write_table),
-            ("write_table_row", table_row),
-            ("write_kept", write_own),
-            ("write_kept_row", row.low(kept_bits)),
-        ];
-        inputs.extend(named(&spheres));
-        let resolver = graph.instance("resolver", &resolver(spec, &sizes, scpu, to_numbers - 1)?, &inputs);
-        let about = [start, run, hits.output("carries"), hits.output("all_out"), accepts];
-        let contacts = resolver::resolved(&graph, spec, scpu, &resolver, about);
+        // The contacts, in the order of their hits.
+        let to_numbers = hits::cycles_to_numbers(sizes.compared);
+        let (_, may_resolve) = wire("may_resolve", 1);
+        let (from, to_number) = if side_by_side == 1 {
+            row_ends.drive(hits.output("row_ends"));
+            hits_may_leave.drive(may_resolve);
+            (hits.clone(), to_numbers)
+        } else {
+            let mut inputs = vec![("start", begin("hits")), ("may_leave", may_resolve)];
+            inputs.extend([("comes", hits.output("carries")), ("row_comes_to_end", hits.output("row_ends"))]);
+            let names: Vec<_> = (0..lanes).map(|lane| format!("hit_{lane}")).collect();
+            inputs.extend(names.iter().zip(&records).map(|(name, record)| (name.as_str(), hits.output(record))));
+            let waiting = graph.instance("waiting_hits", &waiting_hits(&sizes, side_by_side)?, &inputs);
+            row_ends.drive(waiting.output("row_ends"));
+            hits_may_leave.drive(waiting.output("has_room"));
+            (waiting, resolver::BACKLOG_TO_NUMBER)
+        };
+        let carries = from.output("carries");
+        let mut resolvers = Vec::new();
+        let unit = resolver(spec, &sizes, scpu, to_number - 1)?;
+        for lane in 0..side_by_side {
+            let mut inputs = vec![
+                ("start", begin("hits")),
+                ("carries", carries.bit(lane)),
+                ("numbers", from.output(&records[lane as usize])),
+                ("write_column", column),
+                ("write_table", write_table),
+                ("write_table_row", table_row),
+                ("write_kept", write_own),
+                ("write_kept_row", row.low(kept_bits)),
+            ];
+            inputs.extend(named(&spheres));
+            let name = if side_by_side == 1 { "resolver".to_owned() } else { format!("resolver_{lane}") };
+            resolvers.push(graph.instance(&name, &unit, &inputs));
+        }
+        let about = [start, run, carries, hits.output("all_out"), accepts];
+        let contacts = resolver::resolved(&graph, spec, scpu, &resolvers, about);
         may_resolve.drive(contacts.may_leave);
         packer_inputs.extend([("carries", contacts.comes), ("all_out", contacts.all_out)]);
-        packer_inputs.push(("record_0", contacts.record));
+        packer_inputs.extend(records.iter().map(String::as_str).zip(contacts.records));
+        lines = resolver::lines(spec, scpu, to_number);
     } else {
-        may_resolve.drive(one);
+        row_ends.drive(hits.output("row_ends"));
+        hits_may_leave.drive(one);
         packer_inputs.extend([("carries", hits.output("carries")), ("all_out", hits.output("all_out"))]);
         packer_inputs.extend(records.iter().map(|name| (name.as_str(), hits.output(name))));
     }
 
     // Records into lines, lines into memory.
-    let packer = graph.instance("packer", &packer::of_pairs(spec, lanes)?, &packer_inputs);
+    let packer = graph.instance(
+        "packer",
+        &packer::of_pairs(spec, if scpu.is_some() { side_by_side } else { lanes })?,
+        &packer_inputs,
+    );
     let mut inputs = writes.named();
     inputs.extend([
         ("start", begin("dispatcher")),
