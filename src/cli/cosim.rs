@@ -50,6 +50,10 @@ pub struct Cosim {
     /// Put the spheres in the order of a Hilbert curve first, which makes the search faster
     #[arg(long)]
     pub(super) sort: bool,
+    /// Cut the sets into tiles of at most this many spheres, a multiple of 16, and run a job for every two tiles: for
+    /// sets that are larger than --table
+    #[arg(long, value_name = "N")]
+    pub(super) tile: Option<u32>,
     /// Write the contacts to a .csv or .npy file, as they lie in memory; only for a single job
     ///
     /// With --results hits the file holds only the contacts of pairs that touch, each with the index of its pair.
@@ -97,6 +101,7 @@ pub fn run(options: &Cosim) -> Result<(), Failure> {
         ("--spheres", !options.spheres.is_empty()),
         ("--against", options.against.is_some()),
         ("--sort", options.sort),
+        ("--tile", options.tile.is_some()),
     ];
     if let Some((option, _)) = of_spheres.into_iter().find(|(_, given)| *given) {
         return Err(Failure::new(Kind::Usage, format!("{option} needs an AFU that takes spheres: --input spheres")));

@@ -32,6 +32,9 @@ pub fn run(options: &Cosim) -> Result<(), Failure> {
         let message = format!("{option} works with one job only: give one --spheres");
         return Err(Failure::new(Kind::Usage, message));
     }
+    if options.tile.is_some() && options.trace.is_some() {
+        return Err(Failure::new(Kind::Usage, "--trace works with one job only: leave out --tile"));
+    }
     if let Some(path) = &options.contacts {
         check_name(path)?;
     }
@@ -98,7 +101,10 @@ fn job(
     link: &contact_afu::link::LinkModel,
 ) -> Result<SpheresJob, Failure> {
     let spinner = progress::spinner("simulating, and comparing every contact with the software");
-    let done = bench.run_spheres(sets, link, options.seed, options.trace.as_deref());
+    let done = match options.tile {
+        Some(size) => bench.run_spheres_in_tiles(sets, size, link, options.seed),
+        None => bench.run_spheres(sets, link, options.seed, options.trace.as_deref()),
+    };
     spinner.finish_and_clear();
     let verdict = match done {
         Ok(verdict) => Ok(verdict),
@@ -119,6 +125,9 @@ fn command(options: &Cosim, bench: &Bench, sources: &[String]) -> String {
     }
     if let Some(against) = &options.against {
         command = command.option("--against", &against.display().to_string());
+    }
+    if let Some(size) = options.tile {
+        command = command.option("--tile", &size.to_string());
     }
     let line = command.option("--link", &options.link).option("--seed", &options.seed.to_string()).line();
     if options.sort { format!("{line} --sort") } else { line }

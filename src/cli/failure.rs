@@ -98,6 +98,7 @@ impl From<contact_afu::verify::VerifyError> for Failure {
             | VerifyError::Pairs(_)
             | VerifyError::Radius(_)
             | VerifyError::Set(_)
+            | VerifyError::Tile(_)
             | VerifyError::Search(_) => Kind::Usage,
             VerifyError::Model(CosimError::MissingTool { .. }) => Kind::Tool,
             VerifyError::Model(CosimError::Source(_)) => Kind::Usage,

@@ -6,6 +6,7 @@ use crate::config::{Input, RecordFormat, Shell};
 use crate::count::counted;
 use crate::outcome::{Failure, Outcome};
 use crate::record::{JobError, OtherRadius, SetTooLarge};
+use crate::spheres::TileSizeError;
 
 /// Why a transaction has no results.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -47,6 +48,9 @@ pub enum HostError {
     /// A set has more spheres than the AFU takes.
     #[error(transparent)]
     Set(#[from] SetTooLarge),
+    /// No tile has this size.
+    #[error(transparent)]
+    Tile(#[from] TileSizeError),
     /// The sets take more lines than the source has.
     #[error(
         "the spheres take {lines} lines, and the source has {room}: give the session a larger workspace (`for_spheres`), or send \

@@ -22,6 +22,7 @@ pub(crate) mod simulated;
 mod software;
 pub(crate) mod spheres;
 mod task;
+mod tiles;
 mod transaction;
 mod transport;
 #[cfg(feature = "cosim")]
@@ -36,6 +37,7 @@ pub use results::JobResults;
 pub use session::{Expected, Session};
 pub use software::Software;
 pub use spheres::{SpheresJob, SpheresResults};
+pub use tiles::TiledResults;
 pub use transaction::{Done, Loaded, PairsJob, Pointed, Retrieved, Running, Started, Transaction};
 pub use transport::{Transport, TransportError};
 pub use workspace::Workspace;

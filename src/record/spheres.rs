@@ -15,9 +15,7 @@ const MOST_OTHERS: usize = 1 << 16;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SetTooLarge {
     /// The first set does not fit into the AFU's table.
-    #[error(
-        "{spheres} spheres: the AFU's table holds {table}; use a larger --table, or fewer spheres in the first set"
-    )]
+    #[error("{spheres} spheres: the AFU's table holds {table}; use a larger --table, or --tile {table}")]
     First {
         /// Spheres of the first set.
         spheres: usize,
@@ -25,7 +23,7 @@ pub enum SetTooLarge {
         table: u32,
     },
     /// A hit's number cannot represent all spheres of the second set.
-    #[error("{0} spheres in the second set: expected at most 65536 in a job")]
+    #[error("{0} spheres in the second set: expected at most 65536 in a job; cut the sets with --tile")]
     Second(usize),
 }
 

@@ -15,6 +15,7 @@ mod rows;
 mod search;
 mod set;
 mod sphere;
+mod tiles;
 mod trace;
 
 pub use bounds::{BOX_BITS, Bounds, BoundsRule, RefusedArithmetic};
@@ -24,4 +25,5 @@ pub use rows::{ROW, Rows};
 pub use search::{Candidates, Counts, Found, Hit, Search};
 pub use set::{SphereSet, SphereSetError, Spheres};
 pub use sphere::Sphere;
+pub use tiles::{Tile, TileSizeError, join_tiles, tiles};
 pub(crate) use trace::{GroupTrace, MemberTrace, RowTrace};

@@ -8,7 +8,7 @@ use crate::host::{HostError, TransportError};
 use crate::kernel::EngineError;
 use crate::link::LinkError;
 use crate::record::{OtherRadius, SetTooLarge};
-use crate::spheres::RefusedArithmetic;
+use crate::spheres::{RefusedArithmetic, TileSizeError};
 
 /// Why there is no verdict. (A mismatch is a verdict.)
 #[derive(Debug, thiserror::Error)]
@@ -40,6 +40,9 @@ pub enum VerifyError {
     /// There are more spheres in a set than the AFU takes.
     #[error(transparent)]
     Set(#[from] SetTooLarge),
+    /// No tile has this size.
+    #[error(transparent)]
+    Tile(#[from] TileSizeError),
     /// The arithmetic has no boxes.
     #[error(transparent)]
     Search(#[from] RefusedArithmetic),
@@ -65,6 +68,7 @@ impl VerifyError {
             | Self::Radius(_)
             | Self::Pairs(_)
             | Self::Set(_)
+            | Self::Tile(_)
             | Self::Search(_)
             | Self::Reference(_) => false,
         }

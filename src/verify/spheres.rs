@@ -11,7 +11,7 @@ use crate::host::spheres::steps;
 use crate::link::LinkModel;
 use crate::query::ContactRecord;
 use crate::record::{Contacts, SetTooLarge, numbers_of, sphere_lines};
-use crate::spheres::{Counts, Hit, Search, Spheres};
+use crate::spheres::{Counts, Hit, Search, Spheres, join_tiles, tiles};
 
 /// The verdict on a job of spheres.
 #[derive(Clone, Debug)]
@@ -22,6 +22,8 @@ pub struct SpheresVerdict {
     pub contacts: Vec<ContactRecord>,
     /// Spheres of both sets.
     pub spheres: u64,
+    /// The number of jobs that they were cut into, 1 if they were not cut.
+    pub jobs: u64,
     /// The comparisons that the same search takes in software.
     pub counts: Counts,
     /// The number of hits that differ from the software's.
@@ -38,6 +40,44 @@ impl SpheresVerdict {
     /// True if no check failed.
     pub fn is_good(&self) -> bool {
         self.failed_checks.is_empty()
+    }
+
+    /// The verdict on this tile and another one. Hits keep the numbers of their tiles.
+    fn and(mut self, other: Self) -> Self {
+        let (a, b) = (self.counts, other.counts);
+        let both = |of: fn(&Outcome) -> u64| of(&self.outcome) + of(&other.outcome);
+        let outcome = Outcome {
+            cycles: both(|outcome| outcome.cycles),
+            contacts: self.outcome.contacts.saturating_add(other.outcome.contacts),
+            candidates: self.outcome.candidates.zip(other.outcome.candidates).map(|(a, b)| a.saturating_add(b)),
+            cycles_busy: both(|outcome| outcome.cycles_busy),
+            cycles_input: both(|outcome| outcome.cycles_input),
+            cycles_output: both(|outcome| outcome.cycles_output),
+            bytes_read: both(|outcome| outcome.bytes_read),
+            bytes_written: both(|outcome| outcome.bytes_written),
+            limit_cycles: self.outcome.limit_cycles + other.outcome.limit_cycles,
+            ..self.outcome
+        };
+        self.failed_checks.extend(other.failed_checks);
+        Self {
+            jobs: self.jobs + other.jobs,
+            counts: Counts {
+                group_tests: a.group_tests + b.group_tests,
+                row_tests: a.row_tests + b.row_tests,
+                sphere_tests: a.sphere_tests + b.sphere_tests,
+                column_tests: a.column_tests + b.column_tests,
+                candidates: a.candidates + b.candidates,
+                invalid: a.invalid,
+            },
+            mismatches: self.mismatches + other.mismatches,
+            seconds: self.seconds + other.seconds,
+            outcome,
+            ..self
+        }
+    }
+
+    fn hits_with_contacts(&self) -> impl Iterator<Item = Hit> {
+        self.hits.iter().zip(&self.contacts).map(|(&spheres, &contact)| Hit { spheres, contact })
     }
 }
 
@@ -132,11 +172,59 @@ impl Bench {
             hits: hits.iter().flatten().map(|hit| hit.spheres).collect(),
             contacts: hits.iter().flatten().map(|hit| hit.contact).collect(),
             spheres: (first.len() + others.len()) as u64,
+            jobs: 1,
             counts: found.counts,
             mismatches: differing.len() as u64,
             failed_checks,
             outcome,
             seconds,
         })
+    }
+
+    /// The same for sets of any size: a job for every two tiles of at most `size` spheres, one after the other. What all
+    /// of them find together is compared with the search of the whole sets.
+    ///
+    /// # Errors
+    /// Returns an error if no tile has this size, and the errors of [`run_spheres`](Self::run_spheres).
+    pub fn run_spheres_in_tiles(
+        &self,
+        sets: &Spheres,
+        size: u32,
+        link: &LinkModel,
+        seed: u64,
+    ) -> Result<SpheresVerdict, VerifyError> {
+        let config = self.config();
+        let (mut hits, mut joined) = (Vec::new(), None::<SpheresVerdict>);
+        for (number, tile) in tiles(sets, size, config.search.table)?.enumerate() {
+            let mut verdict = self.run_spheres(&tile.sets, link, seed, None)?;
+            verdict.failed_checks.iter_mut().for_each(|check| *check = format!("tile {number}: {check}"));
+            hits.extend(tile.translate(verdict.hits_with_contacts()));
+            joined = Some(match joined {
+                None => verdict,
+                Some(before) => before.and(verdict),
+            });
+        }
+        join_tiles(&mut hits);
+        let Some(mut joined) = joined else { return self.run_spheres(sets, link, seed, None) };
+        let (first, second) = (&sets.first, sets.second.as_deref());
+        let search = Search::new(config.profile.arithmetic(), config.search.box_bits)?;
+        let found = search.find(&mut config.reference(), first, second).map_err(VerifyError::Reference)?;
+        let stored = Contacts::new(&self.expected.layout, &[]);
+        let wanted = found.hits.iter().map(|hit| Hit { contact: stored.as_stored(hit.contact), ..*hit });
+        if !wanted.eq(hits.iter().copied()) {
+            joined.failed_checks.push(format!(
+                "the tiles together: {} hits, which are not the {} of the whole search",
+                hits.len(),
+                found.hits.len()
+            ));
+        }
+        // Tiles count a sphere as often as it is sent.
+        let others = second.unwrap_or_default();
+        joined.counts.invalid = found.counts.invalid;
+        joined.outcome.invalid = found.counts.invalid as u32;
+        joined.spheres = (first.len() + others.len()) as u64;
+        joined.hits = hits.iter().map(|hit| hit.spheres).collect();
+        joined.contacts = hits.iter().map(|hit| hit.contact).collect();
+        Ok(joined)
     }
 }

@@ -90,6 +90,7 @@ fn wrong_options_are_exit_2_before_anything_is_built() {
         (&["--interval", "0"], "interval 0"),
         (&["--shell", "axi", "--bus", "100"], "bus of 100 bits"),
         (&["--spheres", "diamond:2"], "--spheres needs an AFU that takes spheres"),
+        (&["--tile", "512"], "--tile needs an AFU that takes spheres"),
         (&["--lanes", "32"], "lanes with input direct"),
         (&["--input", "spheres", "--pairs", "diamond:2"], "--pairs does not go with --input spheres"),
         (&["--input", "spheres", "--profile", "paper"], "exponent bits"),
@@ -126,7 +127,16 @@ fn spheres_that_touch_come_back_as_numbers() {
     // A table that is too small is told, with the option that helps.
     let refused =
         afu(room.path(), &["cosim", "--input", "spheres", "--table", "512", "--spheres", "gas:600:0.1"]).code(2);
-    assert!(said(&refused).contains("600 spheres") && said(&refused).contains("--table"), "{}", said(&refused));
+    assert!(said(&refused).contains("600 spheres") && said(&refused).contains("--tile 512"), "{}", said(&refused));
+    let found = |more: &[&str]| {
+        let arguments = ["cosim", "--input", "spheres", "--spheres", "gas:600:0.1", "--json", "-"];
+        let output = afu(room.path(), &[&arguments, more].concat()).success().get_output().stdout.clone();
+        let report: serde_json::Value = serde_json::from_slice(&output).expect("JSON");
+        ["spheres", "candidates", "contacts", "jobs"].map(|key| report["jobs"][0][key].as_u64().expect("a number"))
+    };
+    let (whole, tiles) = (found(&["--table", "1024"]), found(&["--table", "512", "--tile", "512"]));
+    assert_eq!(whole[..3], tiles[..3]);
+    assert_eq!((whole[3], tiles[3]), (1, 3));
 }
 
 /// Counts rows and bytes of a job that returns only contacts.

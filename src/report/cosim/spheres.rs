@@ -27,6 +27,7 @@ struct JobFigures<'a> {
 #[derive(Serialize)]
 struct Figures<'a> {
     spheres: u64,
+    jobs: u64,
     invalid: u32,
     candidates: u64,
     contacts: u32,
@@ -85,6 +86,7 @@ impl Run<SpheresJob> {
         type Show<'a> = Box<dyn Fn(&SpheresVerdict) -> String + 'a>;
         let rows: Vec<(&str, Show<'_>)> = vec![
             ("spheres", Box::new(|v| grouped(v.spheres))),
+            ("jobs of tiles", Box::new(|v| grouped(v.jobs))),
             ("invalid spheres", Box::new(|v| grouped(v.outcome.invalid.into()))),
             ("candidates: boxes that meet", Box::new(|v| grouped(v.outcome.candidates.unwrap_or_default().into()))),
             ("contacts", Box::new(|v| grouped(v.outcome.contacts.into()))),
@@ -97,6 +99,8 @@ impl Run<SpheresJob> {
             ("bytes per sphere, out", Box::new(|v| figure(each(v.outcome.bytes_written as f64, v), 2))),
             ("simulation time, seconds", Box::new(|v| format!("{:.1}", v.seconds))),
         ];
+        let is_cut = self.jobs.iter().filter_map(|job| job.verdict.as_ref().ok()).any(|verdict| verdict.jobs > 1);
+        let rows = rows.into_iter().filter(|(title, _)| is_cut || *title != "jobs of tiles");
         let heading: Vec<&str> = [""].into_iter().chain(self.jobs.iter().map(|job| job.name.as_str())).collect();
         let cell = |show: &Show<'_>, job: &SpheresJob| job.verdict.as_ref().map_or_else(|_| "-".to_owned(), show);
         let row = |(title, show): (&str, Show<'_>)| {
@@ -114,7 +118,7 @@ impl Run<SpheresJob> {
             self.link,
             self.seed
         );
-        format!("{title}\n{}", table(&heading, rows.into_iter().map(row)))
+        format!("{title}\n{}", table(&heading, rows.map(row)))
     }
 
     /// The report for programs.
@@ -125,6 +129,7 @@ impl Run<SpheresJob> {
             let cycles = outcome.cycles as f64;
             Figures {
                 spheres: verdict.spheres,
+                jobs: verdict.jobs,
                 invalid: outcome.invalid,
                 candidates: outcome.candidates.unwrap_or_default().into(),
                 contacts: outcome.contacts,
