@@ -20,172 +20,133 @@ module fp_add_e10f23z_normal (
   wire b_sign = b[33];
   wire effective_subtraction = a_sign ^ b_sign;
   wire [9:0] a_exponent = a[32:23];
-  wire [9:0] b_exponent = b[32:23];
-  wire [10:0] exponent_difference = {1'b0, a_exponent} - {1'b0, b_exponent};
-  wire b_is_above = exponent_difference[10];
-  wire [4:0] align_near = exponent_difference[4:0] ^ {5{b_is_above}};
-  wire b_is_far_above = ~&exponent_difference[9:5];
-  wire a_is_far_above = |exponent_difference[9:5];
-  wire align_far = b_is_above ? b_is_far_above : a_is_far_above;
-  wire [4:0] align_distance = align_near | {5{align_far}};
-  wire a_hidden = |a_exponent;
   wire [22:0] a_fraction = a[22:0];
+  wire [32:0] a_magnitude = {a_exponent, a_fraction};
+  wire [9:0] b_exponent = b[32:23];
+  wire [22:0] b_fraction = b[22:0];
+  wire [32:0] b_magnitude = {b_exponent, b_fraction};
+  wire b_is_larger = a_magnitude < b_magnitude;
+  wire a_hidden = |a_exponent;
   wire [23:0] a_significand = {a_hidden, a_fraction};
   wire b_hidden = |b_exponent;
-  wire [22:0] b_fraction = b[22:0];
   wire [23:0] b_significand = {b_hidden, b_fraction};
-  wire [25:0] small_significand = b_is_above ? {1'b0, a_significand, 1'b0} : {b_significand, 2'd0};
-  wire [9:0] large_exponent = b_is_above ? b_exponent : a_exponent;
-  wire first_sign = b_is_above ? b_sign : a_sign;
+  wire [23:0] small_significand = b_is_larger ? a_significand : b_significand;
+  wire [9:0] b_exponent_minus_a = b_exponent - a_exponent;
+  wire b_is_far_above = |b_exponent_minus_a[9:5];
+  wire [9:0] a_exponent_minus_b = a_exponent - b_exponent;
+  wire a_is_far_above = |a_exponent_minus_b[9:5];
+  wire align_far = b_is_larger ? b_is_far_above : a_is_far_above;
+  wire [4:0] align_near = b_is_larger ? b_exponent_minus_a[4:0] : a_exponent_minus_b[4:0];
+  wire [23:0] large_significand = b_is_larger ? b_significand : a_significand;
+  wire [9:0] large_exponent = b_is_larger ? b_exponent : a_exponent;
+  wire large_sign = b_is_larger ? b_sign : a_sign;
 
   // ---- stage 1 ----
   reg effective_subtraction_s1;
-  reg align_distance_4_s1;
-  reg [25:0] small_significand_s1;
-  reg align_distance_3_s1;
-  reg align_distance_2_s1;
-  reg align_distance_1_s1;
-  reg align_distance_0_s1;
-  reg [23:0] a_significand_s1;
-  reg exponent_difference_9_0_any_s1;
-  reg [23:0] b_significand_s1;
-  reg b_is_above_s1;
-  reg first_sign_s1;
+  reg [4:0] align_near_s1;
+  reg align_far_s1;
+  reg [23:0] small_significand_s1;
+  reg [23:0] large_significand_s1;
   always @(posedge clk) begin
     effective_subtraction_s1 <= effective_subtraction;
-    align_distance_4_s1 <= align_distance[4];
+    align_near_s1 <= align_near;
+    align_far_s1 <= align_far;
     small_significand_s1 <= small_significand;
-    align_distance_3_s1 <= align_distance[3];
-    align_distance_2_s1 <= align_distance[2];
-    align_distance_1_s1 <= align_distance[1];
-    align_distance_0_s1 <= align_distance[0];
-    a_significand_s1 <= a_significand;
-    exponent_difference_9_0_any_s1 <= |exponent_difference[9:0];
-    b_significand_s1 <= b_significand;
-    b_is_above_s1 <= b_is_above;
-    first_sign_s1 <= first_sign;
+    large_significand_s1 <= large_significand;
   end
-  wire align_by_16_loses = align_distance_4_s1 & |small_significand_s1[15:0];
-  wire [25:0] align_by_16 = align_distance_4_s1 ? {16'd0, small_significand_s1[25:16]} : small_significand_s1;
-  wire align_by_8_loses = align_distance_3_s1 & |align_by_16[7:0];
-  wire [25:0] align_by_8 = align_distance_3_s1 ? {8'd0, align_by_16[25:8]} : align_by_16;
-  wire align_by_4_loses = align_distance_2_s1 & |align_by_8[3:0];
-  wire [25:0] align_by_4 = align_distance_2_s1 ? {4'd0, align_by_8[25:4]} : align_by_8;
-  wire align_by_2_loses = align_distance_1_s1 & |align_by_4[1:0];
-  wire [25:0] align_by_2 = align_distance_1_s1 ? {2'd0, align_by_4[25:2]} : align_by_4;
-  wire align_by_1_loses = align_distance_0_s1 & align_by_2[0];
-  wire exponents_are_equal = ~exponent_difference_9_0_any_s1;
-  wire b_significand_is_larger = a_significand_s1 < b_significand_s1;
-  wire is_reversed = effective_subtraction_s1 & exponents_are_equal & b_significand_is_larger;
+  wire [4:0] align_distance = align_near_s1 | {5{align_far_s1}};
+  wire [25:0] small_significand_s1_shifted = {small_significand_s1, 2'd0};
+  wire align_by_16_loses = align_distance[4] & |small_significand_s1_shifted[15:0];
+  wire [25:0] align_by_16 = align_distance[4] ? {16'd0, small_significand_s1[23:14]} : small_significand_s1_shifted;
+  wire align_by_8_loses = align_distance[3] & |align_by_16[7:0];
+  wire [25:0] align_by_8 = align_distance[3] ? {8'd0, align_by_16[25:8]} : align_by_16;
+  wire align_by_4_loses = align_distance[2] & |align_by_8[3:0];
+  wire [25:0] align_by_4 = align_distance[2] ? {4'd0, align_by_8[25:4]} : align_by_8;
+  wire align_by_2_loses = align_distance[1] & |align_by_4[1:0];
+  wire [25:0] align_by_2 = align_distance[1] ? {2'd0, align_by_4[25:2]} : align_by_4;
 
   // ---- stage 2 ----
-  reg is_reversed_s2;
-  reg b_is_above_s2;
-  reg [23:0] b_significand_s1_xor_is_reversed_repeated_s2;
-  reg [23:0] a_significand_s1_xor_is_reversed_repeated_s2;
+  reg [23:0] large_significand_s2;
   reg align_distance_0_s2;
   reg [25:0] align_by_2_s2;
-  reg align_by_16_loses_or_4_others_s2;
+  reg align_by_16_loses_or_3_others_s2;
   reg effective_subtraction_s2;
-  reg first_sign_s2;
   always @(posedge clk) begin
-    is_reversed_s2 <= is_reversed;
-    b_is_above_s2 <= b_is_above_s1;
-    b_significand_s1_xor_is_reversed_repeated_s2 <= b_significand_s1 ^ {24{is_reversed}};
-    a_significand_s1_xor_is_reversed_repeated_s2 <= a_significand_s1 ^ {24{is_reversed}};
-    align_distance_0_s2 <= align_distance_0_s1;
+    large_significand_s2 <= large_significand_s1;
+    align_distance_0_s2 <= align_distance[0];
     align_by_2_s2 <= align_by_2;
-    align_by_16_loses_or_4_others_s2 <=
-        align_by_16_loses | align_by_8_loses | align_by_4_loses | align_by_2_loses | align_by_1_loses;
+    align_by_16_loses_or_3_others_s2 <= align_by_16_loses | align_by_8_loses | align_by_4_loses | align_by_2_loses;
     effective_subtraction_s2 <= effective_subtraction_s1;
-    first_sign_s2 <= first_sign_s1;
   end
-  wire [23:0] augend_significand =
-      b_is_above_s2 ? b_significand_s1_xor_is_reversed_repeated_s2 : a_significand_s1_xor_is_reversed_repeated_s2;
-  wire [27:0] augend = {is_reversed_s2, augend_significand, {3{is_reversed_s2}}};
+  wire [27:0] augend = {1'b0, large_significand_s2, 3'd0};
   wire [25:0] align_by_1 = align_distance_0_s2 ? {1'b0, align_by_2_s2[25:1]} : align_by_2_s2;
-  wire addend_last = align_by_16_loses_or_4_others_s2 | is_reversed_s2;
-  wire [27:0] addend = {1'b0, align_by_1, addend_last};
-  wire is_sum = ~effective_subtraction_s2 | is_reversed_s2;
-  wire [27:0] sum = augend + (addend ^ {28{~is_sum}}) + {27'd0, ~is_sum};
-  wire large_sign = first_sign_s2 ^ is_reversed_s2;
+  wire align_by_1_loses = align_distance_0_s2 & align_by_2_s2[0];
+  wire aligned_sticky = align_by_16_loses_or_3_others_s2 | align_by_1_loses;
+  wire [27:0] addend = {1'b0, align_by_1, aligned_sticky};
+  wire [27:0] sum = augend + (addend ^ {28{effective_subtraction_s2}}) + {27'd0, effective_subtraction_s2};
 
   // ---- stage 3 ----
   reg [27:0] sum_s3;
   reg effective_subtraction_s3;
-  reg large_sign_s3;
   always @(posedge clk) begin
     sum_s3 <= sum;
     effective_subtraction_s3 <= effective_subtraction_s2;
-    large_sign_s3 <= large_sign;
   end
   wire normalise_top_16_clear = ~|sum_s3[27:12];
-  wire normalise_top_8_clear = normalise_top_16_clear ? ~|sum_s3[11:4] : ~|sum_s3[27:20];
   wire [27:0] normalise_by_16 = normalise_top_16_clear ? {sum_s3[11:0], 16'd0} : sum_s3;
-  wire [27:0] normalise_by_8 = normalise_top_8_clear ? {normalise_by_16[19:0], 8'd0} : normalise_by_16;
 
   // ---- stage 4 ----
-  reg [27:0] normalise_by_8_s4;
-  reg normalise_top_8_clear_s4;
+  reg [27:0] normalise_by_16_s4;
   reg normalise_top_16_clear_s4;
   reg effective_subtraction_s4;
-  reg large_sign_s4;
   always @(posedge clk) begin
-    normalise_by_8_s4 <= normalise_by_8;
-    normalise_top_8_clear_s4 <= normalise_top_8_clear;
+    normalise_by_16_s4 <= normalise_by_16;
     normalise_top_16_clear_s4 <= normalise_top_16_clear;
     effective_subtraction_s4 <= effective_subtraction_s3;
-    large_sign_s4 <= large_sign_s3;
   end
-  wire normalise_top_4_clear = ~|normalise_by_8_s4[27:24];
-  wire [27:0] normalise_by_4 = normalise_top_4_clear ? {normalise_by_8_s4[23:0], 4'd0} : normalise_by_8_s4;
-  wire normalise_top_2_clear = ~|normalise_by_4[27:26];
-  wire [27:0] normalise_by_2 = normalise_top_2_clear ? {normalise_by_4[25:0], 2'd0} : normalise_by_4;
-  wire normalise_top_1_clear = ~normalise_by_2[27];
-  wire [27:0] normalise_by_1 = normalise_top_1_clear ? {normalise_by_2[26:0], 1'b0} : normalise_by_2;
-  wire [23:0] significand = normalise_by_1[27:4];
-  wire [22:0] fraction_field = significand[22:0];
-  wire guard = normalise_by_1[3];
+  wire normalise_top_8_clear = ~|normalise_by_16_s4[27:20];
+  wire [27:0] normalise_by_8 = normalise_top_8_clear ? {normalise_by_16_s4[19:0], 8'd0} : normalise_by_16_s4;
+  wire normalise_top_4_clear = ~|normalise_by_8[27:24];
+  wire [27:0] normalise_by_4 = normalise_top_4_clear ? {normalise_by_8[23:0], 4'd0} : normalise_by_8;
 
   // ---- stage 5 ----
-  reg guard_s5;
-  reg [2:0] normalise_by_1_2_0_s5;
-  reg [22:0] fraction_field_s5;
+  reg [27:0] normalise_by_4_s5;
   reg [39:0] large_exponent_s5_line;
   reg [9:0] large_exponent_s5;
   reg normalise_top_16_clear_s5;
   reg normalise_top_8_clear_s5;
   reg normalise_top_4_clear_s5;
-  reg normalise_top_2_clear_s5;
-  reg normalise_top_1_clear_s5;
-  reg normalise_by_1_27_s5;
+  reg [3:0] large_sign_s5_line;
   reg large_sign_s5;
   reg effective_subtraction_s5;
   always @(posedge clk) begin
-    guard_s5 <= guard;
-    normalise_by_1_2_0_s5 <= normalise_by_1[2:0];
-    fraction_field_s5 <= fraction_field;
+    normalise_by_4_s5 <= normalise_by_4;
     large_exponent_s5_line <= {large_exponent_s5_line[29:0], large_exponent};
     large_exponent_s5 <= large_exponent_s5_line[39:30];
     normalise_top_16_clear_s5 <= normalise_top_16_clear_s4;
-    normalise_top_8_clear_s5 <= normalise_top_8_clear_s4;
+    normalise_top_8_clear_s5 <= normalise_top_8_clear;
     normalise_top_4_clear_s5 <= normalise_top_4_clear;
-    normalise_top_2_clear_s5 <= normalise_top_2_clear;
-    normalise_top_1_clear_s5 <= normalise_top_1_clear;
-    normalise_by_1_27_s5 <= normalise_by_1[27];
-    large_sign_s5 <= large_sign_s4;
+    large_sign_s5_line <= {large_sign_s5_line[2:0], large_sign};
+    large_sign_s5 <= large_sign_s5_line[3];
     effective_subtraction_s5 <= effective_subtraction_s4;
   end
-  wire sticky = |normalise_by_1_2_0_s5;
-  wire round_up = guard_s5 & (sticky | fraction_field_s5[0]);
+  wire normalise_top_2_clear = ~|normalise_by_4_s5[27:26];
+  wire [27:0] normalise_by_2 = normalise_top_2_clear ? {normalise_by_4_s5[25:0], 2'd0} : normalise_by_4_s5;
+  wire normalise_top_1_clear = ~normalise_by_2[27];
+  wire [27:0] normalise_by_1 = normalise_top_1_clear ? {normalise_by_2[26:0], 1'b0} : normalise_by_2;
+  wire guard = normalise_by_1[3];
+  wire sticky = |normalise_by_1[2:0];
+  wire [23:0] significand = normalise_by_1[27:4];
+  wire [22:0] fraction_field = significand[22:0];
+  wire round_up = guard & (sticky | fraction_field[0]);
   wire [4:0] leading_zeros = {
-    normalise_top_16_clear_s5, normalise_top_8_clear_s5, normalise_top_4_clear_s5, normalise_top_2_clear_s5,
-    normalise_top_1_clear_s5
+    normalise_top_16_clear_s5, normalise_top_8_clear_s5, normalise_top_4_clear_s5, normalise_top_2_clear,
+    normalise_top_1_clear
   };
   wire [10:0] normalised_exponent = ({1'b0, large_exponent_s5} + 11'd1) - {6'd0, leading_zeros};
-  wire [10:0] result_exponent = normalise_by_1_27_s5 ? normalised_exponent : 11'd0;
+  wire [10:0] result_exponent = normalise_by_1[27] ? normalised_exponent : 11'd0;
   wire [9:0] exponent_field = result_exponent[9:0];
-  wire is_exact_zero = ~normalise_by_1_27_s5;
+  wire is_exact_zero = ~normalise_by_1[27];
   wire sign = large_sign_s5 & ~(is_exact_zero & effective_subtraction_s5);
 
   // ---- stage 6 ----
@@ -196,7 +157,7 @@ module fp_add_e10f23z_normal (
   always @(posedge clk) begin
     sign_s6 <= sign;
     exponent_field_s6 <= exponent_field;
-    fraction_field_s6 <= fraction_field_s5;
+    fraction_field_s6 <= fraction_field;
     round_up_s6 <= round_up;
   end
   wire [32:0] truncated = {exponent_field_s6, fraction_field_s6};

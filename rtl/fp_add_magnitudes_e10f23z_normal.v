@@ -18,97 +18,101 @@ module fp_add_magnitudes_e10f23z_normal (
   // ---- stage 0 ----
   wire [9:0] a_exponent = a[32:23];
   wire [9:0] b_exponent = b[32:23];
-  wire [10:0] exponent_difference = {1'b0, a_exponent} - {1'b0, b_exponent};
-  wire b_is_above = exponent_difference[10];
+  wire [10:0] a_exponent_minus_b_exponent = {1'b0, a_exponent} - {1'b0, b_exponent};
+  wire b_is_larger = a_exponent_minus_b_exponent[10];
+  wire [9:0] b_exponent_minus_a = b_exponent - a_exponent;
+  wire [9:0] a_exponent_minus_b = a_exponent_minus_b_exponent[9:0];
+  wire [4:0] align_near = b_is_larger ? b_exponent_minus_a[4:0] : a_exponent_minus_b[4:0];
+  wire b_is_far_above = |b_exponent_minus_a[9:5];
+  wire a_is_far_above = |a_exponent_minus_b[9:5];
+  wire align_far = b_is_larger ? b_is_far_above : a_is_far_above;
+  wire [4:0] align_distance = align_near | {5{align_far}};
   wire a_hidden = |a_exponent;
   wire [22:0] a_fraction = a[22:0];
   wire [23:0] a_significand = {a_hidden, a_fraction};
   wire b_hidden = |b_exponent;
   wire [22:0] b_fraction = b[22:0];
   wire [23:0] b_significand = {b_hidden, b_fraction};
-  wire [24:0] small_significand = b_is_above ? {1'b0, a_significand} : {b_significand, 1'b0};
-  wire b_is_far_above = ~&exponent_difference[9:5];
-  wire a_is_far_above = |exponent_difference[9:5];
-  wire align_far = b_is_above ? b_is_far_above : a_is_far_above;
-  wire [4:0] align_near = exponent_difference[4:0] ^ {5{b_is_above}};
-  wire [23:0] large_significand = b_is_above ? b_significand : a_significand;
-  wire [9:0] large_exponent = b_is_above ? b_exponent : a_exponent;
+  wire [23:0] small_significand = b_is_larger ? a_significand : b_significand;
+  wire [23:0] large_significand = b_is_larger ? b_significand : a_significand;
+  wire [9:0] large_exponent = b_is_larger ? b_exponent : a_exponent;
   wire a_sign = a[33];
   wire b_sign = b[33];
   wire sign = a_sign & b_sign;
 
   // ---- stage 1 ----
-  reg [4:0] align_near_s1;
-  reg align_far_s1;
-  reg [24:0] small_significand_s1;
+  reg align_distance_4_s1;
+  reg [23:0] small_significand_s1;
+  reg align_distance_3_s1;
+  reg align_distance_2_s1;
+  reg align_distance_1_s1;
+  reg align_distance_0_s1;
   reg [23:0] large_significand_s1;
   reg [9:0] large_exponent_s1;
   reg sign_s1;
   always @(posedge clk) begin
-    align_near_s1 <= align_near;
-    align_far_s1 <= align_far;
+    align_distance_4_s1 <= align_distance[4];
     small_significand_s1 <= small_significand;
+    align_distance_3_s1 <= align_distance[3];
+    align_distance_2_s1 <= align_distance[2];
+    align_distance_1_s1 <= align_distance[1];
+    align_distance_0_s1 <= align_distance[0];
     large_significand_s1 <= large_significand;
     large_exponent_s1 <= large_exponent;
     sign_s1 <= sign;
   end
-  wire [4:0] align_distance = align_near_s1 | {5{align_far_s1}};
-  wire [24:0] align_by_16 = align_distance[4] ? {16'd0, small_significand_s1[24:16]} : small_significand_s1;
-  wire [24:0] align_by_8 = align_distance[3] ? {8'd0, align_by_16[24:8]} : align_by_16;
-  wire [24:0] align_by_4 = align_distance[2] ? {4'd0, align_by_8[24:4]} : align_by_8;
-  wire [24:0] align_by_2 = align_distance[1] ? {2'd0, align_by_4[24:2]} : align_by_4;
-  wire align_by_2_loses = align_distance[1] & |align_by_4[1:0];
-  wire align_by_16_loses = align_distance[4] & |small_significand_s1[15:0];
-  wire align_by_8_loses = align_distance[3] & |align_by_16[7:0];
-  wire align_by_4_loses = align_distance[2] & |align_by_8[3:0];
+  wire [24:0] small_significand_s1_shifted = {small_significand_s1, 1'b0};
+  wire align_by_16_loses = align_distance_4_s1 & |small_significand_s1_shifted[15:0];
+  wire [24:0] align_by_16 = align_distance_4_s1 ? {16'd0, small_significand_s1[23:15]} : small_significand_s1_shifted;
+  wire align_by_8_loses = align_distance_3_s1 & |align_by_16[7:0];
+  wire [24:0] align_by_8 = align_distance_3_s1 ? {8'd0, align_by_16[24:8]} : align_by_16;
+  wire align_by_4_loses = align_distance_2_s1 & |align_by_8[3:0];
+  wire [24:0] align_by_4 = align_distance_2_s1 ? {4'd0, align_by_8[24:4]} : align_by_8;
+  wire align_by_2_loses = align_distance_1_s1 & |align_by_4[1:0];
+  wire [24:0] align_by_2 = align_distance_1_s1 ? {2'd0, align_by_4[24:2]} : align_by_4;
+  wire align_by_1_loses = align_distance_0_s1 & align_by_2[0];
 
   // ---- stage 2 ----
   reg [23:0] large_significand_s2;
   reg align_distance_0_s2;
   reg [24:0] align_by_2_s2;
-  reg align_by_16_loses_or_2_others_s2;
-  reg align_by_2_loses_s2;
+  reg align_by_16_loses_or_4_others_s2;
   reg [9:0] large_exponent_s2;
   reg sign_s2;
   always @(posedge clk) begin
     large_significand_s2 <= large_significand_s1;
-    align_distance_0_s2 <= align_distance[0];
+    align_distance_0_s2 <= align_distance_0_s1;
     align_by_2_s2 <= align_by_2;
-    align_by_16_loses_or_2_others_s2 <= align_by_16_loses | align_by_8_loses | align_by_4_loses;
-    align_by_2_loses_s2 <= align_by_2_loses;
+    align_by_16_loses_or_4_others_s2 <=
+        align_by_16_loses | align_by_8_loses | align_by_4_loses | align_by_2_loses | align_by_1_loses;
     large_exponent_s2 <= large_exponent_s1;
     sign_s2 <= sign_s1;
   end
   wire [24:0] align_by_1 = align_distance_0_s2 ? {1'b0, align_by_2_s2[24:1]} : align_by_2_s2;
   wire [24:0] sum = {1'b0, large_significand_s2} + {1'b0, align_by_1[24:1]};
   wire carry = sum[24];
+  wire aligned_guard = align_by_1[0];
+  wire guard = carry ? sum[0] : aligned_guard;
+  wire sticky = align_by_16_loses_or_4_others_s2 | (carry & aligned_guard);
   wire [23:0] significand = carry ? sum[24:1] : sum[23:0];
   wire [22:0] fraction_field = significand[22:0];
-  wire align_by_1_loses = align_distance_0_s2 & align_by_2_s2[0];
-  wire aligned_guard = align_by_1[0];
-  wire sticky = align_by_16_loses_or_2_others_s2 | align_by_2_loses_s2 | align_by_1_loses | (carry & aligned_guard);
-  wire guard = carry ? sum[0] : aligned_guard;
+  wire round_up = guard & (sticky | fraction_field[0]);
 
   // ---- stage 3 ----
   reg sign_s3;
   reg [9:0] large_exponent_s3;
   reg [22:0] fraction_field_s3;
   reg carry_s3;
-  reg guard_s3;
-  reg sticky_s3;
-  reg fraction_field_0_s3;
+  reg round_up_s3;
   always @(posedge clk) begin
     sign_s3 <= sign_s2;
     large_exponent_s3 <= large_exponent_s2;
     fraction_field_s3 <= fraction_field;
     carry_s3 <= carry;
-    guard_s3 <= guard;
-    sticky_s3 <= sticky;
-    fraction_field_0_s3 <= fraction_field[0];
+    round_up_s3 <= round_up;
   end
   wire [32:0] truncated = {large_exponent_s3, fraction_field_s3};
-  wire round_up = guard_s3 & (sticky_s3 | fraction_field_0_s3);
-  wire [32:0] increments = {9'd0, carry_s3, 22'd0, round_up};
+  wire [32:0] increments = {9'd0, carry_s3, 22'd0, round_up_s3};
   wire [32:0] rounded = truncated + increments;
 
   // ---- registered outputs ----

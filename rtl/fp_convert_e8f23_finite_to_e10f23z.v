@@ -15,11 +15,23 @@ module fp_convert_e8f23_finite_to_e10f23z (
 );
 
   // ---- stage 0 ----
-  wire [22:0] a_fraction = a[22:0];
   wire [7:0] a_exponent = a[30:23];
   wire a_hidden = |a_exponent;
+  wire [22:0] a_fraction = a[22:0];
   wire [23:0] a_significand = {a_hidden, a_fraction};
-  wire a_is_zero = ~a_hidden & ~|a_fraction;
+  wire a_significand_23_16_is_zero = ~|a_significand[23:16];
+  wire a_significand_15_12_is_zero = ~|a_fraction[15:12];
+  wire a_significand_11_10_is_zero = ~|a_fraction[11:10];
+  wire [1:0] a_significand_11_8_zeros = {
+    a_significand_11_10_is_zero, a_significand_11_10_is_zero ? ~a_fraction[9] : ~a_fraction[11]
+  };
+  wire a_significand_15_14_is_zero = ~|a_fraction[15:14];
+  wire [1:0] a_significand_15_12_zeros = {
+    a_significand_15_14_is_zero, a_significand_15_14_is_zero ? ~a_fraction[13] : ~a_fraction[15]
+  };
+  wire [2:0] a_significand_15_8_zeros = {
+    a_significand_15_12_is_zero, a_significand_15_12_is_zero ? a_significand_11_8_zeros : a_significand_15_12_zeros
+  };
   wire a_significand_23_20_is_zero = ~|a_significand[23:20];
   wire a_significand_19_18_is_zero = ~|a_fraction[19:18];
   wire [1:0] a_significand_19_16_zeros = {
@@ -29,14 +41,8 @@ module fp_convert_e8f23_finite_to_e10f23z (
   wire [1:0] a_significand_23_20_zeros = {
     a_significand_23_22_is_zero, a_significand_23_22_is_zero ? ~a_fraction[21] : ~a_hidden
   };
-  wire a_significand_15_12_is_zero = ~|a_fraction[15:12];
-  wire a_significand_11_10_is_zero = ~|a_fraction[11:10];
-  wire [1:0] a_significand_11_8_zeros = {
-    a_significand_11_10_is_zero, a_significand_11_10_is_zero ? ~a_fraction[9] : ~a_fraction[11]
-  };
-  wire a_significand_15_14_is_zero = ~|a_fraction[15:14];
-  wire [1:0] a_significand_15_12_zeros = {
-    a_significand_15_14_is_zero, a_significand_15_14_is_zero ? ~a_fraction[13] : ~a_fraction[15]
+  wire [2:0] a_significand_23_16_zeros = {
+    a_significand_23_20_is_zero, a_significand_23_20_is_zero ? a_significand_19_16_zeros : a_significand_23_20_zeros
   };
   wire a_significand_7_4_is_zero = ~|a_fraction[7:4];
   wire a_significand_3_2_is_zero = ~|a_fraction[3:2];
@@ -47,84 +53,70 @@ module fp_convert_e8f23_finite_to_e10f23z (
   wire [1:0] a_significand_7_4_zeros = {
     a_significand_7_6_is_zero, a_significand_7_6_is_zero ? ~a_fraction[5] : ~a_fraction[7]
   };
+  wire a_is_zero = ~a_hidden & ~|a_fraction;
   wire a_effective_exponent_0 = a_exponent[0] | ~a_hidden;
   wire a_sign = a[31];
 
   // ---- stage 1 ----
-  reg [23:0] a_significand_s1;
-  reg [7:0] a_fraction_7_0_s1;
-  reg a_is_zero_s1;
+  reg a_significand_23_8_any_s1;
   reg a_significand_7_4_is_zero_s1;
   reg [1:0] a_significand_3_0_zeros_if_7_4_is_zero_s1;
-  reg a_significand_23_16_any_s1;
-  reg a_significand_15_12_is_zero_s1;
-  reg [1:0] a_significand_11_8_zeros_if_15_12_is_zero_s1;
-  reg a_significand_23_20_is_zero_s1;
-  reg [1:0] a_significand_19_16_zeros_if_23_20_is_zero_s1;
+  reg a_significand_23_16_is_zero_s1;
+  reg [2:0] a_significand_15_8_zeros_if_23_16_is_zero_s1;
+  reg [7:0] a_fraction_7_0_s1;
+  reg [23:0] a_significand_s1;
   reg [6:0] a_exponent_7_1_s1;
   reg a_effective_exponent_0_s1;
+  reg a_is_zero_s1;
   reg a_sign_s1;
   always @(posedge clk) begin
-    a_significand_s1 <= a_significand;
-    a_fraction_7_0_s1 <= a_fraction[7:0];
-    a_is_zero_s1 <= a_is_zero;
+    a_significand_23_8_any_s1 <= |a_significand[23:8];
     a_significand_7_4_is_zero_s1 <= a_significand_7_4_is_zero;
     a_significand_3_0_zeros_if_7_4_is_zero_s1 <=
         a_significand_7_4_is_zero ? a_significand_3_0_zeros : a_significand_7_4_zeros;
-    a_significand_23_16_any_s1 <= |a_significand[23:16];
-    a_significand_15_12_is_zero_s1 <= a_significand_15_12_is_zero;
-    a_significand_11_8_zeros_if_15_12_is_zero_s1 <=
-        a_significand_15_12_is_zero ? a_significand_11_8_zeros : a_significand_15_12_zeros;
-    a_significand_23_20_is_zero_s1 <= a_significand_23_20_is_zero;
-    a_significand_19_16_zeros_if_23_20_is_zero_s1 <=
-        a_significand_23_20_is_zero ? a_significand_19_16_zeros : a_significand_23_20_zeros;
+    a_significand_23_16_is_zero_s1 <= a_significand_23_16_is_zero;
+    a_significand_15_8_zeros_if_23_16_is_zero_s1 <=
+        a_significand_23_16_is_zero ? a_significand_15_8_zeros : a_significand_23_16_zeros;
+    a_fraction_7_0_s1 <= a_fraction[7:0];
+    a_significand_s1 <= a_significand;
     a_exponent_7_1_s1 <= a_exponent[7:1];
     a_effective_exponent_0_s1 <= a_effective_exponent_0;
+    a_is_zero_s1 <= a_is_zero;
     a_sign_s1 <= a_sign;
   end
-  wire a_significand_23_8_is_zero = ~|a_significand_s1[23:8];
-  wire [23:0] a_normalise_by_16 = a_significand_23_8_is_zero ? {a_fraction_7_0_s1, 16'd0} : a_significand_s1;
+  wire a_significand_23_8_is_zero = ~a_significand_23_8_any_s1;
   wire [2:0] a_significand_7_0_zeros = {a_significand_7_4_is_zero_s1, a_significand_3_0_zeros_if_7_4_is_zero_s1};
-  wire a_significand_23_16_is_zero = ~a_significand_23_16_any_s1;
-  wire [2:0] a_significand_15_8_zeros = {a_significand_15_12_is_zero_s1, a_significand_11_8_zeros_if_15_12_is_zero_s1};
-  wire [2:0] a_significand_23_16_zeros = {
-    a_significand_23_20_is_zero_s1, a_significand_19_16_zeros_if_23_20_is_zero_s1
-  };
-  wire [3:0] a_significand_23_8_zeros = {
-    a_significand_23_16_is_zero, a_significand_23_16_is_zero ? a_significand_15_8_zeros : a_significand_23_16_zeros
-  };
+  wire [3:0] a_significand_23_8_zeros = {a_significand_23_16_is_zero_s1, a_significand_15_8_zeros_if_23_16_is_zero_s1};
+  wire [3:0] a_significand_7_0_zeros_if_23_8_is_zero =
+      a_significand_23_8_is_zero ? {1'b0, a_significand_7_0_zeros} : a_significand_23_8_zeros;
+  wire [23:0] a_normalise_by_16 = a_significand_23_8_is_zero ? {a_fraction_7_0_s1, 16'd0} : a_significand_s1;
+  wire [23:0] a_normalise_by_8 =
+      a_significand_7_0_zeros_if_23_8_is_zero[3] ? {a_normalise_by_16[15:0], 8'd0} : a_normalise_by_16;
+  wire [23:0] a_normalise_by_4 =
+      a_significand_7_0_zeros_if_23_8_is_zero[2] ? {a_normalise_by_8[19:0], 4'd0} : a_normalise_by_8;
+  wire [23:0] a_normalise_by_2 =
+      a_significand_7_0_zeros_if_23_8_is_zero[1] ? {a_normalise_by_4[21:0], 2'd0} : a_normalise_by_4;
   wire [7:0] a_effective_exponent = {a_exponent_7_1_s1, a_effective_exponent_0_s1};
   wire [10:0] a_rebiased_exponent = {3'd0, a_effective_exponent} + 11'd384;
+  wire [4:0] a_significand_23_0_zeros = {a_significand_23_8_is_zero, a_significand_7_0_zeros_if_23_8_is_zero};
+  wire [10:0] a_normalised_exponent = a_rebiased_exponent - {6'd0, a_significand_23_0_zeros};
+  wire [9:0] exponent_field = a_is_zero_s1 ? 10'd0 : a_normalised_exponent[9:0];
 
   // ---- stage 2 ----
   reg a_sign_s2;
-  reg [10:0] a_rebiased_exponent_s2;
-  reg a_significand_23_8_is_zero_s2;
-  reg [3:0] a_significand_7_0_zeros_if_23_8_is_zero_s2;
-  reg a_is_zero_s2;
-  reg [23:0] a_normalise_by_16_s2;
+  reg [9:0] exponent_field_s2;
+  reg a_significand_7_0_zeros_if_23_8_is_zero_0_s2;
+  reg [23:0] a_normalise_by_2_s2;
   always @(posedge clk) begin
     a_sign_s2 <= a_sign_s1;
-    a_rebiased_exponent_s2 <= a_rebiased_exponent;
-    a_significand_23_8_is_zero_s2 <= a_significand_23_8_is_zero;
-    a_significand_7_0_zeros_if_23_8_is_zero_s2 <=
-        a_significand_23_8_is_zero ? {1'b0, a_significand_7_0_zeros} : a_significand_23_8_zeros;
-    a_is_zero_s2 <= a_is_zero_s1;
-    a_normalise_by_16_s2 <= a_normalise_by_16;
+    exponent_field_s2 <= exponent_field;
+    a_significand_7_0_zeros_if_23_8_is_zero_0_s2 <= a_significand_7_0_zeros_if_23_8_is_zero[0];
+    a_normalise_by_2_s2 <= a_normalise_by_2;
   end
-  wire [4:0] a_significand_23_0_zeros = {a_significand_23_8_is_zero_s2, a_significand_7_0_zeros_if_23_8_is_zero_s2};
-  wire [10:0] a_normalised_exponent = a_rebiased_exponent_s2 - {6'd0, a_significand_23_0_zeros};
-  wire [9:0] exponent_field = a_is_zero_s2 ? 10'd0 : a_normalised_exponent[9:0];
-  wire [23:0] a_normalise_by_8 =
-      a_significand_7_0_zeros_if_23_8_is_zero_s2[3] ? {a_normalise_by_16_s2[15:0], 8'd0} : a_normalise_by_16_s2;
-  wire [23:0] a_normalise_by_4 =
-      a_significand_7_0_zeros_if_23_8_is_zero_s2[2] ? {a_normalise_by_8[19:0], 4'd0} : a_normalise_by_8;
-  wire [23:0] a_normalise_by_2 =
-      a_significand_7_0_zeros_if_23_8_is_zero_s2[1] ? {a_normalise_by_4[21:0], 2'd0} : a_normalise_by_4;
   wire [23:0] a_normalise_by_1 =
-      a_significand_7_0_zeros_if_23_8_is_zero_s2[0] ? {a_normalise_by_2[22:0], 1'b0} : a_normalise_by_2;
+      a_significand_7_0_zeros_if_23_8_is_zero_0_s2 ? {a_normalise_by_2_s2[22:0], 1'b0} : a_normalise_by_2_s2;
   wire [22:0] fraction_field = a_normalise_by_1[22:0];
-  wire [32:0] truncated = {exponent_field, fraction_field};
+  wire [32:0] truncated = {exponent_field_s2, fraction_field};
 
   // ---- registered outputs ----
   always @(posedge clk) begin
@@ -132,7 +124,7 @@ module fp_convert_e8f23_finite_to_e10f23z (
   end
 
   // Bits that nothing needs.
-  wire unused = &{1'b0, a_normalised_exponent[10], a_normalise_by_1[23]};
+  wire unused = &{1'b0, a_normalise_by_1[23], a_normalised_exponent[10]};
 
 endmodule
 

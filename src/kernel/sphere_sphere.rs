@@ -46,8 +46,7 @@ pub(super) fn contact<T: Number>(
 
     let apart = named(p1 - p2, ["dx", "dy", "dz"]);
     let q = ((apart.x * apart.x + apart.y * apart.y) + apart.z * apart.z).named("distance_squared");
-    // In the order of their difference below, so that hardware compares them once.
-    let s = (r2 + r1).named("radius_sum");
+    let s = (r1 + r2).named("radius_sum");
 
     if fields == Fields::HIT {
         // The same decision as below without the root: q is 0 exactly if its rounded root is 0.

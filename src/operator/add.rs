@@ -1,4 +1,4 @@
-//! Sum and difference, on a single path: order by exponent, align, add or subtract, normalise, round.
+//! Sum and difference, on a single path: order by magnitude, align, add or subtract, normalise, round.
 
 use super::Domain;
 use super::parts::{
@@ -28,32 +28,31 @@ pub fn add_to<'g>(
         b.sign = (!b.sign).named("b_sign_inverted");
     }
     let effective_subtraction = (a.sign ^ b.sign).named("effective_subtraction");
+
+    let b_is_larger = a.magnitude().less_than(b.magnitude()).named("b_is_larger");
+    let choose = |if_b, if_a, name: &str| b_is_larger.select(if_b, if_a).named(name);
+    // Both differences are computed beside the comparison, so that the right one is available as soon as it is known.
     let [a_exponent, b_exponent] = [a.effective_exponent(), b.effective_exponent()];
     let more = to.fraction_bits() - domain.fraction_bits();
-    let order = Order::by(a_exponent, b_exponent, domain.significand_bits() + more + 2);
-    let choose = |if_b, if_a, name: &str| order.b_is_above.select(if_b, if_a).named(name);
-    let [a_significand, b_significand] = [a.true_significand(), b.true_significand()];
+    let differences = [a_exponent - b_exponent, b_exponent - a_exponent];
+    let align_distance = align_distance(differences, b_is_larger, domain.significand_bits() + more + 2);
+    let large_sign = choose(b.sign, a.sign, "large_sign");
     let large_exponent = choose(b_exponent, a_exponent, "large_exponent");
+    let large_significand = choose(b.true_significand(), a.true_significand(), "large_significand");
+    let small_significand = choose(a.true_significand(), b.true_significand(), "small_significand");
+    let [large_significand, small_significand] = [large_significand, small_significand].map(|it| it.append_zeros(more));
+
     // Below the significand are a guard bit, a round bit and the sticky bit; above it is the carry.
-    let small_significand = order.small(a_significand, b_significand, more + 2);
-    let (mut aligned, mut sticky) = shift_right_sticky(small_significand, order.distance, "align");
+    let (mut aligned, mut sticky) = shift_right_sticky(small_significand.append_zeros(2), align_distance, "align");
     if !domain.keeps_subnormals() && !domain.is_normal() {
         // The fraction of a flushed number does not count. It is removed here, where this is cheap.
-        let small_is_zero = choose(a.is_zero(), b.is_zero(), "small_is_zero");
+        let small_is_zero = b_is_larger.select(a.is_zero(), b.is_zero()).named("small_is_zero");
         (aligned, sticky) = (aligned.gate(!small_is_zero), sticky & !small_is_zero);
     }
-    // Of two numbers with the same exponent b may be the larger one, and a is then subtracted from it: b + ~a + 1. The
-    // one takes the place of the sticky bit.
-    let b_is_larger = a_significand.less_than(b_significand).named("b_significand_is_larger");
-    let is_reversed = (effective_subtraction & order.is_level & b_is_larger).named("is_reversed");
-    let last = (sticky | is_reversed).named("addend_last");
-    let addend = aligned.concat(last).extend(to.significand_bits() + 4).named("addend");
-    let [a_augend, b_augend] = [a_significand, b_significand].map(|it| it ^ is_reversed.repeat(it.width()));
-    let augend = choose(b_augend, a_augend, "augend_significand");
-    let augend = Signal::join(&[is_reversed, augend, is_reversed.repeat(more + 3)]).named("augend");
-    let is_sum = (!effective_subtraction | is_reversed).named("is_sum");
-    let sum = augend.minus_or_plus(addend, is_sum).named("sum");
-    let large_sign = (choose(b.sign, a.sign, "first_sign") ^ is_reversed).named("large_sign");
+    let width = to.significand_bits() + 4;
+    let addend = aligned.concat(sticky.named("aligned_sticky")).extend(width).named("addend");
+    let augend = large_significand.append_zeros(3).extend(width).named("augend");
+    let sum = augend.minus_or_plus(addend, !effective_subtraction).named("sum");
 
     let is_gradual = domain.keeps_subnormals() && to == domain;
     let (fields, sum_is_zero) = match is_gradual {
@@ -75,44 +74,21 @@ pub fn add_to<'g>(
     pack(to, sign, fields, special)
 }
 
-/// Two numbers in the order of their exponents.
-struct Order<'g> {
-    /// One bit: b has the larger exponent.
-    b_is_above: Signal<'g>,
-    /// One bit: the exponents are equal.
-    is_level: Signal<'g>,
-    /// The places by which [`Order::small`] has to be shifted.
-    distance: Signal<'g>,
-}
-
-impl<'g> Order<'g> {
-    /// By the exponents alone. The value that is shifted has `moved_bits`.
-    fn by(a_exponent: Signal<'g>, b_exponent: Signal<'g>, moved_bits: u32) -> Self {
-        let bits = a_exponent.width();
-        let difference = (a_exponent.extend(bits + 1) - b_exponent.extend(bits + 1)).named("exponent_difference");
-        let b_is_above = difference.msb().named("b_is_above");
-        let is_level = difference.low(bits).is_zero().named("exponents_are_equal");
-        // The complement of a difference below zero is its magnitude less one. Whether either is too large for the
-        // distance is known beside its sign.
-        let levels = distance_bits(moved_bits).min(bits);
-        let near = (difference.low(levels) ^ b_is_above.repeat(levels)).named("align_near");
-        let distance = if levels < bits {
-            let high = difference.slice(levels, bits - levels);
-            let [above, below] = [high.any().named("a_is_far_above"), (!high.all()).named("b_is_far_above")];
-            let far = b_is_above.select(below, above).named("align_far");
-            (near | far.repeat(levels)).named("align_distance")
-        } else {
-            near.named("align_distance")
-        };
-        Self { b_is_above, is_level, distance }
+/// The distance by which the smaller number is shifted: the right one of both exponent differences, in the bits that a
+/// value of `moved_bits` needs. For each difference it is known beforehand whether it is too large for them.
+fn align_distance<'g>(differences: [Signal<'g>; 2], b_is_larger: Signal<'g>, moved_bits: u32) -> Signal<'g> {
+    let [a_minus_b, b_minus_a] = differences;
+    let (a_minus_b, b_minus_a) = (a_minus_b.named("a_exponent_minus_b"), b_minus_a.named("b_exponent_minus_a"));
+    let bits = distance_bits(moved_bits);
+    if a_minus_b.width() <= bits {
+        return b_is_larger.select(b_minus_a, a_minus_b).named("align_distance");
     }
-
-    /// The significand of the number with the smaller exponent, followed by this number of bits. It is one place
-    /// further on if the distance is one less than the exponents say.
-    fn small(&self, a: Signal<'g>, b: Signal<'g>, more: u32) -> Signal<'g> {
-        let one_on = a.append_zeros(more - 1).extend(a.width() + more);
-        self.b_is_above.select(one_on, b.append_zeros(more)).named("small_significand")
-    }
+    let near = b_is_larger.select(b_minus_a.low(bits), a_minus_b.low(bits)).named("align_near");
+    let is_far = |difference: Signal<'g>, name: &str| difference.drop_low(bits).any().named(name);
+    let a_is_far = is_far(a_minus_b, "a_is_far_above");
+    let b_is_far = is_far(b_minus_a, "b_is_far_above");
+    let far = b_is_larger.select(b_is_far, a_is_far).named("align_far");
+    (near | far.repeat(bits)).named("align_distance")
 }
 
 /// Normalises and rounds `sum`, which is carry, significand and three bits. With subnormals, the shift ends where the
@@ -185,12 +161,17 @@ fn taken<'g>(domain: Domain, normalised: Signal<'g>) -> (Signal<'g>, Signal<'g>,
 /// exponents alone decide which number is aligned.
 pub fn add_magnitudes<'g>(a: Signal<'g>, b: Signal<'g>, domain: Domain) -> Signal<'g> {
     let (a, b) = (Operand::unpack(a, domain, "a"), Operand::unpack(b, domain, "b"));
-    let order = Order::by(a.exponent, b.exponent, domain.significand_bits() + 1);
-    let choose = |if_b, if_a, name: &str| order.b_is_above.select(if_b, if_a).named(name);
-    let [a_significand, b_significand] = [a.true_significand(), b.true_significand()];
+    // Both differences. The borrow tells which one is right.
+    let width = domain.exponent_bits() + 1;
+    let a_less_b = a.exponent.extend(width) - b.exponent.extend(width);
+    let b_is_larger = a_less_b.msb().named("b_is_larger");
+    let differences = [a_less_b.low(width - 1), b.exponent - a.exponent];
+    let align_distance = align_distance(differences, b_is_larger, domain.significand_bits() + 1);
+    let choose = |if_b, if_a, name: &str| b_is_larger.select(if_b, if_a).named(name);
     let large_exponent = choose(b.exponent, a.exponent, "large_exponent");
-    let augend = choose(b_significand, a_significand, "large_significand");
-    let (aligned, below) = shift_right_sticky(order.small(a_significand, b_significand, 1), order.distance, "align");
+    let augend = choose(b.true_significand(), a.true_significand(), "large_significand");
+    let small_significand = choose(a.true_significand(), b.true_significand(), "small_significand");
+    let (aligned, below) = shift_right_sticky(small_significand.append_zeros(1), align_distance, "align");
 
     // The bits below the larger significand bypass the adder.
     let width = domain.significand_bits() + 1;

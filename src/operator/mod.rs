@@ -249,16 +249,9 @@ pub fn pipelined(
     model: &DelayModel,
     clock_mhz: f64,
 ) -> Result<Arc<Module>, BuildErrors> {
-    let (domain, architecture) = (domain.into(), Architecture::of(model));
-    let combinational = build_as(operator, domain, architecture)?;
-    let by_table = architecture == Architecture::Table && architecture.is_possible(operator, domain);
-    let apart = by_table && operator == Operator::Recip;
-    cut(&combinational, model, if apart { clock_mhz * BETWEEN_BLOCKS } else { clock_mhz })
+    let combinational = build_as(operator, domain, Architecture::of(model))?;
+    cut(&combinational, model, clock_mhz)
 }
-
-/// A reciprocal by table is cut for a clock that is higher by this factor. Its last step adds three products. In a full
-/// device their blocks are farther apart than in an operator by itself, where two sums fit into one stage.
-const BETWEEN_BLOCKS: f64 = 1.1;
 
 /// The architecture of correct roots, if there are several.
 fn about_architecture(operator: Operator, domain: Domain, architecture: Architecture) -> Option<&'static str> {

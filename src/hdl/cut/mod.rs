@@ -47,7 +47,7 @@ pub fn cut(module: &Module, model: &DelayModel, clock_mhz: f64) -> Result<Arc<Mo
         let error = |message| Error { module: module.name.clone(), message, place };
         return Err(BuildErrors(wrong.into_iter().map(error).collect()));
     }
-    let mut plan = Plan::even(module, model, model.budget(clock_mhz));
+    let mut plan = Plan::as_soon_as_possible(module, model, model.budget(clock_mhz));
     plan.save_registers();
     let mut pipeline = super::finish::finish(registered(module, &plan, model, place)?)?;
     pipeline.latency = plan.stages;

@@ -14,9 +14,6 @@ use crate::hdl::module::{Module, NodeId, Op};
 /// Sweeps to save registers; each one gains less than the one before, and few modules take more than six.
 const MOST_SWEEPS: u32 = 24;
 
-/// Halvings of the time in which the least that is enough is looked for: to a thousandth.
-const HALVINGS: u32 = 10;
-
 /// Sums of the same delays in another order may differ by this much, in ns.
 const ROUNDING: f64 = 1e-9;
 
@@ -60,22 +57,6 @@ enum Sweep {
 }
 
 impl<'a> Plan<'a> {
-    /// As few stages as `budget` allows, and the longest of them as short as so many stages allow.
-    pub(super) fn even(module: &'a Module, model: &DelayModel, budget: f64) -> Self {
-        let mut best = Self::as_soon_as_possible(module, model, budget);
-        let (mut enough, mut short) = (budget, 0.0);
-        for _ in 0..HALVINGS {
-            let middle = f64::midpoint(enough, short);
-            let plan = Self::as_soon_as_possible(module, model, middle);
-            if plan.stages > best.stages {
-                short = middle;
-            } else {
-                (enough, best) = (middle, plan);
-            }
-        }
-        best
-    }
-
     /// `budget` is the time for logic between two registers, in ns.
     pub(super) fn as_soon_as_possible(module: &'a Module, model: &DelayModel, budget: f64) -> Self {
         let count = module.nodes.len();
