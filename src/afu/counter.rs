@@ -110,7 +110,7 @@ pub(super) fn some_free<'g>(reserved: Register<'g>, frees: Signal<'g>) -> AtStep
 }
 
 /// A counter of things that come and go, at most `2^(width − 1)` of them. The one that went a cycle ago is counted at
-/// `gone`. Returns whether any will be left, after a cycle in which one goes or not.
+/// `gone`. Returns whether any will be left, after a cycle in which one goes or not; one that comes may go at once.
 pub(super) fn waiting<'g>(
     graph: &'g Graph,
     name: &str,
@@ -120,7 +120,8 @@ pub(super) fn waiting<'g>(
 ) -> AtStep<'g> {
     let count = graph.register(name, width, 0);
     up_down(count, start, comes, gone);
-    left_after(*count, gone).or(comes)
+    let left = left_after(*count, gone);
+    AtStep { with: left.with | (comes & left.without), without: left.without | comes }
 }
 
 /// A count of the cycles in which `counts` is set, from `first` at `restart`. Its upper half counts when the lower half

@@ -54,48 +54,57 @@ pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let in_hand = graph.register("in_hand", 1, 0);
     let place = graph.register("place", place_bits, 0);
     let last = graph.data_register("last", place_bits);
-    let lines_left = Countdown::new(&graph, "lines_left", COUNT_BITS);
-    let (some_left, last_is_next, taken) = (lines_left.any, lines_left.one, lines_left.counted);
-    // Even if the link brings data that was not requested, no more than the job's lines are taken.
-    let line_waits = graph.register("line_waits", 1, 0);
+    let take = graph.wire("take", 1);
+    let coming = Coming::new(&graph, spec, [start, comes, take], lines);
+    let line_ready = coming.line_ready;
     let of_full = graph.constant(place_bits, u128::from(per_line - 1));
-    let next_last = last_is_next.select(last_place, of_full).named("next_last");
+    let next_last = coming.last_is_next.select(last_place, of_full).named("next_last");
 
-    // Lane j carries a pair if all lanes before it do.
     let rounds = Rounds::new(&graph, spec, scpus);
     let after = |pairs: u32| {
         let place_after = place.extend(place_bits + 2).plus(u128::from(pairs));
         place_after.named(&format!("place_after_{pairs}"))
     };
-    let beyond = |pairs: u32| {
-        let none_left = after(pairs).greater_than(last.extend(place_bits + 2));
-        none_left.named(&format!("line_done_after_{pairs}"))
-    };
+    // Whether the line in hand has a pair this far behind the next one is known a cycle ahead.
+    let holds: Vec<_> = (1..=lanes.min(per_line - 1)).map(|on| graph.register(&format!("holds_{on}"), 1, 0)).collect();
+    let holds_at = |on: u32| holds.get(on as usize - 1).map_or(in_hand.same(0), |flag| flag.value());
+
+    // Lane j carries a pair if all lanes before it do.
     let mut going = rounds.as_ref().map_or(may_enter, |rounds| may_enter & rounds.may_go) & *in_hand;
     let mut go = Vec::new();
     for lane in 0..lanes {
-        let reach = after(lane);
-        let is_next = reach.drop_low(place_bits).any() & *line_waits & reach.low(place_bits).at_most(next_last);
-        // A line may have been used up by a group that began in the line before it.
-        let present = if lane == 0 { !beyond(0) } else { !beyond(lane) | is_next };
-        let present = present.named(&format!("present_{lane}"));
         let unit = rounds.as_ref().map_or_else(|| more_than(scpus, lane), |rounds| rounds.admits(lane));
-        let unit = unit.named(&format!("unit_{lane}"));
-        going = (going & present & unit).named(&format!("go_{lane}"));
+        going = going & unit.named(&format!("unit_{lane}"));
+        if lane > 0 {
+            // A line may have been used up by a group that began in the line before it.
+            let reach = after(lane);
+            let is_next = reach.drop_low(place_bits).any() & line_ready & is_in(reach.low(place_bits), next_last);
+            going = going & (holds_at(lane) | is_next).named(&format!("present_{lane}"));
+        }
+        going = going.named(&format!("go_{lane}"));
         go.push(going);
     }
-    let line_done = by_group(&go, beyond).named("line_done");
-    let take = (*line_waits & (line_done | !*in_hand)).named("take");
-    in_hand.next(!start & (take | (*in_hand & !line_done)));
+    let done_after = |pairs: u32| if pairs == 0 { in_hand.same(0) } else { !holds_at(pairs) };
+    let line_done = by_group(&go, done_after).named("line_done");
+    take.drive(line_ready & (line_done | !*in_hand));
+    let taken = (take & !start).registered("taken");
     last.next_if(take, next_last);
     // In the next line, if the present one is finished; after the last line there is none, and the value is not used.
     let place_after = |pairs: u32| if per_line == 1 { place.same(0) } else { after(pairs).low(place_bits) };
     let next_place = by_group(&go, place_after).named("next_place");
     place.next((start | !*in_hand).select(place.same(0), next_place));
-    let waiting_bits = spec.max_outstanding.ilog2() + 1;
-    let any_waiting = waiting(&graph, "lines_waiting", waiting_bits, [start, comes], taken);
-    let waits_then = any_waiting.and(lines_left.connect(start, lines, take)).at(take).named("some_wait");
-    line_waits.next(!start & waits_then);
+    // A group that goes on in the next line may use it up.
+    let moved = |on: u32| {
+        let goes_on =
+            by_group(&go, |pairs| is_in(place_after(pairs).extend(place_bits + 2).plus(on.into()), next_last));
+        let begins = next_last.at_least(next_last.same(on.into()));
+        in_hand.select(goes_on, begins).named(&format!("next_holds_{on}"))
+    };
+    in_hand.next(!start & take.select(moved(0), *in_hand & !line_done));
+    for (flag, on) in holds.iter().zip(1..) {
+        let stays = by_group(&go, |pairs| is_in(after(pairs + on), *last)).named(&format!("still_holds_{on}"));
+        flag.next(take.select(moved(on), stays));
+    }
     // The place in the collector's memory of the line after the one in hand.
     let head = graph.register("head", spec.max_outstanding.ilog2(), 0);
     from_zero(head, start, take, head.plus(1));
@@ -135,10 +144,43 @@ pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     graph.output("pairs", aligned.delay(1).named("pairs"));
     graph.output("head", head.value());
     graph.output("taken", taken);
-    let waits = (run & (*in_hand | some_left)).named("waits");
+    let waits = (run & (*in_hand | line_ready | coming.some_left)).named("waits");
     graph.output("waits_for_input", (waits & !*in_hand).delay(1));
     graph.output("waits_for_output", (waits & *in_hand & !may_enter).delay(1));
     graph.finish()
+}
+
+/// The lines of the job that are not in hand yet. Up to two that have come are ready to be taken, so that a line that
+/// is taken decides nothing but how many are.
+struct Coming<'g> {
+    /// One bit: a line is ready.
+    line_ready: Signal<'g>,
+    /// One bit: that line is the job's last.
+    last_is_next: Signal<'g>,
+    /// One bit: there are lines of the job that are not ready.
+    some_left: Signal<'g>,
+}
+
+impl<'g> Coming<'g> {
+    /// For a job of so many `lines`, one of which `comes` and one of which is taken at `take`. Even if the link brings
+    /// data that was not requested, no more than the job's lines become ready.
+    fn new(graph: &'g Graph, spec: &Spec, [start, comes, take]: [Signal<'g>; 3], lines: Signal<'g>) -> Self {
+        let ready = ["line_ready", "two_lines_ready"].map(|name| graph.register(name, 1, 0));
+        let [one, two] = ready.map(|flag| flag.value());
+        let some_come = graph.register("some_come", 1, 0);
+        let lines_left = Countdown::new(graph, "lines_left", COUNT_BITS);
+        let (some_left, last_is_first) = (lines_left.any, lines_left.one);
+        let readies = ((*some_come | comes) & some_left & !two).named("line_readies");
+        let come_bits = spec.max_outstanding.ilog2() + 1;
+        let left = waiting(graph, "lines_waiting", come_bits, [start, comes], lines_left.counted).at(readies);
+        some_come.next(!start & left);
+        lines_left.connect(start, lines, readies);
+        ready[0].next(!start & (readies | two | (one & !take)));
+        ready[1].next(!start & one & !take & (two | readies));
+        let last_ready = graph.register("last_line_ready", 1, 0);
+        last_ready.next(!start & (*last_ready | (readies & last_is_first)));
+        Self { line_ready: one, last_is_next: (*last_ready & !two).named("last_is_next"), some_left }
+    }
 }
 
 /// The SCPUs that the lanes of a group are for, lane 0 in the lowest bits. `group` is the number of its pairs.
@@ -160,6 +202,11 @@ fn targets<'g>(graph: &'g Graph, start: Signal<'g>, scpus: Signal<'g>, group: Si
 /// selects last.
 fn by_group<'g>(go: &[Signal<'g>], of: impl Fn(u32) -> Signal<'g>) -> Signal<'g> {
     (1..).zip(go).fold(of(0), |fewer, (pairs, go)| go.select(of(pairs), fewer))
+}
+
+/// One bit: a line whose last pair is at `last` has one at this place.
+fn is_in<'g>(place: Signal<'g>, last: Signal<'g>) -> Signal<'g> {
+    place.at_most(last.extend(place.width()))
 }
 
 /// One bit: `value` > `lane`, for a small lane: no carry chain over the whole width.

@@ -59,7 +59,12 @@ module credits (
   (* hierconn *) wire                       \dut.feeder.taken ;
   (* hierconn *) wire                       \dut.collector.line_comes ;
   (* hierconn *) wire [2:0]                 \dut.feeder.lines_waiting ;
-  (* hierconn *) wire                       \dut.feeder.line_waits ;
+  (* hierconn *) wire                       \dut.feeder.line_ready ;
+  (* hierconn *) wire                       \dut.feeder.two_lines_ready ;
+  (* hierconn *) wire                       \dut.feeder.last_line_ready ;
+  (* hierconn *) wire                       \dut.feeder.some_come ;
+  (* hierconn *) wire                       \dut.feeder.lines_left_step ;
+  (* hierconn *) wire                       \dut.feeder.holds_1 ;
   (* hierconn *) wire [31:0]                \dut.feeder.lines_left ;
   (* hierconn *) wire                       \dut.feeder.any_lines_left ;
   (* hierconn *) wire                       \dut.feeder.one_lines_left ;
@@ -140,10 +145,11 @@ module credits (
 
   // Pairs that the feeder has not issued yet.
   wire [ROOM_BITS-1:0] next_room = \dut.credits.room + \dut.credits.room_change ;
-  // A line that was taken is counted one cycle later.
-  wire [31:0] lines_left = \dut.feeder.lines_left - {31'd0, \dut.feeder.taken };
-  wire [33:0] in_lines = lines_left == 32'd0 ? 34'd0
-    : {1'b0, lines_left, 1'b0} - {33'd0, ~\dut.control.last_place };
+  // A line that became ready is counted one cycle later.
+  wire [31:0] unready = \dut.feeder.lines_left - {31'd0, \dut.feeder.lines_left_step };
+  wire [32:0] lines_left = {1'b0, unready} + {32'd0, \dut.feeder.line_ready } + {32'd0, \dut.feeder.two_lines_ready };
+  wire [33:0] in_lines = lines_left == 33'd0 ? 34'd0
+    : {lines_left, 1'b0} - {33'd0, ~\dut.control.last_place };
   wire [33:0] to_give = in_lines
     + (\dut.feeder.in_hand ? 34'd1 + {33'd0, \dut.feeder.last } - {33'd0, \dut.feeder.place } : 34'd0);
 
@@ -174,8 +180,9 @@ module credits (
       | (\dut.control.job_lines == {1'b0, \dut.control.job_count [31:1]} + {31'd0, \dut.control.job_count [0]}
         & \dut.control.last_place == ~\dut.control.job_count [0]));
     takes_a_line: assert (\dut.feeder.lines_waiting <= 3'd4
-      & \dut.feeder.line_waits == (\dut.feeder.lines_waiting != {2'd0, \dut.feeder.taken } & lines_left != 32'd0)
-      & (~\dut.feeder.taken | (\dut.feeder.lines_waiting != 3'd0 & \dut.feeder.lines_left != 32'd0)));
+      & \dut.feeder.some_come == (\dut.feeder.lines_waiting != {2'd0, \dut.feeder.lines_left_step })
+      & (\dut.feeder.line_ready | ~\dut.feeder.two_lines_ready )
+      & (~\dut.feeder.lines_left_step | (\dut.feeder.lines_waiting != 3'd0 & \dut.feeder.lines_left != 32'd0)));
     begins_everywhere: assert ({5{\dut.control.begin_job }} == {\dut.control.begin_collector ,
       \dut.control.begin_feeder , \dut.control.begin_credits , \dut.control.begin_packer ,
       \dut.control.begin_dispatcher });
@@ -184,9 +191,13 @@ module credits (
   end
   always @* if (begun & ~\dut.control.begin_job & ~rst) begin
     turn_is_an_scpu: assert (\dut.feeder.turn < `SCPUS);
-    flags_are_right: assert (began | (\dut.feeder.any_lines_left == (lines_left != 32'd0)
-      & \dut.feeder.one_lines_left == (lines_left == 32'd1)));
-    only_last_is_short: assert (~\dut.feeder.in_hand | \dut.feeder.last | lines_left == 32'd0);
+    flags_are_right: assert (began | (\dut.feeder.any_lines_left == (unready != 32'd0)
+      & \dut.feeder.one_lines_left == (unready == 32'd1)));
+    knows_the_last: assert ((~\dut.feeder.last_line_ready | unready == 32'd0)
+      & (\dut.feeder.last_line_ready | ~\dut.feeder.line_ready | unready != 32'd0));
+    knows_what_it_holds: assert (~\dut.feeder.in_hand | ((\dut.feeder.last | ~\dut.feeder.place )
+      & \dut.feeder.holds_1 == (\dut.feeder.last & ~\dut.feeder.place )));
+    only_last_is_short: assert (~\dut.feeder.in_hand | \dut.feeder.last | lines_left == 33'd0);
     each_once: assert (to_give + {26'd0, inside} + {32'd0, \dut.feeder.entered } + {32'd0, uncounted} + {2'd0, emerged}
       == {2'd0, \dut.control.job_count });
     room_is_seen: assert (~\dut.credits.may_enter | \dut.credits.room >= 8);

@@ -87,7 +87,14 @@ const CONTROL: Rows = &[
 
 const FEEDER: Rows = &[
     ("pairs enter after an abort", "wire go_0 = may_go_on & ", "wire go_0 = ", 20, "only_in_a_job"),
-    ("takes a line that is not there", "wire take = line_waits & ", "wire take = ", 9, "takes_a_line"),
+    (
+        "a line is ready that is not there",
+        "(some_come | line_comes) & any_lines_left",
+        "any_lines_left",
+        9,
+        "takes_a_line",
+    ),
+    ("takes a line that is not ready", "wire take = line_ready & ", "wire take = ", 9, "each_once"),
     ("a turn too many", "(turn >= turns_before_2)", "(turn > turns_before_2)", 21, "turn_is_an_scpu"),
     ("two pairs count as one", "entered <= go_1 ? 2'd2 : ", "entered <= go_1 ? 2'd1 : ", 20, "each_once"),
     (
@@ -97,7 +104,22 @@ const FEEDER: Rows = &[
         20,
         "flags_are_right",
     ),
-    ("every line is short", "one_lines_left ? last_place : 1'b1", "last_place", 19, "only_last_is_short"),
+    ("every line is short", "last_is_next ? last_place : 1'b1", "last_place", 19, "only_last_is_short"),
+    (
+        "the last line is known late",
+        "last_line_ready & ~two_lines_ready",
+        "last_line_ready & two_lines_ready",
+        19,
+        "each_once",
+    ),
+    (
+        "the last line is any line",
+        "line_readies & one_lines_left",
+        "line_readies & any_lines_left",
+        19,
+        "knows_the_last",
+    ),
+    ("a short line holds two", "next_last >= 1'b1", "1'b1", 19, "knows_what_it_holds"),
 ];
 
 const CREDITS: Rows = &[
