@@ -22,7 +22,7 @@ module contact_afu_feeder (
   output reg  [13:0]  targets,
   output reg  [511:0] pairs,
   output reg  [5:0]   head,
-  output wire         taken,
+  output reg          taken,
   output reg          waits_for_input,
   output reg          waits_for_output
 );
@@ -32,18 +32,23 @@ module contact_afu_feeder (
   reg [2:0] phase;
   reg [2:0] turn_phase;
   reg in_hand;
-  reg last;
-  reg place;
-  reg line_waits;
-  reg one_lines_left;
   reg turn_within;
   reg block_is_last;
-  reg [6:0] turn_block;
+  reg holds_1;
+  reg place;
+  reg line_ready;
+  reg last_line_ready;
+  reg two_lines_ready;
+  reg some_come;
+  reg any_lines_left;
   reg lines_left_step;
   reg many_lines_left;
   reg started_with_many_lines_left;
   reg [31:0] lines_left;
   reg [6:0] lines_waiting;
+  reg one_lines_left;
+  reg last;
+  reg [6:0] turn_block;
   reg [1:0] carries_rank_0;
   reg [6:0] turn;
   (* keep = "true", dont_merge *) reg aligns_by_1_copy_3;
@@ -60,22 +65,53 @@ module contact_afu_feeder (
   (* keep = "true", dont_merge *) reg takes_line_copy_1;
   (* keep = "true", dont_merge *) reg takes_line_copy_2;
   (* keep = "true", dont_merge *) reg takes_line_copy_3;
-  reg any_lines_left;
 
   // ---- logic ----
   wire may_go = phase == turn_phase;
-  wire [2:0] place_after_0 = {2'd0, place};
-  wire line_done_after_0 = {2'd0, last} < place_after_0;
-  wire present_0 = ~line_done_after_0;
-  wire go_0 = may_go_on & may_go & in_hand & present_0;
-  wire [2:0] place_after_1 = place_after_0 + 3'd1;
-  wire line_done_after_1 = {2'd0, last} < place_after_1;
-  wire next_last = one_lines_left ? last_place : 1'b1;
-  wire present_1 = ~line_done_after_1 | (|place_after_1[2:1] & line_waits & (next_last >= place_after_1[0]));
+  wire go_0 = may_go_on & may_go & in_hand;
   wire [1:0] turn_within_plus_1 = {1'b0, turn_within} + 2'd1;
   wire [1:0] block_size = (block_is_last & scpus[0]) ? {1'b0, scpus[0]} : 2'd2;
   wire unit_1 = turn_within_plus_1 < block_size;
-  wire go_1 = go_0 & present_1 & unit_1;
+  wire [2:0] place_after_0 = {2'd0, place};
+  wire [2:0] place_after_1 = place_after_0 + 3'd1;
+  wire last_is_next = last_line_ready & ~two_lines_ready;
+  wire next_last = last_is_next ? last_place : 1'b1;
+  wire next_last_below_place_after_1_0 = next_last < place_after_1[0];
+  wire present_1 = holds_1 | (|place_after_1[2:1] & line_ready & ~next_last_below_place_after_1_0);
+  wire go_1 = go_0 & unit_1 & present_1;
+  wire line_done = go_1 ? 1'b1 : go_0 ? ~holds_1 : 1'b0;
+  wire take = line_ready & (line_done | ~in_hand);
+  wire line_readies = (some_come | line_comes) & any_lines_left & ~two_lines_ready;
+  wire has_many_lines_left = many_lines_left | started_with_many_lines_left;
+  wire has_many_lines_left_or_left_2_0_above_1 = has_many_lines_left | (3'd1 < lines_left[2:0]);
+  wire lines_waiting_6_1_any = |lines_waiting[6:1];
+  wire lines_waiting_6_1_any_if_left_step = lines_left_step ? lines_waiting_6_1_any : |lines_waiting;
+  wire some_come_next =
+      ~start
+      & (line_readies ?
+             ((lines_left_step ? (|lines_waiting[6:2] | (lines_waiting[1] & lines_waiting[0])) : lines_waiting_6_1_any)
+              | (line_comes & lines_waiting_6_1_any_if_left_step)) :
+         (lines_waiting_6_1_any_if_left_step | line_comes));
+  wire left_2_0_equals_2_unless_has_many_lines_left = ~has_many_lines_left & (lines_left[2:0] == 3'd2);
+  wire one_lines_left_next =
+      ~start
+      & (line_readies    ?
+             (lines_left_step ? (~has_many_lines_left & (lines_left[2:0] == 3'd3)) :
+              left_2_0_equals_2_unless_has_many_lines_left) :
+         lines_left_step ? left_2_0_equals_2_unless_has_many_lines_left :
+         (~has_many_lines_left & (lines_left[2:0] == 3'd1)));
+  wire [2:0] place_after_2 = place_after_0 + 3'd2;
+  wire next_place = go_1 ? place_after_2[0] : go_0 ? place_after_1[0] : place;
+  wire after_2_0_plus_1_if_go_1 =
+      go_1 ? ({2'd0, next_last} >= ({2'd0, place_after_2[0]} + 3'd1)) :
+      go_0 ? ({2'd0, next_last} >= ({2'd0, place_after_1[0]} + 3'd1)) :
+      ({2'd0, next_last} >= place_after_1);
+  wire next_holds_1 = in_hand ? after_2_0_plus_1_if_go_1 : (next_last >= 1'b1);
+  wire [2:0] place_after_3 = place_after_0 + 3'd3;
+  wire still_holds_1 =
+      go_1 ? ({2'd0, last} >= place_after_3) :
+      go_0 ? ({2'd0, last} >= place_after_2) :
+      ({2'd0, last} >= place_after_1);
   wire [1:0] turn_within_plus_2 = {1'b0, turn_within} + 2'd2;
   wire ends_block =
       go_1 ? (turn_within_plus_2 == block_size) :
@@ -88,32 +124,12 @@ module contact_afu_feeder (
   wire one_block = blocks == 8'd1;
   wire before_last_block = ({1'b0, turn_block} + 8'd2) == blocks;
   wire next_within = go_1 ? turn_within_plus_2[0] : go_0 ? turn_within_plus_1[0] : turn_within;
-  wire [2:0] place_after_2 = place_after_0 + 3'd2;
-  wire line_done_after_2 = {2'd0, last} < place_after_2;
-  wire line_done = go_1 ? line_done_after_2 : go_0 ? line_done_after_1 : line_done_after_0;
-  wire take = line_waits & (line_done | ~in_hand);
-  wire has_many_lines_left = many_lines_left | started_with_many_lines_left;
-  wire left_2_0_equals_2_unless_has_many_lines_left = ~has_many_lines_left & (lines_left[2:0] == 3'd2);
-  wire one_lines_left_next =
-      ~start
-      & (take            ?
-             (lines_left_step ? (~has_many_lines_left & (lines_left[2:0] == 3'd3)) :
-              left_2_0_equals_2_unless_has_many_lines_left) :
-         lines_left_step ? left_2_0_equals_2_unless_has_many_lines_left :
-         (~has_many_lines_left & (lines_left[2:0] == 3'd1)));
-  wire lines_waiting_6_1_any = |lines_waiting[6:1];
-  wire has_many_lines_left_or_left_2_0_above_1 = has_many_lines_left | (3'd1 < lines_left[2:0]);
-  wire left_2_0_above_2_if_lines_left_step =
-      lines_left_step ? (has_many_lines_left | (3'd2 < lines_left[2:0])) : has_many_lines_left_or_left_2_0_above_1;
-  wire left_2_0_above_1_if_lines_left_step =
-      lines_left_step ? has_many_lines_left_or_left_2_0_above_1 : (has_many_lines_left | |lines_left[2:0]);
-  wire some_wait =
-      take ?
-          (((lines_left_step ? (|lines_waiting[6:2] | (lines_waiting[1] & lines_waiting[0])) : lines_waiting_6_1_any)
-            | line_comes)
-           & left_2_0_above_2_if_lines_left_step) :
-      (((lines_left_step ? lines_waiting_6_1_any : |lines_waiting) | line_comes) & left_2_0_above_1_if_lines_left_step);
-  wire next_place = go_1 ? place_after_2[0] : go_0 ? place_after_1[0] : place;
+  wire next_holds_0 =
+      in_hand ?
+          (go_1 ? (next_last >= place_after_2[0]) :
+           go_0 ? ~next_last_below_place_after_1_0 :
+           ({2'd0, next_last} >= place_after_0)) :
+      1'b1;
   wire [6:0] turns_before_1 = scpus - 7'd1;
   wire [6:0] turn_after_1 = (turn >= turns_before_1) ? (turn - turns_before_1) : (turn + 7'd1);
   wire [6:0] turns_before_2 = scpus - 7'd2;
@@ -125,7 +141,7 @@ module contact_afu_feeder (
     aligns_by_1_copy_1 ? held_3 : held_1,
     aligns_by_1_copy_0 ? held_2 : held_0
   };
-  wire waits = run & (in_hand | any_lines_left);
+  wire waits = run & (in_hand | line_ready | any_lines_left);
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
@@ -148,35 +164,49 @@ module contact_afu_feeder (
       phase <= 3'd0;
       turn_phase <= 3'd0;
       in_hand <= 1'b0;
-      place <= 1'b0;
-      line_waits <= 1'b0;
-      one_lines_left <= 1'b0;
       turn_within <= 1'b0;
       block_is_last <= 1'b0;
-      turn_block <= 7'd0;
+      holds_1 <= 1'b0;
+      place <= 1'b0;
+      line_ready <= 1'b0;
+      last_line_ready <= 1'b0;
+      two_lines_ready <= 1'b0;
+      some_come <= 1'b0;
+      any_lines_left <= 1'b0;
       lines_left_step <= 1'b0;
       many_lines_left <= 1'b0;
       started_with_many_lines_left <= 1'b0;
       lines_left <= 32'd0;
       lines_waiting <= 7'd0;
+      one_lines_left <= 1'b0;
+      turn_block <= 7'd0;
       carries <= 2'd0;
       carries_rank_0 <= 2'd0;
       turn <= 7'd0;
       head <= 6'd0;
-      any_lines_left <= 1'b0;
+      taken <= 1'b0;
     end else begin
       entered <= go_1 ? 2'd2 : go_0 ? 2'd1 : 2'd0;
       may_go_on <= may_enter;
       phase <= (phase == 3'd4) ? 3'd0 : (phase + 3'd1);
       turn_phase <= round_begins ? 3'd0 : ends_block ? ((turn_phase == 3'd4) ? 3'd0 : (turn_phase + 3'd1)) : turn_phase;
-      in_hand <= ~start & (take | (in_hand & ~line_done));
-      place <= (start | ~in_hand) ? 1'b0 : next_place;
-      line_waits <= ~start & some_wait;
-      one_lines_left <= one_lines_left_next;
+      in_hand <= ~start & (take ? next_holds_0 : (in_hand & ~line_done));
       turn_within <= (start | ends_block) ? 1'b0 : next_within;
       block_is_last <= round_begins ? one_block : ends_block ? before_last_block : block_is_last;
-      turn_block <= round_begins ? 7'd0 : ends_block ? (turn_block + 7'd1) : turn_block;
-      lines_left_step <= take & ~start;
+      holds_1 <= take ? next_holds_1 : still_holds_1;
+      place <= (start | ~in_hand) ? 1'b0 : next_place;
+      line_ready <= ~start & (line_readies | two_lines_ready | (line_ready & ~take));
+      last_line_ready <= ~start & (last_line_ready | (line_readies & one_lines_left));
+      two_lines_ready <= ~start & line_ready & ~take & (two_lines_ready | line_readies);
+      some_come <= some_come_next;
+      any_lines_left <=
+          ~start
+          & (line_readies    ?
+                 (lines_left_step ? (has_many_lines_left | (3'd2 < lines_left[2:0])) :
+                  has_many_lines_left_or_left_2_0_above_1) :
+             lines_left_step ? has_many_lines_left_or_left_2_0_above_1 :
+             (has_many_lines_left | |lines_left[2:0]));
+      lines_left_step <= line_readies & ~start;
       many_lines_left <= ~start & |lines_left[31:3];
       started_with_many_lines_left <= start & |lines[31:3];
       if (start | lines_left_step) lines_left <= start ? lines : (lines_left - 32'd1);
@@ -184,11 +214,13 @@ module contact_afu_feeder (
           start                          ? 7'd0 :
           (line_comes ^ lines_left_step) ? (line_comes ? (lines_waiting + 7'd1) : (lines_waiting - 7'd1)) :
           lines_waiting;
+      one_lines_left <= one_lines_left_next;
+      turn_block <= round_begins ? 7'd0 : ends_block ? (turn_block + 7'd1) : turn_block;
       carries <= carries_rank_0;
       carries_rank_0 <= {go_1, go_0};
       turn <= start ? 7'd0 : next_turn;
       head <= start ? 6'd0 : take ? (head + 6'd1) : head;
-      any_lines_left <= ~start & (take ? left_2_0_above_2_if_lines_left_step : left_2_0_above_1_if_lines_left_step);
+      taken <= take & ~start;
     end
   end
   (* keep = "true" *) always @(posedge clk) begin
@@ -201,8 +233,6 @@ module contact_afu_feeder (
     takes_line_copy_2 <= takes_line_soon;
     takes_line_copy_3 <= takes_line_soon;
   end
-
-  assign taken = lines_left_step;
 
   // Bits that nothing needs.
   wire unused = &{1'b0, scpus_plus_1[0]};

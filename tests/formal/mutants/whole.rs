@@ -91,10 +91,10 @@ const FEEDER: Rows = &[
         "a line is ready that is not there",
         "(some_come | line_comes) & any_lines_left",
         "any_lines_left",
-        9,
+        16,
         "takes_a_line",
     ),
-    ("takes a line that is not ready", "wire take = line_ready & ", "wire take = ", 9, "each_once"),
+    ("takes a line that is not ready", "wire take = line_ready & ", "wire take = ", 16, "each_once"),
     ("a turn too many", "(turn >= turns_before_2)", "(turn > turns_before_2)", 21, "turn_is_an_scpu"),
     ("two pairs count as one", "entered <= go_1 ? 2'd2 : ", "entered <= go_1 ? 2'd1 : ", 20, "each_once"),
     (
