@@ -73,14 +73,15 @@ pub fn join_tiles(hits: &mut [Hit]) {
 mod tests {
     use super::super::{Search, SphereSet};
     use super::*;
-    use crate::config::Profile;
+    use crate::kernel::{Arithmetic, Reference};
+    use crate::number::Format;
     use crate::query::Fields;
 
     /// Tiles of every size find what the whole search finds, in its order.
     #[test]
     fn tiles_find_what_the_whole_search_finds() {
-        let search = Search::new(Profile::WIDE.arithmetic(), 24).expect("a search");
-        let mut reference = Profile::WIDE.reference(Fields::ALL);
+        let search = Search::new(Arithmetic::Rounded(Format::WIDE), 24).expect("a search");
+        let mut reference = Reference::new(Format::WIDE, Fields::ALL);
         let mut find = |sets: &Spheres| {
             search.find(&mut reference, &sets.first, sets.second.as_deref()).expect("the reference works")
         };

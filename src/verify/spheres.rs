@@ -181,8 +181,8 @@ impl Bench {
         })
     }
 
-    /// The same for sets of any size: a job for every two tiles of at most `size` spheres, one after the other. What all
-    /// of them find together is compared with the search of the whole sets.
+    /// The same for sets of any size: a job for every two tiles of at most `size` spheres, one after the other. What
+    /// they find together is compared with the search of the whole sets.
     ///
     /// # Errors
     /// Returns an error if no tile has this size, and the errors of [`run_spheres`](Self::run_spheres).
