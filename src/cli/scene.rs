@@ -3,10 +3,11 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use contact_afu::config::{Config, Shell};
-use contact_afu::kernel::Engine;
+use contact_afu::config::{self, Config, Input, Shell};
+use contact_afu::kernel::Reference;
 use contact_afu::report::folder::{self, Folder};
-use contact_afu::scene::{self, Cost, Part, Plan, Scene as Story, SceneError, SceneRun};
+use contact_afu::scene::{self, Cost, Detector, Part, Plan, Scene as Story, SceneError, SceneRun, Still};
+use contact_afu::spheres::{Decided, Search, Spheres};
 
 use super::failure::{Classify, Failure, Kind};
 use super::{output, progress};
@@ -44,6 +45,20 @@ pub struct Scene {
     /// With --plan the cost is shown beside the one without them.
     #[arg(long, value_name = "N")]
     decide: Option<u32>,
+    /// What the AFU is sent: `direct`, the pairs that could touch; or `spheres`, all of which it searches itself
+    ///
+    /// With --plan and spheres, a model says how long AFUs of several sizes take for the scene's start.
+    #[arg(long, value_name = "INPUT", default_value_t = Input::Direct)]
+    input: Input,
+    /// Spheres that the AFU's table holds, for --input spheres [default: enough for all bodies]
+    #[arg(long, value_name = "N")]
+    table: Option<u32>,
+    /// Boxes of spheres that are compared in a cycle, for --input spheres [default: 16]
+    #[arg(long, value_name = "N")]
+    lanes: Option<u32>,
+    /// Kernels that decide candidates, for --input spheres [default: 4]
+    #[arg(long, value_name = "N")]
+    deciders: Option<u32>,
     /// Folder to write: report.html, manifest.json, and the outputs of the scene as CSV
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -95,7 +110,11 @@ pub fn run(options: &Scene) -> Result<(), Failure> {
                 scene::costs(&[("without deciders", &costs[0]), ("with them", &costs[1])])
             }
         };
-        return output::show(&format!("{}\n\n{costs}", plan.text()), false);
+        let predicted = match self::start(&story, &plan)? {
+            Some(sets) => format!("\n\n{}", super::spheres::predictions("the scene's start", &sets, &plan.config)?),
+            None => String::new(),
+        };
+        return output::show(&format!("{}\n\n{costs}{predicted}", plan.text()), false);
     }
     // Fails before a model is built in vain.
     #[cfg(not(feature = "ode"))]
@@ -133,8 +152,25 @@ impl Scene {
             Some(deciders) => plan.decided_by(deciders),
             None => plan,
         };
+        let plan = if self.input == Input::Spheres { plan.of_spheres(self.search(story)?) } else { plan };
+        let sizes = [("--table", self.table), ("--lanes", self.lanes), ("--deciders", self.deciders)];
+        if let (Input::Direct, Some((option, _))) = (self.input, sizes.iter().find(|(_, given)| given.is_some())) {
+            return Err(Failure::new(Kind::Usage, format!("{option} is of a search: give --input spheres as well")));
+        }
         plan.config.check()?;
         Ok(plan)
+    }
+
+    /// The search that is asked for, with a table for all bodies.
+    fn search(&self, story: &Story) -> Result<config::Search, Failure> {
+        let sets = Still::of(story)?.sets().0;
+        let usual = config::Search::default();
+        Ok(config::Search {
+            table: self.table.map_or_else(|| super::spheres::table_for("the scene", &sets), Ok)?,
+            lanes: self.lanes.unwrap_or(usual.lanes),
+            deciders: self.deciders.unwrap_or(usual.deciders),
+            ..usual
+        })
     }
 
     fn cost(&self, config: &Config) -> Result<Cost, Failure> {
@@ -173,9 +209,12 @@ impl Scene {
 
     fn results(&self, story: &Story, plan: &Plan) -> Result<SceneRun, Failure> {
         match self.engine {
+            Who::Reference if plan.config.input == Input::Spheres => {
+                self.go(story, plan, Detector::Spheres(&mut in_software(plan)?), "the search in software")
+            }
             Who::Reference => {
                 let mut reference = plan.config.profile.reference(plan.config.contact);
-                self.go(story, plan, &mut reference, "the reference kernel in software")
+                self.go(story, plan, Detector::Pairs(&mut reference), "the reference kernel in software")
             }
             Who::Ode => self.simulated(story, plan),
         }
@@ -184,22 +223,28 @@ impl Scene {
     #[cfg(feature = "cosim")]
     fn simulated(&self, story: &Story, plan: &Plan) -> Result<SceneRun, Failure> {
         use contact_afu::link::LinkModel;
-        use contact_afu::verify::{Bench, BenchEngine};
+        use contact_afu::verify::{Bench, BenchEngine, BenchFinder};
         if !plan.has(Part::Hit) {
             let mut nobody = plan.config.profile.reference(plan.config.contact);
-            return self.go(story, plan, &mut nobody, "none: the scene needs no contacts");
+            return self.go(story, plan, Detector::Pairs(&mut nobody), "none: the scene needs no contacts");
         }
         let spinner = progress::spinner("building the AFU's model");
         let bench = Bench::new(&plan.config);
         spinner.finish_and_clear();
         let bench = bench?;
-        let mut engine = BenchEngine::new(&bench, LinkModel::ideal(), 1);
         let name = match self.shell {
             Shell::Spl2 => "the simulated AFU".to_owned(),
             shell => format!("the simulated AFU, shell {shell}"),
         };
-        let mut results = self.go(story, plan, &mut engine, &name)?;
-        results.summary.cycles = Some(engine.totals().cycles);
+        let link = LinkModel::ideal();
+        let (mut results, totals) = if plan.config.input == Input::Spheres {
+            let mut finder = BenchFinder::new(&bench, link, 1);
+            (self.go(story, plan, Detector::Spheres(&mut finder), &name)?, finder.totals())
+        } else {
+            let mut engine = BenchEngine::new(&bench, link, 1);
+            (self.go(story, plan, Detector::Pairs(&mut engine), &name)?, engine.totals())
+        };
+        results.summary.cycles = Some(totals.cycles);
         Ok(results)
     }
 
@@ -209,11 +254,11 @@ impl Scene {
         Err(Failure::new(Kind::Tool, message))
     }
 
-    fn go(&self, story: &Story, plan: &Plan, engine: &mut dyn Engine, name: &str) -> Result<SceneRun, Failure> {
+    fn go(&self, story: &Story, plan: &Plan, detector: Detector<'_>, name: &str) -> Result<SceneRun, Failure> {
         if Plan::moves(story) {
-            return moving(story, plan, engine, name);
+            return moving(story, plan, detector, name);
         }
-        Ok(scene::query(story, plan, engine, name)?)
+        Ok(scene::query(story, plan, detector, name)?)
     }
 
     fn write(
@@ -244,10 +289,23 @@ impl Scene {
     }
 }
 
+/// The search of a plan in software.
+fn in_software(plan: &Plan) -> Result<Decided<Reference>, Failure> {
+    let config = &plan.config;
+    let search = Search::new(config.profile.arithmetic(), config.search.box_bits)
+        .map_err(|error| Failure::new(Kind::Usage, error.to_string()))?;
+    Ok(Decided { search, engine: config.profile.reference(config.contact) })
+}
+
+/// The spheres that a scene begins with, if they are sent.
+fn start(story: &Story, plan: &Plan) -> Result<Option<Spheres>, Failure> {
+    Ok(if plan.config.input == Input::Spheres { Some(Still::of(story)?.sets().0) } else { None })
+}
+
 #[cfg(feature = "ode")]
-fn moving(story: &Story, plan: &Plan, engine: &mut dyn Engine, name: &str) -> Result<SceneRun, Failure> {
+fn moving(story: &Story, plan: &Plan, detector: Detector<'_>, name: &str) -> Result<SceneRun, Failure> {
     let bar = progress::bar("running the scene:", "steps", story.steps.value);
-    let results = scene::run(story, plan, engine, name, |steps| bar.set_position(steps));
+    let results = scene::run(story, plan, detector, name, |steps| bar.set_position(steps));
     bar.finish_and_clear();
     Ok(results?)
 }
@@ -261,8 +319,12 @@ fn host_step(story: &Story, plan: &Plan) -> Result<Option<f64>, Failure> {
     let mut story = story.clone();
     story.steps.value = story.steps.value.min(100);
     story.start.value = scene::Start::AsGiven;
-    let mut reference = plan.config.profile.reference(plan.config.contact);
-    let results = scene::run(&story, plan, &mut reference, "", |_| {})?;
+    let results = if plan.config.input == Input::Spheres {
+        scene::run(&story, plan, Detector::Spheres(&mut in_software(plan)?), "", |_| {})?
+    } else {
+        let mut reference = plan.config.profile.reference(plan.config.contact);
+        scene::run(&story, plan, Detector::Pairs(&mut reference), "", |_| {})?
+    };
     Ok(Some(results.summary.step_ns))
 }
 
@@ -272,7 +334,7 @@ fn host_step(_: &Story, _: &Plan) -> Result<Option<f64>, Failure> {
 }
 
 #[cfg(not(feature = "ode"))]
-fn moving(_: &Story, _: &Plan, _: &mut dyn Engine, _: &str) -> Result<SceneRun, Failure> {
+fn moving(_: &Story, _: &Plan, _: Detector<'_>, _: &str) -> Result<SceneRun, Failure> {
     Err(without_ode())
 }
 

@@ -130,16 +130,29 @@ const PLANNED: [(u32, u32); 8] = [(16, 1), (16, 4), (32, 4), (64, 4), (64, 8), (
 const PLANNED_SCPUS: [u32; 2] = [1, 2];
 
 fn plan(options: &Spheres, sets: &Sets) -> Result<(), Failure> {
-    let table_of = sets.first.len().next_power_of_two().try_into().unwrap_or(u32::MAX).max(*TABLES.start());
-    if table_of > *TABLES.end() {
-        let message =
-            format!("{}: {} spheres; the largest table holds {}", options.source, sets.first.len(), TABLES.end());
+    let base = Config { profile: options.profile.clone(), contact: options.contact, ..Config::default() };
+    let search = config::Search { table: table_for(&options.source, sets)?, ..config::Search::default() };
+    let search = config::Search { box_bits: options.box_bits, ..search };
+    output::show(&predictions(&options.source, sets, &Config { search, ..base })?, false)
+}
+
+/// The smallest table that holds the first set.
+pub(super) fn table_for(source: &str, sets: &Sets) -> Result<u32, Failure> {
+    let table = sets.first.len().next_power_of_two().try_into().unwrap_or(u32::MAX).max(*TABLES.start());
+    if table > *TABLES.end() {
+        let message = format!("{source}: {} spheres; the largest table holds {}", sets.first.len(), TABLES.end());
         return Err(Failure::new(Kind::Usage, message));
     }
+    Ok(table)
+}
+
+/// What a model predicts for these sets, for each number of lanes and deciders, in the arithmetic and with the table of
+/// `base`; with its fields too, if they are more than the hit.
+pub(super) fn predictions(source: &str, sets: &Sets, base: &Config) -> Result<String, Failure> {
     let config = |lanes, deciders, contact, scpus| {
-        let search = config::Search { table: table_of, lanes, deciders, box_bits: options.box_bits };
-        let base = Config { input: Input::Spheres, results: Results::Hits, shell: Shell::Line, ..Config::default() };
-        Config { profile: options.profile.clone(), contact, scpus, interval: 1, search, ..base }
+        let search = config::Search { lanes, deciders, ..base.search };
+        let base = Config { input: Input::Spheres, results: Results::Hits, shell: Shell::Line, ..base.clone() };
+        Config { contact, scpus, interval: 1, search, ..base }
     };
     let failure = |error: PredictError| Failure::new(Kind::Usage, error.to_string());
     let model = SearchModel::new(&config(16, 1, Fields::HIT, 1), sets).map_err(failure)?;
@@ -156,19 +169,19 @@ fn plan(options: &Spheres, sets: &Sets) -> Result<(), Failure> {
         let (numbers, ns) = predicted(Fields::HIT, 1)?;
         let mut row = vec![lanes.to_string(), deciders.to_string(), grouped(numbers.cycles)];
         row.extend([format!("{:.2}", numbers.cycles as f64 / count), ns, numbers.slowest().to_owned()]);
-        if options.contact != Fields::HIT {
+        if base.contact != Fields::HIT {
             for scpus in PLANNED_SCPUS {
-                row.push(predicted(options.contact, scpus)?.1);
+                row.push(predicted(base.contact, scpus)?.1);
             }
         }
         rows.push(row);
     }
     let mut head = vec!["lanes", "deciders", "cycles", "per sphere", "ns per sphere", "slowest stage"];
-    if options.contact != Fields::HIT {
+    if base.contact != Fields::HIT {
         head.extend(["contacts: ns, 1 SCPU", "2 SCPUs"]);
     }
-    let title = format!("{}: predicted, table of {}, 200 MHz", options.source, grouped(table_of.into()));
-    output::show(&format!("{title}\n{}", table(&head, rows)), false)
+    let title = format!("{source}: predicted, table of {}, {} MHz", grouped(base.search.table.into()), base.clock_mhz);
+    Ok(format!("{title}\n{}", table(&head, rows)))
 }
 
 fn write(options: &Spheres, out: &Path, sets: &Sets) -> Result<(), Failure> {

@@ -6,9 +6,12 @@ use serde::Serialize;
 
 use super::SceneError;
 use crate::afu::{Afu, Spec};
-use crate::config::{Config, Profile};
+use crate::config::{Config, Input, Profile};
 use crate::pipeline::KernelReport;
 use crate::synth::{Options, Target, Unit, synthesise};
+
+/// Three coordinates and a radius of binary32.
+const BYTES_OF_A_SPHERE: u32 = 16;
 
 /// The cost of an AFU.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -19,7 +22,9 @@ pub struct Cost {
     pub modules: usize,
     /// Cycles from a pair to its contact.
     pub latency_cycles: u32,
-    /// Bytes over the link for a pair.
+    /// What is sent.
+    pub input: Input,
+    /// Bytes over the link for a pair, or for a sphere.
     pub bytes_sent: f64,
     /// Bytes over the link for a contact that comes back.
     pub bytes_returned: f64,
@@ -51,7 +56,11 @@ impl Cost {
             operators: operators.into_iter().map(|operator| (operator.module, operator.instances)).collect(),
             modules: afu.top().hierarchy().len(),
             latency_cycles: afu.latency_cycles(),
-            bytes_sent: line / f64::from(layout.pairs_per_line()),
+            input: config.input,
+            bytes_sent: match config.input {
+                Input::Direct => line / f64::from(layout.pairs_per_line()),
+                Input::Spheres => f64::from(BYTES_OF_A_SPHERE),
+            },
             bytes_returned: line / f64::from(layout.contacts_per_line()),
             returns_misses: config.results == crate::config::Results::All,
             luts: None,
@@ -81,14 +90,19 @@ impl Cost {
             all = [0, 1].map(|kind| all[kind] + u64::from(config.decide) * decider[kind]);
         }
         (self.luts, self.dsps) = (Some(one[0]), Some(one[1]));
+        if config.input == Input::Spheres {
+            // The search is no SCPU: `afu synth --input spheres` counts the whole.
+            return Ok(());
+        }
         (self.luts_of_all, self.dsps_of_all) = (Some(all[0]), Some(all[1]));
         Ok(())
     }
 
-    /// Bytes over the link, in both directions, for `pairs` pairs of which `contacts` touch.
-    pub fn bytes(&self, pairs: u64, contacts: u64) -> f64 {
-        let back = if self.returns_misses { pairs } else { contacts };
-        self.bytes_sent * pairs as f64 + self.bytes_returned * back as f64
+    /// Bytes over the link, in both directions, for so many pairs or spheres that are `sent`, with this number of
+    /// contacts.
+    pub fn bytes(&self, sent: u64, contacts: u64) -> f64 {
+        let back = if self.returns_misses { sent } else { contacts };
+        self.bytes_sent * sent as f64 + self.bytes_returned * back as f64
     }
 }
 

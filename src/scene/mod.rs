@@ -9,6 +9,7 @@ mod balance;
 mod bodies;
 mod cost;
 mod demand;
+mod detector;
 #[cfg(feature = "ode")]
 mod energy;
 mod error;
@@ -30,6 +31,7 @@ pub use balance::Balance;
 pub use bodies::{Ball, balls};
 pub use cost::Cost;
 pub use demand::{Demand, Part};
+pub use detector::Detector;
 pub use error::SceneError;
 pub use file::{Effects, Given, Group, Pull, Scene, Shape, Start, Want};
 pub use ladder::ladder;

@@ -5,9 +5,10 @@ use super::demand::{Demand, MOVING, Part, RULES};
 use super::file::{Given, Pull, Scene, Shape};
 use super::{SceneError, bodies};
 use crate::afu::Spec;
-use crate::config::{Config, Profile, Results, Shell};
-use crate::count::counted;
+use crate::config::{Config, Input, Profile, Results, Search, Shell};
+use crate::count::{counted, grouped};
 use crate::query::Fields;
+use crate::spheres::ROW;
 
 /// Where deciders are asked for, the SCPU behind them takes a contact in so many pairs.
 const PAIRS_PER_CONTACT: u32 = 8;
@@ -135,6 +136,34 @@ impl Plan {
         self
     }
 
+    /// The same plan for an AFU that is sent spheres, with such a search, and finds what touches.
+    #[must_use]
+    pub fn of_spheres(mut self, search: Search) -> Self {
+        let config = &mut self.config;
+        (config.input, config.search, config.results) = (Input::Spheres, search, Results::Hits);
+        (config.scpus, config.interval, config.radius) = (1, 1, None);
+        let Search { table, lanes, deciders, box_bits } = search;
+        let scpus = if config.contact == Fields::HIT { "none: the search decides" } else { "1" };
+        for (part, is_on, value) in [
+            (Part::Scpus, config.contact != Fields::HIT, scpus),
+            (Part::Radii, true, "sent with every sphere"),
+            (Part::Misses, false, ""),
+        ] {
+            if let Some(row) = self.rows.iter_mut().find(|row| row.name == part.name()) {
+                (row.on, row.value) = (is_on, value.to_owned());
+            }
+        }
+        let value = format!(
+            "table of {} spheres in rows of {ROW}, {lanes} lanes, {}, boxes of {box_bits} bits",
+            grouped(table.into()),
+            counted(deciders.into(), "decider")
+        );
+        let place = self.rows.iter().position(|row| row.name == Part::Scpus.name()).map_or(0, |place| place + 1);
+        let row = Row { name: "search for what touches".to_owned(), on: true, value, calls: Vec::new() };
+        self.rows.insert(place, row);
+        self
+    }
+
     /// The row of a part.
     pub fn row(&self, part: Part) -> Option<&Row> {
         self.rows.iter().find(|row| row.name == part.name())
@@ -147,7 +176,8 @@ impl Plan {
 
     /// The AFU with every part, for comparison with the scene's own.
     pub fn everything(&self) -> Config {
-        Config { contact: Fields::ALL, results: Results::All, radius: None, ..self.config.clone() }
+        let results = if self.config.input == Input::Spheres { Results::Hits } else { Results::All };
+        Config { contact: Fields::ALL, results, radius: None, ..self.config.clone() }
     }
 
     /// The cost of the AFU, without the tools that count LUTs.

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::plan::{Plan, Row};
 use super::{Balance, Ball, Cost, Scene};
-use crate::config::Config;
+use crate::config::{Config, Input};
 
 /// The schema of a scene's JSON.
 pub const SCHEMA: &str = "contact-afu/scene/1";
@@ -51,6 +51,8 @@ pub struct Summary {
     pub all_pairs: u64,
     /// Pairs sent to the engine in all steps: those that could touch and were not both asleep.
     pub pairs: u64,
+    /// Spheres sent in all steps, if spheres are sent and not pairs.
+    pub spheres: u64,
     /// Pairs of two sleeping bodies in all steps, whether or not they could touch. They are not sent.
     pub asleep: u64,
     /// Contacts among the pairs sent.
@@ -111,6 +113,20 @@ pub struct SceneRun {
     pub contacts: Vec<Touching>,
     /// Energy before the first step and after each, if wanted.
     pub energy: Vec<Energy>,
+}
+
+impl Summary {
+    /// Notes what was sent, pairs or spheres, and the bytes that this and the contacts are.
+    pub(super) fn sent(&mut self, config: &Config, cost: &Cost, everything: &Cost, sent: u64) {
+        self.bytes = cost.bytes(sent, self.contacts);
+        if config.input == Input::Spheres {
+            self.spheres = sent;
+            self.bytes_with_everything = everything.bytes(sent, self.contacts);
+        } else {
+            self.pairs = sent;
+            self.bytes_with_everything = everything.bytes(sent, sent);
+        }
+    }
 }
 
 #[derive(Serialize)]

@@ -1,24 +1,30 @@
 //! Moving scenes: ODE's steps, with an engine that replaces its collider of two spheres, and with only the plan's
 //! effects.
 
+use std::cell::Cell;
 use std::collections::HashMap;
+use std::rc::Rc;
 use std::time::{Duration, Instant};
 
 use super::bodies::{Ball, balls};
 use super::demand::Part;
 use super::plan::Plan;
 use super::results::{Energy, Meeting, SceneRun, Touching};
-use super::{Balance, Scene, SceneError, check_start};
+use super::{Balance, Detector, Scene, SceneError, check_start};
 use crate::kernel::{Engine, EngineError};
-use crate::ode::{Collider, Ode, Sleep, Sphere, Surface, World};
+use crate::ode::{Collider, Error, Ode, SearchSpace, Sleep, Sphere, Surface, Touch, World};
 use crate::query::{ContactRecord, Fields, PairRecord};
+use crate::spheres::{Finder, Hit, Spheres};
 
 /// Two bodies meet if they touch and did not touch in this number of steps before. Bodies that lie on each other touch
 /// on and off.
 const APART: u64 = 20;
 
-/// Runs a scene. Each step's pairs go through `engine`, which computes the plan's fields. After each step, `progress`
-/// is called with the number of steps done.
+/// Steps after which the spheres are put in the order of a Hilbert curve again, if spheres are sent.
+const SORT_EVERY: u32 = 10;
+
+/// Runs a scene. Each step's pairs or spheres go to `detector`, which computes the plan's fields. After each step,
+/// `progress` is called with the number of steps done.
 ///
 /// # Errors
 /// Returns an error if bodies cannot be read or overlap at the start ([`check_start`]), if ODE refuses or loses a body,
@@ -26,7 +32,7 @@ const APART: u64 = 20;
 pub fn run(
     scene: &Scene,
     plan: &Plan,
-    engine: &mut dyn Engine,
+    detector: Detector<'_>,
     name: &str,
     mut progress: impl FnMut(u64),
 ) -> Result<SceneRun, SceneError> {
@@ -38,7 +44,8 @@ pub fn run(
     let forces = forces(scene, &bodies);
     let surface = surface(scene);
     let mut results = SceneRun::begin(scene, plan, name.to_owned())?;
-    let mut engine = Timed { inner: engine, fields: plan.config.contact, spent: Duration::ZERO, pairs: 0 };
+    let (spent, sent) = (Rc::new(Cell::new(Duration::ZERO)), Rc::new(Cell::new(0)));
+    let mut source = Source::new(detector, plan.config.contact, spent.clone(), sent.clone());
     let mut step_times = Vec::new();
     let count = bodies.len() as u64;
     results.describe(&bodies, bodies.len());
@@ -49,14 +56,14 @@ pub fn run(
         let pull = forces.as_ref().filter(|forces| step < forces.steps);
         let power_before = pull.map_or(0.0, |forces| forces.power(&world, &spheres));
         let begun = Instant::now();
-        engine.spent = Duration::ZERO;
+        spent.set(Duration::ZERO);
         if let Some(forces) = pull {
             for (&sphere, &force) in spheres.iter().zip(&forces.each) {
                 world.add_force(sphere, force)?;
             }
         }
         // Contacts are computed only if something asks for them.
-        let touches = if plan.has(Part::Hit) { world.contacts_by(&mut engine)? } else { Vec::new() };
+        let touches = if plan.has(Part::Hit) { source.contacts(&world)? } else { Vec::new() };
         if plan.has(Part::Response) {
             for touch in &touches {
                 world.join(touch, &surface)?;
@@ -70,7 +77,7 @@ pub fn run(
             results.summary.wall_contacts += walls.len() as u64;
         }
         world.step(scene.time_step.value)?;
-        step_times.push(begun.elapsed().saturating_sub(engine.spent));
+        step_times.push(begun.elapsed().saturating_sub(spent.get()));
         let power_after = pull.map_or(0.0, |forces| forces.power(&world, &spheres));
         balance.work += scene.time_step.value * (power_before + power_after) / 2.0;
         let summary = &mut results.summary;
@@ -104,9 +111,7 @@ pub fn run(
     summary.balance = Some(balance);
     summary.bodies = bodies.len();
     summary.all_pairs = count * count.saturating_sub(1) / 2;
-    summary.pairs = engine.pairs;
-    summary.bytes = results.cost.bytes(summary.pairs, summary.contacts);
-    summary.bytes_with_everything = results.everything.bytes(summary.pairs, summary.pairs);
+    summary.sent(&results.config, &results.cost, &results.everything, sent.get());
     step_times.sort_unstable();
     summary.step_ns = step_times.get(step_times.len() / 2).map_or(0.0, |time| time.as_nanos() as f64);
     Ok(results)
@@ -213,28 +218,74 @@ fn turn([scalar, x, y, z]: [f64; 4]) -> [f32; 3] {
     [x, y, z].map(|part| (part * sign) as f32)
 }
 
-/// The engine, with its time measured apart from the host's, its pairs counted, and fields that it does not compute
-/// filled in.
-struct Timed<'a> {
-    inner: &'a mut dyn Engine,
-    fields: Fields,
-    spent: Duration,
-    pairs: u64,
+/// Where contacts come from.
+enum Source<'a> {
+    Pairs(Timed<'a, dyn Engine + 'a>),
+    Spheres(SearchSpace<'a>),
 }
 
-impl Engine for Timed<'_> {
-    fn contacts(&mut self, pairs: &[PairRecord]) -> Result<Vec<ContactRecord>, EngineError> {
-        let begun = Instant::now();
-        let mut contacts = self.inner.contacts(pairs)?;
-        self.spent += begun.elapsed();
-        self.pairs += pairs.len() as u64;
-        if !self.fields.position {
-            // A force along the normal goes through both centres, so it has no lever arm there, and the position has no
-            // effect.
-            for (contact, pair) in contacts.iter_mut().zip(pairs).filter(|(contact, _)| contact.is_contact()) {
-                *contact = contact.at_first_centre(pair);
+impl<'a> Source<'a> {
+    fn new(detector: Detector<'a>, fields: Fields, spent: Rc<Cell<Duration>>, sent: Rc<Cell<u64>>) -> Self {
+        match detector {
+            Detector::Pairs(inner) => Self::Pairs(Timed { inner, fields, spent, sent }),
+            Detector::Spheres(inner) => {
+                let timed: Timed<'a, dyn Finder + 'a> = Timed { inner, fields, spent, sent };
+                Self::Spheres(SearchSpace::of(timed, SORT_EVERY))
             }
         }
-        Ok(contacts)
+    }
+
+    fn contacts(&mut self, world: &World) -> Result<Vec<Touch>, Error> {
+        match self {
+            Self::Pairs(engine) => world.contacts_by(engine),
+            Self::Spheres(space) => world.contacts_in(space),
+        }
+    }
+}
+
+/// A detector, with its time measured apart from the host's, what it was sent counted, and fields that it does not
+/// compute filled in.
+struct Timed<'a, T: ?Sized> {
+    inner: &'a mut T,
+    fields: Fields,
+    spent: Rc<Cell<Duration>>,
+    sent: Rc<Cell<u64>>,
+}
+
+impl<T: ?Sized> Timed<'_, T> {
+    /// Does `work` with the detector, which is sent so many pairs or spheres.
+    fn measured<R>(&mut self, sent: usize, work: impl FnOnce(&mut T) -> R) -> R {
+        let begun = Instant::now();
+        let done = work(self.inner);
+        self.spent.set(self.spent.get() + begun.elapsed());
+        self.sent.set(self.sent.get() + sent as u64);
+        done
+    }
+
+    /// A force along the normal goes through both centres, so it has no lever arm there, and the position has no
+    /// effect.
+    fn placed(&self, contact: ContactRecord, pair: impl FnOnce() -> PairRecord) -> ContactRecord {
+        let stays = self.fields.position || !contact.is_contact();
+        if stays { contact } else { contact.at_first_centre(&pair()) }
+    }
+}
+
+impl Engine for Timed<'_, dyn Engine + '_> {
+    fn contacts(&mut self, pairs: &[PairRecord]) -> Result<Vec<ContactRecord>, EngineError> {
+        let contacts = self.measured(pairs.len(), |engine| engine.contacts(pairs))?;
+        Ok(contacts.into_iter().zip(pairs).map(|(contact, pair)| self.placed(contact, || *pair)).collect())
+    }
+}
+
+impl Finder for Timed<'_, dyn Finder + '_> {
+    fn find(&mut self, sets: &Spheres) -> Result<Vec<Hit>, EngineError> {
+        let mut hits = self.measured(sets.first.len(), |finder| finder.find(sets))?;
+        for hit in &mut hits {
+            let [first, second] = hit.spheres.map(|number| sets.first.get(number as usize));
+            if let (Some(first), Some(second)) = (first, second) {
+                hit.contact = self.placed(hit.contact, || first.with(*second));
+            }
+        }
+        Ok(hits)
     }
 }

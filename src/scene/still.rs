@@ -6,9 +6,10 @@ use std::time::Instant;
 use super::bodies::{Ball, balls};
 use super::plan::Plan;
 use super::results::{SceneRun, Touching};
-use super::{Part, Scene, SceneError};
-use crate::kernel::Engine;
-use crate::query::PairRecord;
+use super::{Detector, Part, Scene, SceneError};
+use crate::config::Input;
+use crate::query::{ContactRecord, PairRecord};
+use crate::spheres::{Hit, Sphere, Spheres, hilbert_order, reorder};
 
 /// A scene without motion. The question is which spheres of one set, or of two, touch.
 #[derive(Clone, Debug)]
@@ -41,6 +42,29 @@ impl Still {
             [x, y, z, radius].map(|v| v as f32)
         };
         self.candidates.iter().map(|&[a, b]| PairRecord::from_spheres(sphere(a), sphere(b))).collect()
+    }
+
+    /// The bodies, and the queries if there are any, each in the order of a Hilbert curve, with the numbers that they
+    /// have among the balls. Without queries, both numbers of a hit are of bodies.
+    pub fn sets(&self) -> (Spheres, [Vec<usize>; 2]) {
+        let sorted = |from: usize, balls: &[Ball]| {
+            let spheres: Vec<_> = balls
+                .iter()
+                .map(|ball| {
+                    let [x, y, z] = ball.centre;
+                    Sphere::new([x, y, z, ball.radius].map(|v| v as f32))
+                })
+                .collect();
+            let order = hilbert_order(&spheres);
+            (reorder(&spheres, &order), order.into_iter().map(|place| from + place as usize).collect::<Vec<_>>())
+        };
+        let (bodies, queries) = self.balls.split_at(self.bodies);
+        let (first, numbers) = sorted(0, bodies);
+        if queries.is_empty() {
+            return (Spheres { first, second: None }, [numbers.clone(), numbers]);
+        }
+        let (second, others) = sorted(self.bodies, queries);
+        (Spheres { first, second: Some(second) }, [numbers, others])
     }
 
     /// The number of all pairs, whether or not they could touch.
@@ -86,34 +110,55 @@ fn candidates(balls: &[Ball], bodies: usize) -> Vec<[usize; 2]> {
     pairs
 }
 
-/// Runs a scene's single query on an engine.
+/// Runs a scene's single query.
 ///
 /// # Errors
-/// Returns an error if bodies cannot be read, or the engine fails.
-pub fn query(scene: &Scene, plan: &Plan, engine: &mut dyn Engine, name: &str) -> Result<SceneRun, SceneError> {
+/// Returns an error if bodies cannot be read, or the detector fails.
+pub fn query(scene: &Scene, plan: &Plan, detector: Detector<'_>, name: &str) -> Result<SceneRun, SceneError> {
     let query = Still::of(scene)?;
     let mut results = SceneRun::begin(scene, plan, name.to_owned())?;
-    let pairs = query.pairs();
-    let begun = Instant::now();
-    let contacts = if plan.has(Part::Hit) { engine.contacts(&pairs).map_err(SceneError::Engine)? } else { Vec::new() };
+    let (sent, touching, spent) = match detector {
+        Detector::Pairs(engine) => {
+            let pairs = query.pairs();
+            let begun = Instant::now();
+            let contacts =
+                if plan.has(Part::Hit) { engine.contacts(&pairs).map_err(SceneError::Engine)? } else { Vec::new() };
+            let spent = begun.elapsed();
+            let touching = query.candidates.iter().copied().zip(contacts).filter(|(_, contact)| contact.is_contact());
+            (pairs.len(), touching.collect(), spent)
+        }
+        Detector::Spheres(finder) => {
+            let (sets, numbers) = query.sets();
+            let begun = Instant::now();
+            let hits = if plan.has(Part::Hit) { finder.find(&sets).map_err(SceneError::Engine)? } else { Vec::new() };
+            let spent = begun.elapsed();
+            let number = |set: usize, place: u32| numbers[set].get(place as usize).copied().unwrap_or_default();
+            let mut touching: Vec<([usize; 2], ContactRecord)> = hits
+                .into_iter()
+                .map(|Hit { spheres: [first, second], contact }| ([number(0, first), number(1, second)], contact))
+                .collect();
+            touching.sort_by_key(|(bodies, _)| *bodies);
+            (query.balls.len(), touching, spent)
+        }
+    };
     let summary = &mut results.summary;
-    summary.step_ns = begun.elapsed().as_nanos() as f64;
+    summary.step_ns = spent.as_nanos() as f64;
     summary.bodies = query.balls.len();
     summary.all_pairs = query.all_pairs();
-    summary.pairs = pairs.len() as u64;
-    summary.contacts = contacts.iter().filter(|contact| contact.is_contact()).count() as u64;
-    summary.bytes = results.cost.bytes(summary.pairs, summary.contacts);
-    summary.bytes_with_everything = results.everything.bytes(summary.all_pairs, summary.all_pairs);
+    summary.contacts = touching.len() as u64;
+    summary.sent(&results.config, &results.cost, &results.everything, sent as u64);
+    if results.config.input == Input::Direct {
+        summary.bytes_with_everything = results.everything.bytes(summary.all_pairs, summary.all_pairs);
+    }
     results.describe(&query.balls, query.bodies);
     results.places = vec![query.balls.iter().map(|ball| ball.centre).collect()];
     if plan.has(Part::Contacts) {
-        let touching = query.candidates.iter().zip(&contacts).filter(|(_, contact)| contact.is_contact());
-        let row = |(&bodies, contact): (&[usize; 2], &crate::query::ContactRecord)| Touching {
+        let row = |(bodies, contact): ([usize; 2], ContactRecord)| Touching {
             step: 0,
             bodies,
             words: std::array::from_fn(|word| f32::from_bits(contact.0[word])),
         };
-        results.contacts = touching.map(row).collect();
+        results.contacts = touching.into_iter().map(row).collect();
     }
     Ok(results)
 }

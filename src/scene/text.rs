@@ -3,6 +3,7 @@
 use super::cost::Cost;
 use super::plan::{Plan, Row};
 use super::results::SceneRun;
+use crate::config::Input;
 use crate::pairs::npy_of_numbers;
 use crate::query::{ContactRecord, FLAGS};
 use crate::report::table::{grouped, table, words};
@@ -79,11 +80,14 @@ pub(super) fn cost_rows(all: &[&Cost]) -> Vec<Vec<String>> {
     let row = |name: &str, figure: &dyn Fn(&Cost) -> String| {
         std::iter::once(name.to_owned()).chain(all.iter().map(|cost| figure(cost))).collect::<Vec<_>>()
     };
+    let of_spheres = all.iter().any(|cost| cost.input == Input::Spheres);
     let counted = |count: Option<u64>| count.map_or_else(|| "not counted".to_owned(), grouped);
     let mut rows = vec![
         row("modules of the AFU", &|cost| cost.modules.to_string()),
         row("cycles from a pair to its contact", &|cost| cost.latency_cycles.to_string()),
-        row("bytes sent per pair", &|cost| cost.bytes_sent.to_string()),
+        row(if of_spheres { "bytes sent per sphere" } else { "bytes sent per pair" }, &|cost| {
+            cost.bytes_sent.to_string()
+        }),
         row("bytes that come back", &|cost| {
             let who = if cost.returns_misses { "per pair" } else { "per contact" };
             format!("{} {who}", cost.bytes_returned)
@@ -113,7 +117,10 @@ impl SceneRun {
             ("bodies".to_owned(), grouped(s.bodies as u64)),
             ("steps".to_owned(), grouped(s.steps)),
             ("pairs of bodies that exist".to_owned(), grouped(s.all_pairs)),
-            ("pairs sent, all steps".to_owned(), grouped(s.pairs)),
+            match self.config.input {
+                Input::Direct => ("pairs sent, all steps".to_owned(), grouped(s.pairs)),
+                Input::Spheres => ("spheres sent, all steps".to_owned(), grouped(s.spheres)),
+            },
             ("contacts, all steps".to_owned(), grouped(s.contacts)),
             ("contacts with walls".to_owned(), grouped(s.wall_contacts)),
             ("bytes over the link".to_owned(), grouped(s.bytes as u64)),

@@ -9,6 +9,7 @@
 
 mod bounds;
 mod file;
+mod finder;
 mod lanes;
 mod order;
 mod rows;
@@ -20,6 +21,7 @@ mod trace;
 
 pub use bounds::{BOX_BITS, Bounds, BoundsRule, RefusedArithmetic};
 pub use file::{LoadError, load, read_spheres, write_hits, write_spheres};
+pub use finder::{Decided, Finder};
 pub use order::{hilbert_order, reorder};
 pub use rows::{ROW, Rows};
 pub use search::{Candidates, Counts, Found, Hit, Search};

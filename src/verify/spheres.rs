@@ -76,7 +76,7 @@ impl SpheresVerdict {
         }
     }
 
-    fn hits_with_contacts(&self) -> impl Iterator<Item = Hit> {
+    pub(super) fn hits_with_contacts(&self) -> impl Iterator<Item = Hit> {
         self.hits.iter().zip(&self.contacts).map(|(&spheres, &contact)| Hit { spheres, contact })
     }
 }

@@ -51,6 +51,46 @@ fn every_plan_fits_in_a_terminal_of_100_columns() {
     }
 }
 
+/// Sent spheres, an AFU and its software find the contacts that pairs give.
+#[test]
+fn spheres_give_the_contacts_that_pairs_give() {
+    let room = tempfile::tempdir().expect("a temporary folder");
+    let contacts = |scene: &str, more: &[&str]| {
+        let out = room.path().join("out");
+        let (file, out_text) = (text(&path(scene)), text(&out));
+        let arguments = [&[file.as_str(), "--out", &out_text, "--force"], more].concat();
+        afu(&arguments).success();
+        let rows = fs::read_to_string(out.join("contacts.csv")).expect("contacts are wanted");
+        let mut pairs: Vec<_> = rows
+            .lines()
+            .skip(1)
+            .map(|row| {
+                let mut cells = row.split(',').map(|cell| cell.parse::<u64>().expect("a number"));
+                let (step, first, second) = (cells.next(), cells.next(), cells.next());
+                (step, first.min(second), first.max(second))
+            })
+            .collect();
+        pairs.sort_unstable();
+        pairs
+    };
+    let pairs = contacts("touching", &["--engine", "reference"]);
+    assert!(!pairs.is_empty());
+    assert_eq!(pairs, contacts("touching", &["--engine", "reference", "--input", "spheres"]));
+    assert_eq!(pairs, contacts("touching", &["--input", "spheres", "--shell", "line"]));
+    for (more, expected) in [
+        (&["--lanes", "16"][..], "--lanes is of a search: give --input spheres as well"),
+        (&["--input", "spheres", "--table", "500"], "table 500"),
+    ] {
+        let error = afu(&[&[text(&path("touching")).as_str(), "--plan"], more].concat()).code(2);
+        let error = String::from_utf8_lossy(&error.get_output().stderr).into_owned();
+        assert!(error.contains(expected), "{error}");
+    }
+    let plan = told(&afu(&[&text(&path("touching")), "--plan", "--input", "spheres"]).success());
+    for row in ["search for what touches", "bytes sent per sphere", "slowest stage", "none: the search decides"] {
+        assert!(plan.contains(row), "{row} in\n{plan}");
+    }
+}
+
 #[test]
 fn a_bad_scene_ends_in_one_line_and_writes_nothing() {
     let room = tempfile::tempdir().expect("a temporary folder");
