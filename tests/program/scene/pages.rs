@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use contact_afu::scene::{Plan, Scene, SceneRun, page, query, run};
+use contact_afu::scene::{Detector, Plan, Scene, SceneRun, page, query, run};
 use serde_json::Value;
 
 use super::scene;
@@ -12,9 +12,9 @@ fn results(scene: &Scene) -> SceneRun {
     let plan = Plan::of(scene).unwrap();
     let mut engine = plan.config.profile.reference(plan.config.contact);
     if Plan::moves(scene) {
-        run(scene, &plan, &mut engine, "the reference", |_| {}).unwrap()
+        run(scene, &plan, Detector::Pairs(&mut engine), "the reference", |_| {}).unwrap()
     } else {
-        query(scene, &plan, &mut engine, "the reference").unwrap()
+        query(scene, &plan, Detector::Pairs(&mut engine), "the reference").unwrap()
     }
 }
 

@@ -1,13 +1,13 @@
 //! Energy and momentum behave as the scene's effects require.
 
-use contact_afu::scene::{Energy, Plan, Scene, SceneRun, run};
+use contact_afu::scene::{Detector, Energy, Plan, Scene, SceneRun, run};
 
 use super::scene;
 
 fn results(scene: &Scene) -> SceneRun {
     let plan = Plan::of(scene).unwrap();
     let mut engine = plan.config.profile.reference(plan.config.contact);
-    run(scene, &plan, &mut engine, "test", |_| {}).unwrap()
+    run(scene, &plan, Detector::Pairs(&mut engine), "test", |_| {}).unwrap()
 }
 
 fn energies(scene: &Scene) -> Vec<Energy> {
@@ -66,7 +66,7 @@ fn a_granular_column_comes_to_rest() {
     let column = scene("column");
     let plan = Plan::of(&column).unwrap();
     let mut engine = plan.config.profile.reference(plan.config.contact);
-    let results = run(&column, &plan, &mut engine, "test", |_| {}).unwrap();
+    let results = run(&column, &plan, Detector::Pairs(&mut engine), "test", |_| {}).unwrap();
     assert_eq!(results.energy.last().unwrap().kinetic, 0.0);
     assert!(results.summary.asleep > 0 && results.summary.contacts > 1000);
 }
@@ -88,7 +88,7 @@ fn nothing_happens_that_is_not_named() {
             Err("nobody is asked who touches whom".into())
         }
     }
-    let results = run(&scene, &plan, &mut Nobody, "test", |_| {}).unwrap();
+    let results = run(&scene, &plan, Detector::Pairs(&mut Nobody), "test", |_| {}).unwrap();
     let last = results.places.last().unwrap();
     let near = |a: [f64; 3], b: [f64; 3]| (0..3).all(|axis| (a[axis] - b[axis]).abs() < 1e-12);
     assert!(
