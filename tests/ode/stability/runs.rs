@@ -16,7 +16,7 @@ pub enum Contacts<'a> {
     /// An engine instead of the collider, with the same rounded inputs.
     By(&'a mut dyn Engine),
     /// A search with an engine instead of ODE's space and collider, with the same rounded inputs.
-    In(&'a mut SearchSpace<'a>),
+    In(&'a mut SearchSpace<'static>),
 }
 
 /// A world after a step.
