@@ -78,8 +78,8 @@ const HOUSE: &[(&str, &[&str])] = &[
     (
         "scene",
         &[
-            "count", "query", "record", "report", "plot", "synth", "ode", "config", "afu", "pipeline", "kernel",
-            "pairs", "number",
+            "count", "spheres", "query", "record", "report", "plot", "synth", "ode", "config", "afu", "pipeline",
+            "kernel", "pairs", "number",
         ],
     ),
     (

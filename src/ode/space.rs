@@ -88,7 +88,8 @@ impl std::fmt::Debug for SearchSpace<'_> {
 
 impl World {
     /// Every present contact, found and computed by `space`, sorted by the sphere that was added earlier and then by
-    /// the other one. With a search, the earlier one is the first. Unlike [`World::candidates`], it does not skip two spheres that sleep.
+    /// the other one. With a search, the earlier one is the first. Unlike [`World::candidates`], it does not skip two
+    /// spheres that sleep.
     ///
     /// # Errors
     /// Returns an error if a sphere is lost (see [`World::step`]), or if the engine fails or gives an invalid answer.
