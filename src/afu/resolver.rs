@@ -159,8 +159,8 @@ pub(super) fn resolve<'g>(
     Ok(())
 }
 
-/// Cycles with records that are on their way behind a stage that is told that no hit may leave, at most: two until it
-/// hears of it, `to_number` from its step to the number of a hit, and those to the dispatcher.
+/// The most cycles whose records are still in flight when the dispatcher has no room left. The stage before stops two
+/// cycles later. From its step to the number of a hit are `to_number` cycles, and then come those to the dispatcher.
 fn on_the_way(spec: &Spec, scpu: &Module, to_number: u32) -> u32 {
     2 + to_number + latency(spec, scpu) + packer::cycles_to_line(spec) + packer::cycles_to_flush(spec)
 }

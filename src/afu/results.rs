@@ -75,8 +75,9 @@ pub(super) struct OfHits<'g> {
     pub(super) run: Signal<'g>,
     /// True while the dispatcher has room.
     pub(super) accepts: Signal<'g>,
-    /// The lanes on which pairs enter, and the pairs a cycle later.
+    /// The lanes on which pairs enter.
     pub(super) enters: Signal<'g>,
+    /// The pairs on these lanes, one cycle later.
     pub(super) pairs: Signal<'g>,
 }
 

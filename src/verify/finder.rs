@@ -42,7 +42,8 @@ impl Finder for BenchFinder<'_> {
     fn find(&mut self, sets: &Spheres) -> Result<Vec<Hit>, EngineError> {
         let (call, table) = (self.totals.jobs, self.bench.config().search.table);
         let seed = self.seed.wrapping_add(call);
-        let verdict = if sets.first.len() > table as usize || sets.second.is_some() {
+        let longest = sets.second.iter().chain([&sets.first]).map(Vec::len).max();
+        let verdict = if longest > Some(table as usize) {
             self.bench.run_spheres_in_tiles(sets, table, &self.link, seed)
         } else {
             self.bench.run_spheres(sets, &self.link, seed, None)
