@@ -8,6 +8,8 @@ use contact_afu::config::{Config, Input, Results, Shell};
 use contact_afu::hdl::{Graph, Module};
 use contact_afu::query::Fields;
 
+use crate::search::Part;
+
 const TAGS: u32 = 4;
 
 /// A proven accelerator, except for the delay of its SCPUs. A line holds two pairs.
@@ -25,11 +27,13 @@ pub enum Design {
     Records,
     /// A queue of the AFU that takes spheres, 16 words deep.
     Queue,
+    /// A part of that AFU.
+    Search(Part),
     /// The shell `axi` with a bus of 256 bits and 16 lines outstanding; its core does not matter.
     Axi,
 }
 
-use Design::{Axi, EachCycle, EveryOther, Hits, Queue, Records, ThreeEveryOther};
+use Design::{Axi, EachCycle, EveryOther, Hits, Queue, Records, Search, ThreeEveryOther};
 
 impl Design {
     /// The suffix in reports that distinguishes it from [`EachCycle`].
@@ -41,7 +45,7 @@ impl Design {
             Hits => ", hits",
             Records => ", hits with records",
             Axi => ", axi",
-            Queue => ", spheres",
+            Queue | Search(_) => ", spheres",
         }
     }
 
@@ -62,16 +66,25 @@ impl Design {
             Hits => &["SCPUS=32'd2", "PER_LINE=2", "GATHERS"],
             Records => &["SCPUS=32'd2", "PER_LINE=1"],
             Axi => &[],
+            Search(part) => part.defines(),
             Queue => &["QUEUE=queue_16x29_slack_8", "QUEUE_BITS=29"],
         };
         let own = own.iter().map(|define| (*define).to_owned());
         own.chain([format!("LATENCY={latency}"), format!("LINES={lines}"), format!("CAPACITY={capacity}")]).collect()
     }
 
+    /// Commands of Yosys that make free what does not matter to a proof.
+    pub fn frees(self) -> String {
+        match self {
+            Search(part) => part.frees(),
+            _ => String::new(),
+        }
+    }
+
     /// The number of a pair's words that come back.
     fn record_bits(self) -> u32 {
         match self {
-            EachCycle | EveryOther | ThreeEveryOther | Axi | Queue => 16,
+            EachCycle | EveryOther | ThreeEveryOther | Axi | Queue | Search(_) => 16,
             Hits => 0,
             Records => 8,
         }
@@ -85,7 +98,7 @@ impl Design {
             ..base.clone()
         };
         let config = match self {
-            EachCycle | Axi | Queue => base,
+            EachCycle | Axi | Queue | Search(_) => base,
             EveryOther => Config { interval: 2, ..base },
             ThreeEveryOther => Config { scpus: 3, interval: 2, ..base },
             Hits => of_hits("hit"),
@@ -109,6 +122,7 @@ impl Design {
         match self {
             Axi => return axi(),
             Queue => return queue(),
+            Search(part) => return part.files(),
             _ => {}
         }
         let spec = self.spec();
@@ -155,7 +169,7 @@ fn queue() -> Vec<(String, String)> {
 }
 
 /// The accelerator's inputs, declared as inputs of a harness.
-fn inputs(module: &Module, system: &str) -> String {
+pub fn inputs(module: &Module, system: &str) -> String {
     let inputs = module.ports.iter().filter(|port| !port.output);
     let inputs: String = inputs.map(|port| format!(",\n  input wire [{}:0] {}", port.width - 1, port.name)).collect();
     format!("{system}{inputs}\n")
@@ -163,7 +177,7 @@ fn inputs(module: &Module, system: &str) -> String {
 
 /// Instantiates the accelerator as `dut` and declares wires for its outputs. Its inputs are the harness's signals of
 /// the same names. Those may be narrower; the upper bits are then zero.
-fn instance(module: &Module, name: &str) -> String {
+pub fn instance(module: &Module, name: &str) -> String {
     let ports = &module.ports;
     let outputs = ports.iter().filter(|port| port.output);
     let wires: String = outputs.map(|port| format!("  wire [{}:0] {};\n", port.width - 1, port.name)).collect();

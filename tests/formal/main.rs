@@ -8,6 +8,7 @@ mod design;
 mod mutants;
 mod proofs;
 mod public;
+mod search;
 mod tools;
 
 use mutants::Mutant;

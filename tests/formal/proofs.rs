@@ -5,6 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::design::Design;
+use crate::search::Part;
 
 #[derive(Clone, Copy, Debug)]
 pub enum Method {
@@ -126,6 +127,28 @@ fn of_hits(latency: u32) -> [Proof; 6] {
     ]
 }
 
+/// The proofs of the parts of the search among spheres. The step of an induction is as long as the part.
+fn of_search() -> Vec<Proof> {
+    let of = |name, harness, part, method| Proof::new(name, harness, 1, method).of(Design::Search(part));
+    let short = ["decider", "join of deciders", "begin of a job"];
+    let proofs = [
+        of("begin of a job", "begins", Part::Control, Inductive(2)),
+        of("entry of rows", "entry", Part::Entry, Inductive(10)),
+        of("rows enter", "entry", Part::Entry, Reached(70)),
+        of("groups", "stage", Part::Groups, Inductive(8)),
+        of("rows of groups", "stage", Part::GroupRows, Inductive(8)),
+        of("near", "stage", Part::Near, Inductive(9)),
+        of("box against box", "stage", Part::BoxPairs, Inductive(12)),
+        of("rows pass a level", "stage", Part::GroupRows, Reached(24)),
+        of("rows pass box against box", "stage", Part::BoxPairs, Reached(30)),
+        of("decider", "decider", Part::Decider, Inductive(18)),
+        of("shares are answered", "decider", Part::Decider, Reached(34)),
+        of("join of deciders", "joined", Part::Join, Inductive(8)),
+        of("steps are joined", "joined", Part::Join, Reached(24)),
+    ];
+    proofs.map(|proof| Proof { is_short: short.contains(&proof.name), ..proof }).into()
+}
+
 /// All proofs. The collector, the dispatcher and the parts of the shell `axi` on their own do not depend on the SCPUs.
 pub fn proofs() -> Vec<Proof> {
     let alone = ["collector", "dispatcher"].map(|name| Proof::new(name, name, 1, Inductive(2)).short());
@@ -152,7 +175,7 @@ pub fn proofs() -> Vec<Proof> {
         Proof::new("a queue is full", "queue", 1, Reached(30)),
     ];
     let queue = queue.map(|proof| proof.of(Design::Queue).short());
-    alone.into_iter().chain(queue).chain(axi).chain(around).chain(others).collect()
+    alone.into_iter().chain(queue).chain(of_search()).chain(axi).chain(around).chain(others).collect()
 }
 
 /// The proof with this name, at the smallest latency.

@@ -53,9 +53,12 @@ pub fn check(proof: &Proof, only: Option<&str>, files: &[(String, String)]) -> V
     let defines: Vec<String> = proof.defines().iter().map(|define| format!("-D{define}")).collect();
     let names = files.iter().map(|(name, _)| name.as_str()).filter(|name| name.ends_with(".v"));
     let names: Vec<&str> = names.collect();
+    // Memories that nothing reads any more would be mapped.
+    let frees = proof.design.frees();
+    let clean = if frees.is_empty() { "" } else { "opt_clean;" };
     let script = format!(
-        "read_verilog -formal -sv {} {harness} {}; hierarchy -check -top {}; proc; flatten; check -assert; memory_map; \
-         opt -full; async2sync; dffunmap; opt_clean; write_smt2 -wires proof.smt2",
+        "read_verilog -formal -sv {} {harness} {}; hierarchy -check -top {}; proc; {frees} flatten; {clean} check -assert; \
+         memory_map; opt -full; async2sync; dffunmap; opt_clean; write_smt2 -wires proof.smt2",
         defines.join(" "),
         names.join(" "),
         proof.harness,

@@ -3,6 +3,7 @@
 mod axi;
 mod others;
 mod parts;
+mod search;
 mod spheres;
 mod whole;
 
@@ -46,7 +47,7 @@ impl Mutant {
 type Rows = &'static [(&'static str, &'static str, &'static str, u32, &'static str)];
 
 /// One mutant of each kind, for the test command.
-const SHORT: [&str; 9] = [
+const SHORT: [&str; 11] = [
     "lines go out before they came",
     "responses to earlier jobs count",
     "slots are freed by earlier jobs",
@@ -56,11 +57,18 @@ const SHORT: [&str; 9] = [
     "bursts of reads cross 4 KB",
     "WLAST at the end of each line",
     "a response without the data",
+    "an answer for each candidate",
+    "a step does not wait for an answer",
 ];
 
 pub fn all() -> Vec<Mutant> {
-    let tables =
-        parts::TABLES.iter().chain(whole::TABLES).chain(others::TABLES).chain(axi::TABLES).chain(spheres::TABLES);
+    let tables = parts::TABLES
+        .iter()
+        .chain(whole::TABLES)
+        .chain(others::TABLES)
+        .chain(axi::TABLES)
+        .chain(spheres::TABLES)
+        .chain(search::TABLES);
     let mutants = tables.flat_map(|(tried_in, file, rows)| {
         rows.iter().map(|&(what, old, new, cycle, breaks)| {
             let is_short = SHORT.contains(&what);

@@ -36,4 +36,88 @@ const ORDER: Rows = &[
     ),
 ];
 
-pub const TABLES: &[(&str, &str, Rows)] = &[("queue", FILE, QUEUE), ("order in a queue", FILE, ORDER)];
+const GROUPS: Rows = &[
+    ("a row's number comes early", "row <= row_line[delay_5_next];", "row <= row_line[delay_5];", 7, "in_order"),
+    ("a token leaves with each step", "is_last & about[0]}", "about[0]}", 8, "conserved"),
+    (
+        "the same word is looked at again",
+        "takes ? item_mask : rest;",
+        "takes ? item_mask : bits_left;",
+        3,
+        "hand_is_right",
+    ),
+    ("a row never ends", "takes ? item_mask : rest;", "takes ? item_mask : bits_left;", 3, "oldest_leaves"),
+    ("a token is dropped", "about <= {item_row, item_last}", "about <= {item_row, 1'b0}", 2, "token_in_hand"),
+    (
+        "an item changes its row",
+        "about <= {item_row, item_last}",
+        "about <= {item_row + 12'd1, item_last}",
+        2,
+        "row_in_hand",
+    ),
+    (
+        "takes an item that is not there",
+        "takes = item_valid & (~active | ends)",
+        "takes = ~active | (item_valid & ends)",
+        1,
+        "takes_what_is_there",
+    ),
+    (
+        "the item that is not there has a row",
+        "takes = item_valid & (~active | ends)",
+        "takes = ~active | (item_valid & ends)",
+        2,
+        "hand_row_is_right",
+    ),
+    (
+        "an item waits for a cycle",
+        "takes = item_valid & (~active | ends)",
+        "takes = item_valid & ~active",
+        2,
+        "takes_at_once",
+    ),
+    (
+        "what is found right after another is lost",
+        "put <= puts & ~start;",
+        "put <= puts & ~put & ~start;",
+        8,
+        "each_step_once",
+    ),
+    (
+        "only a step that finds something ends a row",
+        "last <= ends_row;",
+        "last <= ends_row & |found_in_word;",
+        7,
+        "token_is_last",
+    ),
+    ("a row without words finds something", "had_bit <= had_bit_line[2];", "had_bit <= 1'b1;", 7, "none_without_bit"),
+    (
+        "the number of the next word",
+        "word_then <= word_then_line[11:8];",
+        "word_then <= word_then_line[7:4];",
+        7,
+        "bits_in_order",
+    ),
+];
+
+const NEAR: Rows = &[("a turn too few", "mask <= turns;", "mask <= {1'b0, turns[15:1]};", 8, "turns_are_right")];
+
+const BOX_PAIRS: Rows = &[
+    ("a sphere is left out", "about <= {item_near,", "about <= {item_near[15:1], 1'b0,", 2, "near_in_hand"),
+    (
+        "the place of the next sphere",
+        "places <= place_compared_0;",
+        "places <= place_compared_0_line[11:8];",
+        10,
+        "next_near",
+    ),
+    ("what was not put is counted", "(put & run) ? count_0", "run ? count_0", 6, "counted_once"),
+];
+
+pub const TABLES: &[(&str, &str, Rows)] = &[
+    ("queue", FILE, QUEUE),
+    ("order in a queue", FILE, ORDER),
+    ("groups", "contact_afu_groups.v", GROUPS),
+    ("near", "contact_afu_near.v", NEAR),
+    ("box against box", "contact_afu_candidates.v", BOX_PAIRS),
+];
