@@ -85,8 +85,8 @@ const HOUSE: &[(&str, &[&str])] = &[
     (
         "sweep",
         &[
-            "study", "store", "query", "record", "report", "plot", "synth", "verify", "host", "cosim", "config", "afu",
-            "link", "pairs", "number",
+            "study", "store", "count", "spheres", "query", "record", "report", "plot", "synth", "verify", "host",
+            "cosim", "config", "afu", "link", "pairs", "number",
         ],
     ),
 ];

@@ -8,7 +8,7 @@ use contact_afu::verify::{Bench, Command};
 
 use super::cosim::Cosim;
 use super::failure::{Classify, Failure, Kind};
-use super::spheres::{load, sorted};
+use super::spheres::sets;
 use super::{link, output, progress};
 
 /// The spheres without `--spheres`.
@@ -38,8 +38,11 @@ pub fn run(options: &Cosim) -> Result<(), Failure> {
     if let Some(path) = &options.contacts {
         check_name(path)?;
     }
-    let jobs =
-        sources.iter().map(|source| Ok((source, sets(options, source)?))).collect::<Result<Vec<_>, Failure>>()?;
+    let against = options.against.as_deref();
+    let jobs = sources
+        .iter()
+        .map(|source| Ok((source, sets(source, against, options.sort, options.seed)?)))
+        .collect::<Result<Vec<_>, Failure>>()?;
     let bench = options.bench(trace)?;
     let config = bench.config().clone();
     let link = link.at(config.clock_mhz).ends(Kind::Usage)?;
@@ -74,22 +77,6 @@ pub fn run(options: &Cosim) -> Result<(), Failure> {
     }
     eprintln!("replay: {}", run.replay);
     Err(Failure::new(Kind::Failed, format!("{bad} of {} jobs failed", run.jobs.len())))
-}
-
-/// The spheres of a job.
-fn sets(options: &Cosim, source: &str) -> Result<Sets, Failure> {
-    let mut sets = load(source, options.seed)?;
-    if let Some(against) = &options.against {
-        if sets.second.is_some() {
-            let message = format!("{source}: this set has a second set of its own; leave out --against");
-            return Err(Failure::new(Kind::Usage, message));
-        }
-        sets.second = Some(load(&against.display().to_string(), options.seed)?.first);
-    }
-    if options.sort {
-        sets = Sets { first: sorted(&sets.first), second: sets.second.as_deref().map(sorted) };
-    }
-    Ok(sets)
 }
 
 /// Runs one job. A job that does not finish or breaks the protocol has failed, without a verdict.

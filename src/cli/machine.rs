@@ -12,7 +12,7 @@ use contact_afu::synth::Target;
 use super::failure::{Classify, Failure, Kind};
 use super::link;
 
-/// The options of an AFU except the number of SCPUs and their interval, of which a sweep takes lists.
+/// The options of an AFU except the numbers of its parts and the bits of a box, of which a sweep takes lists.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "The AFU")]
 pub struct Machine {
@@ -53,17 +53,6 @@ pub struct Machine {
     /// 4096]
     #[arg(long, value_name = "N")]
     pub table: Option<u32>,
-    /// Bits of each number of a box, for --input spheres: 10 to 32 [default: 24]
-    ///
-    /// Fewer bits make a smaller AFU and more candidates, and the same contacts.
-    #[arg(long, value_name = "N")]
-    pub box_bits: Option<u32>,
-    /// Boxes of spheres that are compared in a cycle, for --input spheres: a power of two, 16 to 256 [default: 16]
-    #[arg(long, value_name = "N")]
-    pub lanes: Option<u32>,
-    /// Kernels that decide candidates, for --input spheres: a power of two, 1 to 16 [default: 4]
-    #[arg(long, value_name = "N")]
-    pub deciders: Option<u32>,
     /// SCPUs that only decide which pairs touch, in front of those that compute contacts: 1, 2 or 4 [default: none]
     ///
     /// A decider takes a pair every cycle and needs a third of an SCPU's area. The others compute the contacts of the
@@ -173,9 +162,6 @@ impl Machine {
             set(&mut config.contact, &self.contact);
         }
         set(&mut config.search.table, &self.table);
-        set(&mut config.search.box_bits, &self.box_bits);
-        set(&mut config.search.lanes, &self.lanes);
-        set(&mut config.search.deciders, &self.deciders);
         set(&mut config.decide, &self.decide);
         if self.decide.is_some_and(|number| number > 0) && self.config.is_none() {
             config.results = Results::Hits;
@@ -213,6 +199,17 @@ pub struct One {
     /// the longest interval that keeps the AFU link-bound; for input spheres it is 1.
     #[arg(long, value_name = "II", help_heading = "The AFU")]
     pub interval: Option<String>,
+    /// Bits of each number of a box, for --input spheres: 10 to 32 [default: 24]
+    ///
+    /// Fewer bits make a smaller AFU and more candidates, and the same contacts.
+    #[arg(long, value_name = "N", help_heading = "The AFU")]
+    pub box_bits: Option<u32>,
+    /// Boxes of spheres that are compared in a cycle, for --input spheres: a power of two, 16 to 256 [default: 16]
+    #[arg(long, value_name = "N", help_heading = "The AFU")]
+    pub lanes: Option<u32>,
+    /// Kernels that decide candidates, for --input spheres: a power of two, 1 to 16 [default: 4]
+    #[arg(long, value_name = "N", help_heading = "The AFU")]
+    pub deciders: Option<u32>,
     #[command(flatten)]
     pub machine: Machine,
 }
@@ -237,14 +234,14 @@ impl One {
     }
 
     fn with(&self, mut config: Config, link: &str, unsaid: &str) -> Result<Config, Failure> {
+        set(&mut config.search.box_bits, &self.box_bits);
+        set(&mut config.search.lanes, &self.lanes);
+        set(&mut config.search.deciders, &self.deciders);
         if config.input == Input::Spheres
             && config.contact == Fields::HIT
             && let Some(scpus) = self.scpus
         {
-            let message = format!(
-                "--scpus {scpus} with --input spheres and --contact hit: deciders decide what touches; use --deciders"
-            );
-            return Err(Failure::new(Kind::Usage, message));
+            return Err(no_scpus(&format!("--scpus {scpus}")));
         }
         let resolves = config.has_deciders() && config.contact != Fields::HIT && self.machine.config.is_none();
         set(&mut config.scpus, &self.scpus.or(resolves.then_some(1)));
@@ -270,7 +267,7 @@ impl One {
 impl One {
     /// The number of SCPUs, when it alone may be given: the rest is decided by Verilog that is there already.
     pub fn only_scpus(&self) -> Result<Option<u32>, Failure> {
-        let Self { scpus, interval, machine: m } = self;
+        let Self { scpus, interval, box_bits, lanes, deciders, machine: m } = self;
         let given = [
             ("--interval", interval.is_some()),
             ("--query", m.query.is_some()),
@@ -281,9 +278,9 @@ impl One {
             ("--contact", m.contact.is_some()),
             ("--input", m.input.is_some()),
             ("--table", m.table.is_some()),
-            ("--box-bits", m.box_bits.is_some()),
-            ("--lanes", m.lanes.is_some()),
-            ("--deciders", m.deciders.is_some()),
+            ("--box-bits", box_bits.is_some()),
+            ("--lanes", lanes.is_some()),
+            ("--deciders", deciders.is_some()),
             ("--decide", m.decide.is_some()),
             ("--results", m.results.is_some()),
             ("--radius", m.radius.is_some()),
@@ -305,6 +302,13 @@ impl One {
             }
         }
     }
+}
+
+/// Why an option of SCPUs is refused where there are none.
+pub fn no_scpus(option: &str) -> Failure {
+    let message =
+        format!("{option} with --input spheres and --contact hit: deciders decide what touches; use --deciders");
+    Failure::new(Kind::Usage, message)
 }
 
 /// Warns about SCPUs that are not built.

@@ -28,7 +28,8 @@ pub struct Spheres {
     ///
     /// `diamond:H` holds the touching spheres of the paper's diamond with H layers. `gas:N:FILL` holds N spheres of
     /// equal size at random in a cube, of whose volume they are the part FILL, 0.001 to 0.74. `probes:Q:M` is two sets:
-    /// M points, and Q spheres against them. A file is .csv with the header x,y,z,r, or .npy with an N × 4 array.
+    /// M points, and Q spheres against them. A set with +D behind it, diamond:10+1000 for example, is moved by D along
+    /// each axis. A file is .csv with the header x,y,z,r, or .npy with an N × 4 array.
     #[arg(value_name = "SET|FILE")]
     source: String,
     /// File of a second set: finds which of its spheres touch which of the first set
@@ -90,19 +91,7 @@ struct Report<'a> {
 }
 
 pub fn run(options: &Spheres) -> Result<(), Failure> {
-    let mut sets = load(&options.source, options.seed)?;
-    if let Some(against) = &options.against {
-        if sets.second.is_some() {
-            return Err(Failure::new(
-                Kind::Usage,
-                format!("{}: this set has a second set of its own; leave out --against", options.source),
-            ));
-        }
-        sets.second = Some(load(&against.display().to_string(), options.seed)?.first);
-    }
-    if options.sort {
-        sets = Sets { first: sorted(&sets.first), second: sets.second.as_deref().map(sorted) };
-    }
+    let sets = sets(&options.source, options.against.as_deref(), options.sort, options.seed)?;
     match &options.out {
         Some(out) => write(options, out, &sets),
         None if options.plan => plan(options, &sets),
@@ -110,8 +99,24 @@ pub fn run(options: &Spheres) -> Result<(), Failure> {
     }
 }
 
+/// The spheres of a set or a file, with a second set of another file if there is one.
+pub(super) fn sets(source: &str, against: Option<&Path>, sort: bool, seed: u64) -> Result<Sets, Failure> {
+    let mut sets = load(source, seed)?;
+    if let Some(against) = against {
+        if sets.second.is_some() {
+            let message = format!("{source}: this set has a second set of its own; leave out --against");
+            return Err(Failure::new(Kind::Usage, message));
+        }
+        sets.second = Some(load(&against.display().to_string(), seed)?.first);
+    }
+    if sort {
+        sets = Sets { first: sorted(&sets.first), second: sets.second.as_deref().map(sorted) };
+    }
+    Ok(sets)
+}
+
 /// The spheres of a set or a file. A note on standard error counts numbers that had to be rounded.
-pub(super) fn load(source: &str, seed: u64) -> Result<Sets, Failure> {
+fn load(source: &str, seed: u64) -> Result<Sets, Failure> {
     let (sets, rounded) = spheres::load(source, seed)?;
     if let Some(rounded) = rounded {
         eprintln!("afu: {source}: {rounded}");
@@ -119,7 +124,7 @@ pub(super) fn load(source: &str, seed: u64) -> Result<Sets, Failure> {
     Ok(sets)
 }
 
-pub(super) fn sorted(spheres: &[Sphere]) -> Vec<Sphere> {
+fn sorted(spheres: &[Sphere]) -> Vec<Sphere> {
     reorder(spheres, &hilbert_order(spheres))
 }
 

@@ -1,38 +1,63 @@
-//! `afu sweep`: the same job for each number of SCPUs.
+//! `afu sweep`: the same job on AFUs of different sizes.
 
 use std::path::PathBuf;
 
 use clap::Args;
-use contact_afu::config::Config;
+use contact_afu::config::{Config, Input};
+use contact_afu::query::{Fields, PairRecord};
 use contact_afu::report::table::counted;
-use contact_afu::sweep::{Request, SweepError, SweepResults, Swept, Task};
+use contact_afu::spheres::Spheres;
+use contact_afu::sweep::{Job, Request, SweepError, SweepResults, Swept, Task};
 
 use super::failure::{Failure, Kind};
 use super::list::List;
-use super::machine::{Machine, warn_of_unused_scpus};
+use super::machine::{Machine, no_scpus, warn_of_unused_scpus};
 use super::study::Shared;
 use super::{link, output, progress, study};
 
 /// Run the same job on AFUs of different sizes: throughput and latency
 ///
-/// The table has one row per AFU: pairs per second at the clock, cycles per pair, latency, mismatches. Each row is
-/// written when it is measured, and host.csv has the seconds that its model and its simulation took. If the command is
-/// stopped, or the lists grow, the same command measures only the rows that are missing.
+/// The table has one row per AFU: pairs per second at the clock, cycles per pair, latency, mismatches; with --input
+/// spheres, time per sphere, candidates, contacts, and what the cycle model says. Each row is written when it is
+/// measured, and host.csv has the seconds that its model and its simulation took. If the command is stopped, or the
+/// lists grow, the same command measures only the rows that are missing.
 #[derive(Args, Debug)]
 pub struct Sweep {
-    /// Numbers of SCPUs (sphere collision processing units), 1 to 64: 1,2,4 or 1..16 (includes 16)
-    #[arg(long, value_name = "LIST", default_value = "1,2,3,7,10,16")]
-    scpus: List,
-    /// Initiation intervals, 1 to 64 cycles between two pairs in one SCPU: 1,2,4 or 1..16 (includes 16)
-    #[arg(long, value_name = "LIST", default_value = "1")]
-    interval: List,
-    /// Pairs: diamond:H, random:N, dense:N, hard:N (see `afu help pairs`), or a .csv or .npy file
-    #[arg(long, value_name = "SET|FILE", default_value = "diamond:10")]
-    pairs: String,
+    /// Numbers of SCPUs (sphere collision processing units), 1 to 64: 1,2,4 or 1..16 (includes 16) [default:
+    /// 1,2,3,7,10,16; for input spheres with contacts 1]
+    #[arg(long, value_name = "LIST")]
+    scpus: Option<List>,
+    /// Initiation intervals, 1 to 64 cycles between two pairs in one SCPU: 1,2,4 or 1..16 (includes 16) [default: 1]
+    #[arg(long, value_name = "LIST")]
+    interval: Option<List>,
+    /// Boxes of spheres that are compared in a cycle, for --input spheres: powers of two, 16 to 256 [default: 16]
+    #[arg(long, value_name = "LIST")]
+    lanes: Option<List>,
+    /// Kernels that decide candidates, for --input spheres: powers of two, 1 to 16 [default: 4]
+    #[arg(long, value_name = "LIST")]
+    deciders: Option<List>,
+    /// Bits of each number of a box, for --input spheres: 10 to 32 [default: 24]
+    ///
+    /// Fewer bits make a smaller AFU and more candidates, and the same contacts.
+    #[arg(long, value_name = "LIST")]
+    box_bits: Option<List>,
+    /// Pairs: diamond:H, random:N, dense:N, hard:N (see `afu help pairs`), or a .csv or .npy file [default: diamond:10]
+    #[arg(long, value_name = "SET|FILE")]
+    pairs: Option<String>,
+    /// Spheres, with --input spheres: diamond:H, gas:N:FILL, probes:Q:M (see `afu help spheres`), or a .csv or .npy
+    /// file [default: diamond:10]
+    #[arg(long, value_name = "SET|FILE")]
+    spheres: Option<String>,
+    /// File of a second set of spheres: the AFU finds which of them touch which of --spheres
+    #[arg(long, value_name = "FILE")]
+    against: Option<PathBuf>,
+    /// Put the spheres in the order of a Hilbert curve first, which makes the search faster
+    #[arg(long)]
+    sort: bool,
     /// Link between AFU and memory: a name or file as in `afu cosim`
     #[arg(long, value_name = "NAME|FILE", default_value = "ideal")]
     link: String,
-    /// Seed of random pairs, of the link, and of the initial values of registers without reset
+    /// Seed of random pairs or spheres, of the link, and of the initial values of registers without reset
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = super::usage::seed)]
     seed: u64,
     /// Folder to write: report.html (table and plot), throughput.svg, manifest.json with all results, sweep.csv,
@@ -46,6 +71,8 @@ pub struct Sweep {
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
     /// Also count the LUTs, flip-flops and DSP blocks of one SCPU of each AFU: Yosys, for an ECP5
+    ///
+    /// With --input spheres the whole AFU is counted, which takes minutes for each.
     #[arg(long)]
     synth: bool,
     #[command(flatten)]
@@ -54,15 +81,25 @@ pub struct Sweep {
     shared: Shared,
 }
 
+/// Numbers of SCPUs without `--scpus`, where pairs are sent.
+const SCPUS: [u32; 6] = [1, 2, 3, 7, 10, 16];
+/// The job without `--pairs` and `--spheres`.
+const DEFAULT: &str = "diamond:10";
+
 pub fn run(options: &Sweep) -> Result<(), Failure> {
-    let configs = options.configs()?;
-    configs.iter().for_each(warn_of_unused_scpus);
     let base = options.machine.config()?;
+    let swept = options.swept(&base)?;
+    let configs = swept.configs(&base);
+    configs.iter().try_for_each(Config::check)?;
+    configs.iter().for_each(warn_of_unused_scpus);
     let link = link::read(&options.link, base.clock_mhz)?;
-    let pairs = super::pairs::load(base.query, &options.pairs, options.seed)?;
-    let task = Task { pairs: &pairs, link: &link, seed: options.seed, counts: options.synth };
-    let swept = Swept { scpus: options.scpus.0.clone(), interval: options.interval.0.clone() };
-    let results = SweepResults::new(&options.pairs, &options.link, &task, &base, swept);
+    let given = options.given(&base)?;
+    let (name, job) = match &given {
+        Given::Pairs(name, pairs) => (name, Job::Pairs(pairs)),
+        Given::Spheres(name, sets) => (name, Job::Spheres(sets)),
+    };
+    let task = Task { job, link: &link, seed: options.seed, counts: options.synth };
+    let results = SweepResults::new(name, &options.link, &task, &base, swept);
     let out = options.out.as_deref();
     if let Some(folder) = out {
         results.check(folder, options.force)?;
@@ -92,27 +129,85 @@ pub fn run(options: &Sweep) -> Result<(), Failure> {
 
 /// An error if an AFU of the sweep is wrong.
 pub fn passed(results: &SweepResults) -> Result<(), Failure> {
-    let bad: Vec<String> = results.rows.iter().filter(|row| !row.passed()).map(|row| row.scpus.to_string()).collect();
+    let bad = results.rows.iter().filter(|row| !row.passed()).map(|row| row.size());
+    let bad: Vec<String> = bad.map(|size| size.title()).collect();
     if bad.is_empty() {
         Ok(())
     } else {
-        Err(Failure::new(Kind::Failed, format!("mismatches or failed checks at SCPUs = {}", bad.join(", "))))
+        Err(Failure::new(Kind::Failed, format!("mismatches or failed checks with {}", bad.join("; "))))
     }
 }
 
+/// What every AFU is sent, with its name.
+enum Given {
+    Pairs(String, Vec<PairRecord>),
+    Spheres(String, Spheres),
+}
+
 impl Sweep {
-    /// The configurations of the AFUs, each checked.
-    fn configs(&self) -> Result<Vec<Config>, Failure> {
-        let base = self.machine.config()?;
-        let mut configs = Vec::new();
-        for &interval in &self.interval.0 {
-            for &scpus in &self.scpus.0 {
-                let config = Config { scpus, interval, ..base.clone() };
-                config.check()?;
-                configs.push(config);
+    /// The lists, each with its default. A list is empty where such AFUs have no such option.
+    fn swept(&self, base: &Config) -> Result<Swept, Failure> {
+        let given = |list: &Option<List>, usual: &[u32]| list.as_ref().map_or_else(|| usual.to_vec(), |l| l.0.clone());
+        if base.input == Input::Direct {
+            let (scpus, interval) = (given(&self.scpus, &SCPUS), given(&self.interval, &[1]));
+            let of_search = [
+                ("--lanes", self.lanes.is_some()),
+                ("--deciders", self.deciders.is_some()),
+                ("--box-bits", self.box_bits.is_some()),
+                ("--spheres", self.spheres.is_some()),
+                ("--against", self.against.is_some()),
+                ("--sort", self.sort),
+            ];
+            if let Some((option, _)) = of_search.into_iter().find(|(_, given)| *given) {
+                let message = format!("{option} needs AFUs that take spheres: give --input spheres as well");
+                return Err(Failure::new(Kind::Usage, message));
             }
+            return Ok(Swept { scpus, interval, ..Swept::default() });
         }
-        Ok(configs)
+        if self.pairs.is_some() {
+            let message = "--pairs does not go with --input spheres; give the spheres with --spheres";
+            return Err(Failure::new(Kind::Usage, message));
+        }
+        let (scpus, interval) = if base.contact == Fields::HIT {
+            let of_scpus = [("--scpus", &self.scpus), ("--interval", &self.interval)];
+            if let Some((option, _)) = of_scpus.into_iter().find(|(_, given)| given.is_some()) {
+                return Err(no_scpus(option));
+            }
+            (Vec::new(), Vec::new())
+        } else {
+            (given(&self.scpus, &[1]), given(&self.interval, &[1]))
+        };
+        let search = &base.search;
+        Ok(Swept {
+            scpus,
+            interval,
+            lanes: given(&self.lanes, &[search.lanes]),
+            deciders: given(&self.deciders, &[search.deciders]),
+            box_bits: given(&self.box_bits, &[search.box_bits]),
+        })
+    }
+
+    /// The pairs or the spheres.
+    fn given(&self, base: &Config) -> Result<Given, Failure> {
+        if base.input == Input::Direct {
+            let name = self.pairs.as_deref().unwrap_or(DEFAULT);
+            return Ok(Given::Pairs(name.to_owned(), super::pairs::load(base.query, name, self.seed)?));
+        }
+        let name = self.spheres.as_deref().unwrap_or(DEFAULT);
+        let sets = super::spheres::sets(name, self.against.as_deref(), self.sort, self.seed)?;
+        let (count, table) = (sets.first.len(), base.search.table);
+        if count > table as usize {
+            let message = format!("{name}: {count} spheres; the AFU's table holds {table}; use a larger --table");
+            return Err(Failure::new(Kind::Usage, message));
+        }
+        let mut name = name.to_owned();
+        if let Some(against) = &self.against {
+            name += &format!(" against {}", against.display());
+        }
+        if self.sort {
+            name += ", sorted";
+        }
+        Ok(Given::Spheres(name, sets))
     }
 }
 
@@ -122,7 +217,7 @@ impl From<SweepError> for Failure {
             SweepError::Verify(error) => error.into(),
             SweepError::Synth(error) => error.into(),
             SweepError::Folder(error) => error.into(),
-            SweepError::Store(_) | SweepError::Cache(_) => Self::caused(Kind::Other, error),
+            SweepError::Store(_) | SweepError::Cache(_) | SweepError::Predict(_) => Self::caused(Kind::Other, error),
         }
     }
 }

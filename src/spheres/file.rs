@@ -17,18 +17,28 @@ pub enum LoadError {
     File(#[from] FileError),
 }
 
-/// The spheres of a named set (`diamond:10`, `gas:4096:0.1` with `seed`) or of a file, and which numbers of the file
-/// were rounded to binary32.
+/// The spheres of a named set (`diamond:10`, `gas:4096:0.1` with `seed`; `diamond:10+1000` is moved by so much along
+/// each axis) or of a file, and which numbers of the file were rounded to binary32.
 ///
 /// # Errors
 /// Returns an error if the name or the file is wrong.
 pub fn load(source: &str, seed: u64) -> Result<(Spheres, Option<Rounded>), LoadError> {
     let path = Path::new(source);
     if source.contains(':') && !path.exists() {
-        return Ok((source.parse::<SphereSet>()?.spheres(seed), None));
+        let (set, distance) = moved(source).unwrap_or((source, 0.0));
+        let Spheres { first, second } = set.parse::<SphereSet>()?.spheres(seed);
+        let along = |spheres: Vec<Sphere>| spheres.into_iter().map(|sphere| sphere.moved(distance)).collect();
+        return Ok((Spheres { first: along(first), second: second.map(along) }, None));
     }
     let (first, rounded) = read_spheres(path)?;
     Ok((Spheres { first, second: None }, rounded))
+}
+
+/// The name of a set, and the distance behind its `+`: up to seven digits, all of which binary32 holds.
+fn moved(source: &str) -> Option<(&str, f32)> {
+    let (set, digits) = source.rsplit_once('+')?;
+    let is_distance = (1..=7).contains(&digits.len()) && digits.bytes().all(|byte| byte.is_ascii_digit());
+    Some((set, digits.parse().ok().filter(|_| is_distance)?))
 }
 
 /// The spheres of a `.csv` or `.npy` file, and which of its numbers were rounded to binary32. (Decimals in CSV are
@@ -83,12 +93,26 @@ mod tests {
     }
 
     #[test]
+    fn a_set_is_moved_along_each_axis() {
+        let [here, there] = ["probes:3:5", "probes:3:5+1000"].map(|name| load(name, 1).expect("a set").0);
+        let by = |sphere: &Sphere| {
+            let [x, y, z, r] = sphere.values();
+            Sphere::new([x + 1000.0, y + 1000.0, z + 1000.0, r])
+        };
+        assert_eq!(there.first, here.first.iter().map(by).collect::<Vec<_>>());
+        assert_eq!(there.second, here.second.map(|second| second.iter().map(by).collect()));
+    }
+
+    #[test]
     fn a_wrong_file_is_told_by_line_and_field() {
         let folder = tempfile::tempdir().expect("a folder");
         let file = folder.path().join("s.csv");
         std::fs::write(&file, "x,y,z,r\n1,2,3,4\n1,2,three,4\n").expect("written");
         let error = load(&file.display().to_string(), 1).expect_err("wrong").to_string();
         assert!(error.contains("s.csv, line 3, field z:"), "{error}");
+        for bad in ["gas:5:0.1+", "gas:5:0.1+-1", "gas:5:0.1+12345678", "gas:5:0.1+1+1"] {
+            load(bad, 1).expect_err(bad);
+        }
         let error = load("gas:x:0.1", 1).expect_err("wrong").to_string();
         assert!(error.contains("expected a number of spheres"), "{error}");
         let pairs = folder.path().join("p.npy");

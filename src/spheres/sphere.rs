@@ -23,6 +23,13 @@ impl Sphere {
         self.0.map(f32::from_bits)
     }
 
+    /// The sphere with its centre moved by a distance along each axis. At 0 no word changes.
+    #[must_use]
+    pub(super) fn moved(self, by: f32) -> Self {
+        let [x, y, z, r] = self.values();
+        if by == 0.0 { self } else { Self::new([x + by, y + by, z + by, r]) }
+    }
+
     /// True if all numbers are finite and the radius is not below zero (−0 is valid).
     pub fn is_valid(self) -> bool {
         Self::rules().zip(self.0).all(|(input, word)| input.rule.holds(word))

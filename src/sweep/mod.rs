@@ -1,22 +1,31 @@
 //! The same job for many AFUs: one row per AFU, in a table that grows row by row and can be resumed. A [`Request`] says
 //! what is measured; its [`run`](Request::run) makes [`SweepResults`] of it.
 
+mod job;
 mod page;
+mod pairs;
 mod request;
 mod results;
 mod row;
+mod size;
+mod spheres;
+mod spheres_page;
 
+pub use job::Job;
+pub use pairs::PairsRow;
 pub use request::Request;
-pub use results::{SCHEMA, SweepResults, Swept};
+pub use results::{SCHEMA, SweepResults};
 pub use row::Row;
+pub use size::{Size, Swept};
+pub use spheres::SpheresRow;
 
 use std::time::Instant;
 
+use crate::afu::{PredictError, SearchModel};
 use crate::config::Config;
 use crate::link::LinkModel;
-use crate::query::PairRecord;
 use crate::report::folder;
-use crate::store::{StoreError, sha256};
+use crate::store::StoreError;
 use crate::study::PointError;
 use crate::synth::{Area, Options, SynthError, Target, Unit, synthesise};
 use crate::verify::{Bench, VerifyError};
@@ -25,20 +34,23 @@ use row::{HostSeconds, Simulated};
 /// The job of every AFU of a sweep.
 #[derive(Clone, Copy, Debug)]
 pub struct Task<'a> {
-    /// The pairs.
-    pub pairs: &'a [PairRecord],
+    /// The pairs, or the spheres.
+    pub job: Job<'a>,
     /// The link.
     pub link: &'a LinkModel,
     /// Seed of the link and of registers that no reset reaches.
     pub seed: u64,
-    /// Whether Yosys counts the cells of one SCPU as well.
+    /// Whether Yosys counts the cells of one SCPU as well, or those of a whole AFU that is sent spheres.
     pub counts: bool,
 }
 
-/// The area of one SCPU on an ECP5.
-fn area(config: &Config) -> Result<Area, SweepError> {
+/// The area on an ECP5: of one SCPU, or of the whole AFU where the search is the larger part of it.
+fn area(config: &Config, task: &Task) -> Result<Area, SweepError> {
     let target = Target::Ecp5;
-    let unit = Unit::scpu_for(config, target)?;
+    let unit = match task.job {
+        Job::Pairs(_) => Unit::scpu_for(config, target)?,
+        Job::Spheres(_) => Unit::afu(config, target)?,
+    };
     Ok(synthesise(&unit, &Options { target, seeds: Vec::new() }, |_| ())?.area)
 }
 
@@ -48,15 +60,19 @@ fn simulate(config: &Config, task: &Task) -> Result<Simulated, SweepError> {
     let begun = Instant::now();
     let bench = Bench::cached_in(config, cache.path())?;
     let build_seconds = begun.elapsed().as_secs_f64();
-    let verdict = bench.run(task.pairs, task.link, task.seed)?;
-    let (scpus, interval, simulation_seconds) = (config.scpus, config.interval, verdict.seconds);
-    let host = HostSeconds { scpus, interval, build_seconds, simulation_seconds };
-    Ok(Simulated { row: Row::of(config, &bench.rtl_sha256(), &verdict), host })
-}
-
-/// SHA-256 of pairs, in hex: whether a file or a set is still what it was.
-fn fingerprint(pairs: &[PairRecord]) -> String {
-    sha256(&pairs.iter().flat_map(|pair| pair.0).flat_map(u32::to_le_bytes).collect::<Vec<_>>())
+    let rtl_sha256 = bench.rtl_sha256();
+    let (row, seconds) = match task.job {
+        Job::Pairs(pairs) => {
+            let verdict = bench.run(pairs, task.link, task.seed)?;
+            (Row::Pairs(PairsRow::of(config, &rtl_sha256, &verdict)), verdict.seconds)
+        }
+        Job::Spheres(sets) => {
+            let predicted = SearchModel::new(config, sets)?.predict(config)?;
+            let verdict = bench.run_spheres(sets, task.link, task.seed, None)?;
+            (Row::Spheres(SpheresRow::of(config, &rtl_sha256, &verdict, &predicted)), verdict.seconds)
+        }
+    };
+    Ok(Simulated { row, host: HostSeconds::new(Size::of(config), build_seconds, seconds) })
 }
 
 /// Why a sweep was not completed.
@@ -71,6 +87,9 @@ pub enum SweepError {
     /// A model could not be built, or a job did not finish.
     #[error(transparent)]
     Verify(#[from] VerifyError),
+    /// The cycle model has no prediction.
+    #[error(transparent)]
+    Predict(#[from] PredictError),
     /// The folder is not ours, or could not be read or written.
     #[error(transparent)]
     Folder(#[from] folder::Error),
@@ -84,6 +103,7 @@ impl PointError for SweepError {
         match self {
             Self::Verify(error) => error.is_of_afu(),
             Self::Synth(error) => error.is_of_unit(),
+            Self::Predict(_) => true,
             Self::Cache(_) | Self::Folder(_) | Self::Store(_) => false,
         }
     }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use maud::{Markup, html};
 
-use super::{Row, SweepResults};
+use super::{PairsRow, SweepResults};
 use crate::plot::{Axis, Line, Marker, Plot, Scale, Series};
 use crate::report::page::{self, table};
 use crate::report::table::{figure, grouped};
@@ -44,7 +44,8 @@ pub(super) fn throughput(results: &SweepResults) -> Plot {
         let reached = rows.iter().map(|row| (f64::from(row.scpus), row.pairs_per_second.map_or(f64::NAN, |p| p / 1e6)));
         let reached = Series::new(&name(interval), colour, reached).line(Line::Solid).marker(Marker::Circle);
         // Above the link limit the law says nothing that could be reached, and would shrink the rest of the plot.
-        let law = |row: &&Row| (f64::from(row.scpus), f64::from(row.scpus) * row.clock_mhz / f64::from(row.interval));
+        let law =
+            |row: &&PairsRow| (f64::from(row.scpus), f64::from(row.scpus) * row.clock_mhz / f64::from(row.interval));
         let law = rows.iter().map(law).filter(|&(_, pairs)| most == 0.0 || pairs <= 1.3 * most);
         plot = plot.with(reached);
         plot = plot
@@ -55,12 +56,12 @@ pub(super) fn throughput(results: &SweepResults) -> Plot {
 
 /// Pairs per second over LUTs, if any were counted.
 pub(super) fn area(results: &SweepResults) -> Option<Plot> {
-    results.rows.iter().any(|row| row.scpu_luts.is_some()).then(|| {
+    results.of_pairs().any(|row| row.scpu_luts.is_some()).then(|| {
         let axes =
             (Axis::new("LUTs of all SCPUs", Scale::Linear), Axis::new("million pairs per second", Scale::Linear));
         let mut plot = Plot::new("Throughput over area", axes.0, axes.1);
         for (colour, (interval, rows)) in by_interval(results).into_iter().enumerate() {
-            let point = |row: &&Row| {
+            let point = |row: &&PairsRow| {
                 let luts = row.scpu_luts? * u64::from(row.scpus);
                 Some((luts as f64, row.pairs_per_second? / 1e6))
             };
@@ -76,9 +77,9 @@ fn name(interval: u32) -> String {
 }
 
 /// The rows of each interval, by their number of SCPUs.
-fn by_interval(results: &SweepResults) -> BTreeMap<u32, Vec<&Row>> {
-    let mut all: BTreeMap<u32, Vec<&Row>> = BTreeMap::new();
-    for row in &results.rows {
+fn by_interval(results: &SweepResults) -> BTreeMap<u32, Vec<&PairsRow>> {
+    let mut all: BTreeMap<u32, Vec<&PairsRow>> = BTreeMap::new();
+    for row in results.of_pairs() {
         all.entry(row.interval).or_default().push(row);
     }
     all.values_mut().for_each(|rows| rows.sort_by_key(|row| row.scpus));
@@ -86,7 +87,7 @@ fn by_interval(results: &SweepResults) -> BTreeMap<u32, Vec<&Row>> {
 }
 
 /// The link limit of a row, in million pairs per second.
-fn limit(row: &Row) -> Option<(f64, f64)> {
+fn limit(row: &PairsRow) -> Option<(f64, f64)> {
     let share = row.efficiency.filter(|share| *share > 0.0)?;
     Some((f64::from(row.scpus), row.pairs_per_second? / share / 1e6))
 }
@@ -99,12 +100,12 @@ fn sorted(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
 }
 
 fn rows(results: &SweepResults) -> Markup {
-    let counted = results.rows.iter().any(|row| row.scpu_luts.is_some());
+    let counted = results.of_pairs().any(|row| row.scpu_luts.is_some());
     let heading = ["SCPUs", "interval", "M pairs/s", "share of the link limit", "latency, cycles", "cycles per pair"];
     let area = counted.then_some(["LUT per SCPU", "DSP per SCPU"]);
     let heading = heading.into_iter().chain(area.into_iter().flatten()).chain(["mismatches"]);
     let count = |count: Option<u64>| count.map_or_else(|| "–".to_owned(), grouped);
-    let row = |row: &Row| {
+    let row = |row: &PairsRow| {
         let figures = [
             row.scpus.to_string(),
             row.interval.to_string(),
@@ -116,7 +117,7 @@ fn rows(results: &SweepResults) -> Markup {
         let area = counted.then(|| [count(row.scpu_luts), count(row.scpu_dsps)]);
         figures.into_iter().chain(area.into_iter().flatten()).chain([grouped(row.mismatches)]).collect()
     };
-    table("", &heading.collect::<Vec<_>>(), 0, &results.rows.iter().map(row).collect::<Vec<_>>())
+    table("", &heading.collect::<Vec<_>>(), 0, &results.of_pairs().map(row).collect::<Vec<_>>())
 }
 
 #[cfg(test)]
@@ -124,10 +125,10 @@ mod tests {
     use super::*;
     use crate::config::Config;
     use crate::link::LinkModel;
-    use crate::sweep::{Swept, Task};
+    use crate::sweep::{Job, Row, Swept, Task};
 
     fn results(luts: Option<u64>) -> SweepResults {
-        let row = |scpus: u32, pairs_per_second: f64| Row {
+        let row = |scpus: u32, pairs_per_second: f64| PairsRow {
             scpus,
             interval: 4,
             pairs: 100,
@@ -147,10 +148,10 @@ mod tests {
             scpu_dsps: luts,
             rtl_sha256: String::new(),
         };
-        let task = Task { pairs: &[], link: &LinkModel::ideal(), seed: 1, counts: luts.is_some() };
-        let swept = Swept { scpus: vec![2, 1], interval: vec![4] };
+        let task = Task { job: Job::Pairs(&[]), link: &LinkModel::ideal(), seed: 1, counts: luts.is_some() };
+        let swept = Swept { scpus: vec![2, 1], interval: vec![4], ..Swept::default() };
         let mut results = SweepResults::new("random:100", "ideal", &task, &Config::default(), swept);
-        results.rows = vec![row(2, 98e6), row(1, 49e6)];
+        results.rows = vec![Row::Pairs(row(2, 98e6)), Row::Pairs(row(1, 49e6))];
         results
     }
 

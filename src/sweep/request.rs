@@ -5,9 +5,8 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::row::Simulated;
-use super::{SweepError, SweepResults, Task, area, fingerprint, simulate};
+use super::{Job, Size, SweepError, SweepResults, Task, area, simulate};
 use crate::config::Config;
-use crate::report::table::counted;
 use crate::store::{Key, Store};
 use crate::study::{News, Point, Role, State, Worker};
 use crate::synth::Area;
@@ -25,8 +24,7 @@ pub struct Request {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Asked {
-    scpus: u32,
-    interval: u32,
+    size: Size,
     simulation: Key,
     /// `None` if areas are not counted.
     area: Option<Key>,
@@ -39,18 +37,24 @@ impl Request {
     /// Returns an error if a configuration cannot be generated.
     pub fn new(results: SweepResults, configs: &[Config], task: &Task) -> Result<Self, SweepError> {
         let version = env!("CARGO_PKG_VERSION");
-        let pairs = fingerprint(task.pairs);
+        let given = task.job.fingerprint();
+        let (kind, kind_of_area) = match task.job {
+            Job::Pairs(_) => ("sweep/2", "area/1"),
+            Job::Spheres(_) => ("sweep-spheres/1", "area-spheres/1"),
+        };
         let asked = |config: &Config| {
-            let simulation = (version, config, rtl_sha256(config)?, &pairs, task.link, task.seed);
-            // The same SCPU stands in an AFU of any size.
-            let single = Config { scpus: 1, ..config.clone() };
+            let simulation = (version, config, rtl_sha256(config)?, &given, task.link, task.seed);
+            let counted = match task.job {
+                // The same SCPU stands in an AFU of any size.
+                Job::Pairs(_) => Config { scpus: 1, ..config.clone() },
+                Job::Spheres(_) => config.clone(),
+            };
             let area =
-                task.counts.then(|| Ok::<_, SweepError>((version, &single, rtl_sha256(&single)?))).transpose()?;
+                task.counts.then(|| Ok::<_, SweepError>((version, &counted, rtl_sha256(&counted)?))).transpose()?;
             Ok::<_, SweepError>(Asked {
-                scpus: config.scpus,
-                interval: config.interval,
-                simulation: Key::new("sweep/2", &simulation)?,
-                area: area.map(|of| Key::new("area/1", &of)).transpose()?,
+                size: Size::of(config),
+                simulation: Key::new(kind, &simulation)?,
+                area: area.map(|of| Key::new(kind_of_area, &of)).transpose()?,
             })
         };
         Ok(Self { results, rows: configs.iter().map(asked).collect::<Result<_, _>>()? })
@@ -76,11 +80,9 @@ impl Request {
         folder: Option<&Path>,
         mut tell: impl FnMut(News<'_>),
     ) -> Result<SweepResults, SweepError> {
-        let config = |row: &Asked| {
-            let of = |config: &&Config| (config.scpus, config.interval) == (row.scpus, row.interval);
-            // The request is made of the same configurations.
-            configs.iter().find(of).cloned().unwrap_or_default()
-        };
+        // The request is made of the same configurations.
+        let config =
+            |row: &Asked| configs.iter().find(|config| Size::of(config) == row.size).cloned().unwrap_or_default();
         // From the first measurement on the folder is known as ours.
         let mut saved = match folder {
             Some(folder) => self.read(store, &mut Worker::new(Role::Reader))?.save(folder).map_err(SweepError::from),
@@ -105,7 +107,7 @@ impl Request {
             store,
             &points,
             1,
-            |at| at.iter().map(|&index| area(&config(&self.rows[of[index]]))).collect(),
+            |at| at.iter().map(|&index| area(&config(&self.rows[of[index]]), task)).collect(),
             &mut heard,
         )?;
         saved?;
@@ -127,21 +129,20 @@ impl Request {
 
     /// A point per row.
     fn simulations(&self) -> Vec<Point> {
-        let point = |row: &Asked| {
-            Point::new(
-                format!("{}, interval {}", counted(row.scpus.into(), "SCPU"), row.interval),
-                row.simulation.clone(),
-            )
-        };
+        let point = |row: &Asked| Point::new(row.size.title(), row.simulation.clone());
         self.rows.iter().map(point).collect()
     }
 
-    /// A point for each SCPU whose area is counted, and a row that it stands in.
+    /// A point for each SCPU, or AFU, whose area is counted, and a row that it stands in.
     fn areas(&self) -> (Vec<Point>, Vec<usize>) {
         let (mut points, mut of): (Vec<Point>, Vec<usize>) = (Vec::new(), Vec::new());
         for (index, row) in self.rows.iter().enumerate() {
             if let Some(key) = row.area.clone().filter(|key| points.iter().all(|point| point.key != *key)) {
-                points.push(Point::new(format!("area of an SCPU, interval {}", row.interval), key));
+                let of_what = match (row.size.lanes, row.size.interval) {
+                    (None, Some(interval)) => format!("an SCPU, interval {interval}"),
+                    _ => row.size.title(),
+                };
+                points.push(Point::new(format!("area of {of_what}"), key));
                 of.push(index);
             }
         }
@@ -167,5 +168,48 @@ impl Request {
             host: rows.map(|(_, simulated)| simulated.host).collect(),
             ..self.results.clone()
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::{Input, Results, Shell};
+    use crate::link::LinkModel;
+    use crate::query::Fields;
+    use crate::spheres::SphereSet;
+    use crate::sweep::row::HostSeconds;
+    use crate::sweep::{Row, SpheresRow, Swept};
+
+    #[test]
+    fn rows_of_spheres_are_those_that_a_store_has() {
+        let sets = SphereSet::Diamond(3).spheres(1);
+        let base = Config { input: Input::Spheres, results: Results::Hits, shell: Shell::Line, ..Config::default() };
+        let base = Config { contact: Fields::HIT, ..base };
+        let swept = Swept { lanes: vec![16], deciders: vec![4], box_bits: vec![24, 10], ..Swept::default() };
+        let configs = swept.configs(&base);
+        let request = |seed: u64| {
+            let task = Task { job: Job::Spheres(&sets), link: &LinkModel::ideal(), seed, counts: true };
+            let results = SweepResults::new("diamond:3", "ideal", &task, &base, swept.clone());
+            Request::new(results, &configs, &task).expect("both can be generated")
+        };
+        let (asked, other) = (request(1), request(2));
+        let store = Store::temporary().expect("a temporary store");
+        assert_eq!(asked.known(&store), 0);
+        let row = SpheresRow::example(16, 10, 90);
+        let host = HostSeconds::new(row.size(), 1.0, 0.5);
+        let simulated = Simulated { row: Row::Spheres(row.clone()), host };
+        store.put(&asked.rows[1].simulation, &simulated).expect("kept");
+        assert_eq!([asked.known(&store), other.known(&store)], [1, 0]);
+        let read = || asked.read(&store, &mut Worker::new(Role::Reader)).expect("a store");
+        assert_eq!(read().rows, [Row::Spheres(row.clone())]);
+        assert_eq!(read().missing[0], "16 lanes, 4 deciders, boxes of 24 bits");
+        // The area is of the AFU, whatever is sent to it.
+        let key = other.rows[1].area.clone().expect("it is counted");
+        store.put(&key, &Area { luts: 7, ffs: 5, dsps: 3, brams: 1 }).expect("kept");
+        let counted = SpheresRow { luts: Some(7), ffs: Some(5), dsps: Some(3), brams: Some(1), ..row };
+        assert_eq!(read().rows, [Row::Spheres(counted)]);
+        let text = serde_json::to_string(&asked).expect("plain values");
+        assert_eq!(serde_json::from_str::<Request>(&text).expect("the same"), asked);
     }
 }

@@ -7,8 +7,8 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::row::HostSeconds;
-use super::{Row, Task, fingerprint, page};
-use crate::config::Config;
+use super::{Job, PairsRow, Row, SpheresRow, Swept, Task, page, spheres_page};
+use crate::config::{Config, Search};
 use crate::report::table::table;
 use crate::report::{folder, manifest};
 use crate::store::sha256;
@@ -31,20 +31,28 @@ const PICTURE: &str = "throughput.svg";
 pub struct SweepResults {
     pub(super) schema: String,
     pub(super) version: String,
-    /// The pairs: a set's name, or a file.
+    /// The pairs: a set's name, or a file. Empty if spheres are sent.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
     pub pairs: String,
     /// SHA-256 of the pairs' words.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
     pub pairs_sha256: String,
+    /// The spheres: a set's name, or files. Empty if pairs are sent.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub spheres: String,
+    /// SHA-256 of the spheres' words.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub spheres_sha256: String,
     /// The link's name, or its file.
     pub link: String,
     /// SHA-256 of the link model; empty in results of older versions.
     #[serde(default)]
     pub link_sha256: String,
-    /// Seed of pairs and link.
+    /// Seed of pairs or spheres, and of the link.
     pub seed: u64,
     /// The configuration; the swept options are in [`Swept`].
     pub config: Config,
-    /// The requested numbers of SCPUs and intervals; there is one row for each combination.
+    /// The requested values; there is one row for each combination.
     #[serde(default)]
     pub swept: Swept,
     /// The rows, in the order asked for.
@@ -56,24 +64,22 @@ pub struct SweepResults {
     pub(super) host: Vec<HostSeconds>,
 }
 
-/// The options that a sweep varies.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Swept {
-    /// Numbers of SCPUs.
-    pub scpus: Vec<u32>,
-    /// Intervals.
-    pub interval: Vec<u32>,
-}
-
 impl SweepResults {
-    /// A sweep of `task` without rows. `pairs` and `link` are the names of what the task has.
-    pub fn new(pairs: &str, link: &str, task: &Task, config: &Config, swept: Swept) -> Self {
+    /// A sweep of `task` without rows. `given` and `link` are the names of what the task has.
+    pub fn new(given: &str, link: &str, task: &Task, config: &Config, swept: Swept) -> Self {
+        let (name, sha256_of_all) = (given.to_owned(), task.job.fingerprint());
+        let nothing = (String::new(), String::new());
+        let ((pairs, pairs_sha256), (spheres, spheres_sha256)) = match task.job {
+            Job::Pairs(_) => ((name, sha256_of_all), nothing),
+            Job::Spheres(_) => (nothing, (name, sha256_of_all)),
+        };
         Self {
             schema: SCHEMA.to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            pairs: pairs.to_owned(),
-            pairs_sha256: fingerprint(task.pairs),
+            pairs,
+            pairs_sha256,
+            spheres,
+            spheres_sha256,
             link: link.to_owned(),
             // A link is plain values: it has JSON.
             link_sha256: sha256(serde_json::to_string(task.link).unwrap_or_default().as_bytes()),
@@ -84,6 +90,21 @@ impl SweepResults {
             missing: Vec::new(),
             host: Vec::new(),
         }
+    }
+
+    /// The name of what is sent, and its SHA-256.
+    pub(super) fn given(&self) -> (&str, &str) {
+        if self.spheres.is_empty() { (&self.pairs, &self.pairs_sha256) } else { (&self.spheres, &self.spheres_sha256) }
+    }
+
+    /// The rows of AFUs that were sent pairs.
+    pub fn of_pairs(&self) -> impl Iterator<Item = &PairsRow> {
+        self.rows.iter().filter_map(|row| if let Row::Pairs(row) = row { Some(row) } else { None })
+    }
+
+    /// The rows of AFUs that were sent spheres.
+    pub fn of_spheres(&self) -> impl Iterator<Item = &SpheresRow> {
+        self.rows.iter().filter_map(|row| if let Row::Spheres(row) = row { Some(row) } else { None })
     }
 
     /// Whether `folder` may hold this sweep: it is not there, holds an earlier run of the same sweep, or `force`
@@ -120,31 +141,32 @@ impl SweepResults {
         };
         compare("of schema", &there.schema, &self.schema);
         compare("by version", &there.version, &self.version);
-        compare("of", &there.pairs, &self.pairs);
+        let ((given, sha256), (given_there, sha256_there)) = (self.given(), there.given());
+        compare("of", given_there, given);
         compare("over", &there.link, &self.link);
         compare("with seed", &there.seed.to_string(), &self.seed.to_string());
         let options = |config: &Config| {
             let Config { scpus, interval, .. } = Config::default();
-            let flags = Config { scpus, interval, ..config.clone() }.flags();
-            // The first is the interval, and rows have their own.
-            match flags.get(2..) {
-                Some(options) if !options.is_empty() => options.join(" "),
-                _ => "the default options".to_owned(),
-            }
+            let search = Search { table: config.search.table, ..Search::default() };
+            let flags = Config { scpus, interval, search, ..config.clone() }.flags();
+            // Rows have their own SCPUs and intervals, which are always named.
+            let of_rows = |flag: &[String]| matches!(flag[0].as_str(), "--scpus" | "--interval");
+            let rest: Vec<_> = flags.chunks(2).filter(|flag| !of_rows(flag)).flatten().cloned().collect();
+            if rest.is_empty() { "the default options".to_owned() } else { rest.join(" ") }
         };
         compare("with", &options(&there.config), &options(&self.config));
-        if there.pairs == self.pairs && there.seed == self.seed && there.pairs_sha256 != self.pairs_sha256 {
-            differences.push(format!("a sweep of {} as it was before it changed", there.pairs));
+        if given_there == given && there.seed == self.seed && sha256_there != sha256 {
+            differences.push(format!("a sweep of {given_there} as it was before it changed"));
         }
         let is_known = !there.link_sha256.is_empty() && there.link == self.link;
         if is_known && there.config.clock_mhz == self.config.clock_mhz && there.link_sha256 != self.link_sha256 {
             differences.push(format!("a sweep over {} as it was before it changed", there.link));
         }
-        let Swept { scpus, interval } = &self.swept;
-        let lost = there.rows.iter().filter(|row| !(scpus.contains(&row.scpus) && interval.contains(&row.interval)));
-        let lost: Vec<String> = lost.map(|row| format!("{} at interval {}", row.scpus, row.interval)).collect();
+        let lost = there.rows.iter().map(Row::size).filter(|size| !self.swept.has(size));
+        let lost: Vec<String> = lost.map(|size| size.short()).collect();
         if !lost.is_empty() {
-            differences.push(format!("rows that are not asked for now (SCPUs: {})", lost.join(", ")));
+            let (what, between) = if self.spheres.is_empty() { ("SCPUs: ", ", ") } else { ("", "; ") };
+            differences.push(format!("rows that are not asked for now ({what}{})", lost.join(between)));
         }
         differences
     }
@@ -158,17 +180,27 @@ impl SweepResults {
         folder::replace_json(&folder.join(manifest::NAME), self)?;
         folder::replace_csv(&folder.join(CSV), |out| self.rows.iter().try_for_each(|row| out.serialize(row)))?;
         folder::replace_csv(&folder.join(HOST), |out| self.host.iter().try_for_each(|row| out.serialize(row)))?;
-        folder::replace_file(&folder.join(PICTURE), page::throughput(self).svg().as_bytes())?;
-        folder::replace_file(&folder.join(PAGE), page::page(self).as_bytes())
+        let (picture, page) = if self.spheres.is_empty() {
+            (page::throughput(self), page::page(self))
+        } else {
+            (spheres_page::times(self), spheres_page::page(self))
+        };
+        folder::replace_file(&folder.join(PICTURE), picture.svg().as_bytes())?;
+        folder::replace_file(&folder.join(PAGE), page.as_bytes())
     }
 
     /// The table for people.
     pub fn table(&self) -> String {
         let title = format!(
             "{} over link {}, seed {}, {} arithmetic, {} MHz",
-            self.pairs, self.link, self.seed, self.config.profile, self.config.clock_mhz
+            self.given().0,
+            self.link,
+            self.seed,
+            self.config.profile,
+            self.config.clock_mhz
         );
-        format!("{title}\n{}", table(&Row::HEADING, self.rows.iter().map(Row::cells)))
+        let heading: &[&str] = if self.spheres.is_empty() { &PairsRow::HEADING } else { &SpheresRow::HEADING };
+        format!("{title}\n{}", table(heading, self.rows.iter().map(Row::cells)))
     }
 }
 
@@ -179,7 +211,7 @@ mod tests {
     use crate::query::PairRecord;
 
     fn row(scpus: u32) -> Row {
-        Row {
+        Row::Pairs(PairsRow {
             scpus,
             interval: 1,
             scpu_luts: None,
@@ -198,7 +230,7 @@ mod tests {
             latency_cycles: None,
             clock_mhz: 200.0,
             rtl_sha256: "00".to_owned(),
-        }
+        })
     }
 
     #[test]
@@ -206,8 +238,8 @@ mod tests {
         let room = tempfile::tempdir().expect("a temporary folder");
         let folder = room.path().join("out");
         let pairs = [PairRecord::default()];
-        let task = Task { pairs: &pairs, link: &LinkModel::ideal(), seed: 1, counts: false };
-        let swept = Swept { scpus: vec![1, 2], interval: vec![1] };
+        let task = Task { job: Job::Pairs(&pairs), link: &LinkModel::ideal(), seed: 1, counts: false };
+        let swept = Swept { scpus: vec![1, 2], interval: vec![1], ..Swept::default() };
         let mut results = SweepResults::new("diamond:3", "ideal", &task, &Config::default(), swept);
         results.check(&folder, false).expect("nothing there");
         results.rows = vec![row(1), row(2)];
@@ -217,7 +249,7 @@ mod tests {
         assert!(csv.starts_with("scpus,interval,pairs,contacts,mismatches,") && csv.lines().count() == 3, "{csv}");
 
         let manifest = fs::read(folder.join(manifest::NAME)).expect("written");
-        let swept = |scpus: &[u32]| Swept { scpus: scpus.to_vec(), interval: vec![1, 2] };
+        let swept = |scpus: &[u32]| Swept { scpus: scpus.to_vec(), interval: vec![1, 2], ..Swept::default() };
         let more = SweepResults { swept: swept(&[4, 2, 1]), ..results.clone() };
         more.check(&folder, false).expect("the same and more");
         let paper = Config { profile: "paper".parse().expect("a profile"), ..Config::default() };

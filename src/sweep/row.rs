@@ -1,12 +1,9 @@
-//! One AFU's figures.
+//! One AFU's figures, whatever it was sent.
 
 use serde::{Deserialize, Serialize};
 
-use crate::config::Config;
-use crate::report::table::{figure, grouped};
-use crate::report::tally::Tally;
+use super::{PairsRow, Size, SpheresRow};
 use crate::synth::Area;
-use crate::verify::Verdict;
 
 /// A simulated AFU, as the store keeps it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -18,134 +15,74 @@ pub(super) struct Simulated {
     pub host: HostSeconds,
 }
 
-/// What an AFU took on the machine that simulated it.
+/// What an AFU took on the machine that simulated it. It begins with the fields of its [`Size`], as columns of a CSV.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct HostSeconds {
-    /// Sphere Collision Processing Units.
-    pub scpus: u32,
-    /// Cycles from one pair to the next in one SCPU.
-    pub interval: u32,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    lanes: Option<u32>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    deciders: Option<u32>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    box_bits: Option<u32>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    scpus: Option<u32>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    interval: Option<u32>,
     /// Seconds to build the model from nothing, Verilator's runtime included.
-    pub build_seconds: f64,
+    build_seconds: f64,
     /// Seconds of the simulation.
-    pub simulation_seconds: f64,
+    simulation_seconds: f64,
 }
 
-/// One AFU's figures. The columns of the CSV and the keys of the JSON are these fields.
+impl HostSeconds {
+    pub fn new(size: Size, build_seconds: f64, simulation_seconds: f64) -> Self {
+        let Size { lanes, deciders, box_bits, scpus, interval } = size;
+        Self { lanes, deciders, box_bits, scpus, interval, build_seconds, simulation_seconds }
+    }
+}
+
+/// One AFU's figures.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Row {
-    /// Sphere Collision Processing Units.
-    pub scpus: u32,
-    /// Cycles from one pair to the next in one SCPU.
-    pub interval: u32,
-    /// Pairs sent.
-    pub pairs: u64,
-    /// Pairs that touch.
-    pub contacts: u64,
-    /// Records that differ from the reference kernel's.
-    pub mismatches: u64,
-    /// Other checks that failed: status, counters, unused bits.
-    #[serde(rename = "unmet")]
-    pub failed_checks: u64,
-    /// Clock cycles from start to done.
-    pub cycles: u64,
-    /// Clock cycles per pair; `None` without pairs.
-    pub cycles_per_pair: Option<f64>,
-    /// Pairs per second at the clock.
-    pub pairs_per_second: Option<f64>,
-    /// Throughput as a share of the link limit, 0 to 1.
-    pub efficiency: Option<f64>,
-    /// Bytes of the lines read.
-    pub bytes_read: u64,
-    /// Bytes of the lines written.
-    pub bytes_written: u64,
-    /// Cycles from the first line of pairs in to the first line of contacts out.
-    pub latency_cycles: Option<u64>,
-    /// The clock, MHz.
-    pub clock_mhz: f64,
-    /// LUTs of one SCPU on an ECP5 as Yosys counts them; `None` if they were not counted.
-    #[serde(default)]
-    pub scpu_luts: Option<u64>,
-    /// Flip-flops of one SCPU, likewise.
-    #[serde(default)]
-    pub scpu_ffs: Option<u64>,
-    /// Multiplier blocks of one SCPU, likewise.
-    #[serde(default)]
-    pub scpu_dsps: Option<u64>,
-    /// SHA-256 of the Verilog.
-    pub rtl_sha256: String,
+#[serde(untagged)]
+pub enum Row {
+    /// Of an AFU that was sent pairs.
+    Pairs(PairsRow),
+    /// Of one that was sent spheres.
+    Spheres(SpheresRow),
 }
 
 impl Row {
-    /// The row of a job with this verdict.
-    pub(super) fn of(config: &Config, rtl_sha256: &str, verdict: &Verdict) -> Self {
-        let tally = Tally::of(verdict, config);
-        let cycles_per_pair = tally.cycles_per_pair();
-        Self {
-            scpus: config.scpus,
-            interval: config.interval,
-            pairs: tally.pairs,
-            contacts: tally.flows.contacts(),
-            mismatches: tally.mismatches,
-            failed_checks: verdict.failed_checks.len() as u64,
-            cycles: tally.cycles,
-            cycles_per_pair,
-            pairs_per_second: cycles_per_pair.map(|cycles| 1e6 * config.clock_mhz / cycles),
-            efficiency: tally.efficiency(),
-            bytes_read: tally.bytes_read,
-            bytes_written: tally.bytes_written,
-            latency_cycles: tally.latency_cycles,
-            clock_mhz: config.clock_mhz,
-            scpu_luts: None,
-            scpu_ffs: None,
-            scpu_dsps: None,
-            rtl_sha256: rtl_sha256.to_owned(),
+    /// What distinguishes the AFU from the others of its sweep.
+    pub fn size(&self) -> Size {
+        match self {
+            Self::Pairs(row) => row.size(),
+            Self::Spheres(row) => row.size(),
         }
-    }
-
-    /// The row with the area of one SCPU, if that is known.
-    pub(super) fn with_area(self, area: Option<Area>) -> Self {
-        let Some(Area { luts, ffs, dsps, .. }) = area else { return self };
-        Self { scpu_luts: Some(luts), scpu_ffs: Some(ffs), scpu_dsps: Some(dsps), ..self }
     }
 
     /// Whether there was neither a mismatch nor a failed check.
     pub fn passed(&self) -> bool {
-        self.mismatches == 0 && self.failed_checks == 0
+        match self {
+            Self::Pairs(row) => row.passed(),
+            Self::Spheres(row) => row.passed(),
+        }
     }
 
-    /// The heading of the table for people.
-    pub(super) const HEADING: [&'static str; 11] = [
-        "SCPUs",
-        "interval",
-        "pairs",
-        "mismatches",
-        "cycles",
-        "cycles per pair",
-        "M pairs/s",
-        "of link limit",
-        "latency, cycles",
-        "LUT per SCPU",
-        "DSP per SCPU",
-    ];
+    /// The row with an area, if that is known: of one SCPU, or of the whole AFU that is sent spheres.
+    pub(super) fn with_area(self, area: Option<Area>) -> Self {
+        match (self, area) {
+            (Self::Pairs(row), Some(area)) => Self::Pairs(row.with_area(area)),
+            (Self::Spheres(row), Some(area)) => Self::Spheres(row.with_area(area)),
+            (row, None) => row,
+        }
+    }
 
     /// The row of the table for people.
-    pub(super) fn cells(&self) -> [String; 11] {
-        let count = |count: Option<u64>| count.map_or_else(|| "-".to_owned(), grouped);
-        [
-            self.scpus.to_string(),
-            self.interval.to_string(),
-            grouped(self.pairs),
-            grouped(self.mismatches),
-            grouped(self.cycles),
-            figure(self.cycles_per_pair, 3),
-            figure(self.pairs_per_second.map(|pairs| pairs / 1e6), 1),
-            self.efficiency.map_or_else(|| "-".to_owned(), |share| format!("{:.1} %", 100.0 * share)),
-            count(self.latency_cycles),
-            count(self.scpu_luts),
-            count(self.scpu_dsps),
-        ]
+    pub(super) fn cells(&self) -> Vec<String> {
+        match self {
+            Self::Pairs(row) => row.cells().to_vec(),
+            Self::Spheres(row) => row.cells().to_vec(),
+        }
     }
 }

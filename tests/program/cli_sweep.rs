@@ -98,6 +98,63 @@ fn a_sweep_has_a_row_for_each_size_and_is_resumed() {
     assert_eq!(fs::read_dir(room.path().join("merged")).expect("there").count(), results.len() + 1);
 }
 
+/// Fewer bits of a box make more candidates, and the same contacts in any number of lanes.
+#[test]
+fn a_sweep_of_spheres_has_a_row_for_each_search_and_is_resumed() {
+    let room = tempfile::tempdir().expect("a temporary folder");
+    let small = ["sweep", "--input", "spheres", "--spheres", "diamond:5+1000", "--table", "512", "--deciders", "1"];
+    let sweep = |lanes: &str| {
+        let sizes = ["--box-bits", "24,16", "--lanes", lanes, "--out", "out", "--json", "-"];
+        let done = afu(room.path(), &[&small[..], &sizes].concat()).success();
+        let json: Value = serde_json::from_slice(&done.get_output().stdout).expect("JSON alone");
+        assert_eq!((&json["schema"], &json["spheres"]), (&"contact-afu/sweep/2".into(), &"diamond:5+1000".into()));
+        (
+            json["rows"].as_array().expect("rows").clone(),
+            String::from_utf8_lossy(&done.get_output().stderr).into_owned(),
+        )
+    };
+    let (first, _) = sweep("16");
+    let (rows, said) = sweep("16,32");
+    assert!(said.contains("2 of 4 rows come from an earlier run"), "{said}");
+    assert_eq!(rows[..2], first[..]);
+    let all = |key: &str| rows.iter().map(|row| row[key].as_u64()).collect::<Option<Vec<_>>>().expect(key);
+    assert_eq!((all("lanes"), all("box_bits")), (vec![16, 16, 32, 32], vec![24, 16, 24, 16]));
+    assert_eq!((all("mismatches"), all("unmet")), (vec![0; 4], vec![0; 4]));
+    assert_eq!(all("contacts"), [264; 4], "as the diamond at the origin");
+    let candidates = all("candidates");
+    assert!(candidates[1] > candidates[0] && candidates[2..] == candidates[..2], "{candidates:?}");
+    for (cycles, predicted) in all("cycles").into_iter().zip(all("predicted_cycles")) {
+        assert!(cycles.abs_diff(predicted) * 10 < cycles, "{cycles} and the model's {predicted}");
+    }
+    let csv = fs::read_to_string(room.path().join("out/sweep.csv")).expect("written");
+    assert!(csv.starts_with("lanes,deciders,box_bits,scpus,interval,spheres,"), "{csv}");
+    let host = fs::read_to_string(room.path().join("out/host.csv")).expect("written");
+    assert!(host.starts_with("lanes,deciders,box_bits,build_seconds,simulation_seconds\n16,1,24,"), "{host}");
+    let page = fs::read_to_string(room.path().join("out/report.html")).expect("written");
+    assert!(page.contains("candidates per sphere by bits of a box") && page.contains("ns per sphere by lanes"));
+    let refused = afu(room.path(), &[&small[..], &["--out", "out"]].concat()).code(2);
+    let told = String::from_utf8_lossy(&refused.get_output().stderr).into_owned();
+    assert!(told.contains("not asked for now (16 lanes, 1 decider, boxes of 16 bits; 32 lanes, "), "{told}");
+}
+
+#[test]
+fn pairs_and_spheres_are_not_mixed() {
+    let room = tempfile::tempdir().expect("a temporary folder");
+    for (arguments, words) in [
+        (&["--input", "spheres", "--pairs", "diamond:3"][..], "--pairs does not go with --input spheres"),
+        (&["--lanes", "16,32"], "--lanes needs AFUs that take spheres"),
+        (&["--sort"], "--sort needs AFUs that take spheres"),
+        (&["--input", "spheres", "--interval", "1,2"], "--interval with --input spheres and --contact hit"),
+        (&["--input", "spheres", "--table", "512"], "diamond:10: 1159 spheres; the AFU's table holds 512"),
+        (&["--input", "spheres", "--box-bits", "9,24"], "boxes of 9 bits: expected 10 to 32"),
+    ] {
+        let refused = afu(room.path(), &[&["sweep", "--out", "out"][..], arguments].concat()).code(2);
+        let told = String::from_utf8_lossy(&refused.get_output().stderr).into_owned();
+        assert!(told.contains(words) && told.lines().count() == 1, "{told}");
+        assert_eq!(fs::read_dir(room.path()).expect("there").count(), 0, "{arguments:?}");
+    }
+}
+
 #[test]
 fn wrong_sweeps_are_exit_2_and_leave_no_folder() {
     let room = tempfile::tempdir().expect("a temporary folder");

@@ -180,8 +180,8 @@ fn of_users(room: &Path) -> Vec<Kind> {
 }
 
 fn swept() -> SweepResults {
-    let task = sweep::Task { pairs: &[], link: &LinkModel::ideal(), seed: 1, counts: false };
-    let swept = sweep::Swept { scpus: vec![1], interval: vec![1] };
+    let task = sweep::Task { job: sweep::Job::Pairs(&[]), link: &LinkModel::ideal(), seed: 1, counts: false };
+    let swept = sweep::Swept { scpus: vec![1], interval: vec![1], ..sweep::Swept::default() };
     SweepResults::new("random:5", "ideal", &task, &Config::default(), swept)
 }
 
