@@ -75,16 +75,15 @@ module contact_afu_collector (
   wire rd_req_moves = ~rd_req_valid | rd_req_ready;
   wire issue = may_ask & ~rd_req_spare_valid_copy_0;
   wire has_many_lines_to_request = many_lines_to_request | started_with_many_lines_to_request;
-  wire lines_to_request_or_request_2_0_above_1 = has_many_lines_to_request | (3'd1 < lines_to_request[2:0]);
-  wire freed_or_reserved_6_n = freed | ~reserved[6];
+  wire any_lines_to_request_after_2 = has_many_lines_to_request | (3'd2 < lines_to_request[2:0]);
+  wire any_lines_to_request_after_1 = has_many_lines_to_request | (3'd1 < lines_to_request[2:0]);
+  wire some_free_now = freed | ~reserved[6];
+  wire any_lines_to_request_after_0 = has_many_lines_to_request | |lines_to_request[2:0];
   wire some_left_and_free =
       issue ?
-          ((lines_to_request_step ? (has_many_lines_to_request | (3'd2 < lines_to_request[2:0])) :
-            lines_to_request_or_request_2_0_above_1)
-           & (freed_or_reserved_6_n & (freed | ~&reserved[5:0]))) :
-      ((lines_to_request_step ? lines_to_request_or_request_2_0_above_1 :
-        (has_many_lines_to_request | |lines_to_request[2:0]))
-       & freed_or_reserved_6_n);
+          ((lines_to_request_step ? any_lines_to_request_after_2 : any_lines_to_request_after_1)
+           & (some_free_now & (freed | ~&reserved[5:0]))) :
+      ((lines_to_request_step ? any_lines_to_request_after_1 : any_lines_to_request_after_0) & some_free_now);
   wire rd_req_waits = rd_req_next_valid & ~rd_req_moves;
   wire [9:0] rd_req_spare_tag_next = {epoch, next_slot};
   wire oldest_goes = came[0];

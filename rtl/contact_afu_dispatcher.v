@@ -70,14 +70,15 @@ module contact_afu_dispatcher (
   wire goes = may_go & read_valid;
   wire read = ~read_valid | may_go;
   wire take = read & ready;
-  wire stored_8_1_any = |stored[8:1];
-  wire stored_any = |stored;
+  wire any_stored_after_2 = |stored[8:2] | (stored[1] & stored[0]);
+  wire any_stored_after_1 = |stored[8:1];
+  wire any_stored_after_0 = |stored;
   wire some_ready =
-      take ? ((line_left ? (|stored[8:2] | (stored[1] & stored[0])) : stored_8_1_any) | line_valid) :
-      ((line_left ? stored_8_1_any : stored_any) | line_valid);
+      take ? ((line_left ? any_stored_after_2 : any_stored_after_1) | line_valid) :
+      ((line_left ? any_stored_after_1 : any_stored_after_0) | line_valid);
   wire oldest_goes = came[0];
-  wire oldest_goes_or_reserved_6_n = oldest_goes | ~reserved[6];
-  wire some_free = goes ? (oldest_goes_or_reserved_6_n & (oldest_goes | ~&reserved[5:0])) : oldest_goes_or_reserved_6_n;
+  wire some_free_now = oldest_goes | ~reserved[6];
+  wire some_free = goes ? (some_free_now & (oldest_goes | ~&reserved[5:0])) : some_free_now;
   wire [63:0] marked = came | (answered ? (64'd1 << arrived_age) : 64'd0);
   wire is_awaited = is_response & (was_asked | (|(marked_in_rows & (8'd1 << answered_slot[5:3])) & ~was_answered));
   wire [7:0] place_in_row = 8'd1 << response_slot[2:0];
@@ -168,7 +169,7 @@ module contact_afu_dispatcher (
           start             ? 7'd0 :
           (goes ^ answered) ? (goes ? (outstanding + 7'd1) : (outstanding - 7'd1)) :
           outstanding;
-      empty <= ~start & ~stored_any & ~read_valid;
+      empty <= ~start & ~any_stored_after_0 & ~read_valid;
     end
   end
 

@@ -76,37 +76,30 @@ module contact_afu_feeder (
   wire [2:0] place_after_1 = place_after_0 + 3'd1;
   wire last_is_next = last_line_ready & ~two_lines_ready;
   wire next_last = last_is_next ? last_place : 1'b1;
-  wire next_last_below_place_after_1_0 = next_last < place_after_1[0];
-  wire present_1 = holds_1 | (|place_after_1[2:1] & line_ready & ~next_last_below_place_after_1_0);
+  wire next_line_has_place_1 = next_last >= place_after_1[0];
+  wire present_1 = holds_1 | (|place_after_1[2:1] & line_ready & next_line_has_place_1);
   wire go_1 = go_0 & unit_1 & present_1;
   wire line_done = go_1 ? 1'b1 : go_0 ? ~holds_1 : 1'b0;
   wire take = line_ready & (line_done | ~in_hand);
   wire line_readies = (some_come | line_comes) & any_lines_left & ~two_lines_ready;
   wire has_many_lines_left = many_lines_left | started_with_many_lines_left;
-  wire has_many_lines_left_or_left_2_0_above_1 = has_many_lines_left | (3'd1 < lines_left[2:0]);
-  wire lines_waiting_6_1_any = |lines_waiting[6:1];
-  wire lines_waiting_6_1_any_if_left_step = lines_left_step ? lines_waiting_6_1_any : |lines_waiting;
-  wire some_come_next =
-      ~start
-      & (line_readies ?
-             ((lines_left_step ? (|lines_waiting[6:2] | (lines_waiting[1] & lines_waiting[0])) : lines_waiting_6_1_any)
-              | (line_comes & lines_waiting_6_1_any_if_left_step)) :
-         (lines_waiting_6_1_any_if_left_step | line_comes));
-  wire left_2_0_equals_2_unless_has_many_lines_left = ~has_many_lines_left & (lines_left[2:0] == 3'd2);
-  wire one_lines_left_next =
-      ~start
-      & (line_readies    ?
-             (lines_left_step ? (~has_many_lines_left & (lines_left[2:0] == 3'd3)) :
-              left_2_0_equals_2_unless_has_many_lines_left) :
-         lines_left_step ? left_2_0_equals_2_unless_has_many_lines_left :
-         (~has_many_lines_left & (lines_left[2:0] == 3'd1)));
+  wire any_lines_left_after_2 = has_many_lines_left | (3'd2 < lines_left[2:0]);
+  wire any_lines_left_after_1 = has_many_lines_left | (3'd1 < lines_left[2:0]);
+  wire any_lines_left_after_0 = has_many_lines_left | |lines_left[2:0];
+  wire any_lines_waiting_after_2 = |lines_waiting[6:2] | (lines_waiting[1] & lines_waiting[0]);
+  wire any_lines_waiting_after_1 = |lines_waiting[6:1];
+  wire any_lines_waiting_after_0 = |lines_waiting;
+  wire any_lines_waiting_now = lines_left_step ? any_lines_waiting_after_1 : any_lines_waiting_after_0;
+  wire one_lines_left_after_2 = ~has_many_lines_left & (lines_left[2:0] == 3'd3);
+  wire one_lines_left_after_1 = ~has_many_lines_left & (lines_left[2:0] == 3'd2);
+  wire one_lines_left_after_0 = ~has_many_lines_left & (lines_left[2:0] == 3'd1);
   wire [2:0] place_after_2 = place_after_0 + 3'd2;
   wire next_place = go_1 ? place_after_2[0] : go_0 ? place_after_1[0] : place;
-  wire after_2_0_plus_1_if_go_1 =
+  wire next_line_goes_on_1 =
       go_1 ? ({2'd0, next_last} >= ({2'd0, place_after_2[0]} + 3'd1)) :
       go_0 ? ({2'd0, next_last} >= ({2'd0, place_after_1[0]} + 3'd1)) :
       ({2'd0, next_last} >= place_after_1);
-  wire next_holds_1 = in_hand ? after_2_0_plus_1_if_go_1 : (next_last >= 1'b1);
+  wire next_holds_1 = in_hand ? next_line_goes_on_1 : (next_last >= 1'b1);
   wire [2:0] place_after_3 = place_after_0 + 3'd3;
   wire still_holds_1 =
       go_1 ? ({2'd0, last} >= place_after_3) :
@@ -124,12 +117,11 @@ module contact_afu_feeder (
   wire one_block = blocks == 8'd1;
   wire before_last_block = ({1'b0, turn_block} + 8'd2) == blocks;
   wire next_within = go_1 ? turn_within_plus_2[0] : go_0 ? turn_within_plus_1[0] : turn_within;
-  wire next_holds_0 =
-      in_hand ?
-          (go_1 ? (next_last >= place_after_2[0]) :
-           go_0 ? ~next_last_below_place_after_1_0 :
-           ({2'd0, next_last} >= place_after_0)) :
-      1'b1;
+  wire next_line_goes_on_0 =
+      go_1 ? (next_last >= place_after_2[0]) :
+      go_0 ? next_line_has_place_1 :
+      ({2'd0, next_last} >= place_after_0);
+  wire next_holds_0 = in_hand ? next_line_goes_on_0 : 1'b1;
   wire [6:0] turns_before_1 = scpus - 7'd1;
   wire [6:0] turn_after_1 = (turn >= turns_before_1) ? (turn - turns_before_1) : (turn + 7'd1);
   wire [6:0] turns_before_2 = scpus - 7'd2;
@@ -198,14 +190,17 @@ module contact_afu_feeder (
       line_ready <= ~start & (line_readies | two_lines_ready | (line_ready & ~take));
       last_line_ready <= ~start & (last_line_ready | (line_readies & one_lines_left));
       two_lines_ready <= ~start & line_ready & ~take & (two_lines_ready | line_readies);
-      some_come <= some_come_next;
+      some_come <=
+          ~start
+          & (line_readies ?
+                 ((lines_left_step ? any_lines_waiting_after_2 : any_lines_waiting_after_1)
+                  | (line_comes & any_lines_waiting_now)) :
+             (any_lines_waiting_now | line_comes));
       any_lines_left <=
           ~start
-          & (line_readies    ?
-                 (lines_left_step ? (has_many_lines_left | (3'd2 < lines_left[2:0])) :
-                  has_many_lines_left_or_left_2_0_above_1) :
-             lines_left_step ? has_many_lines_left_or_left_2_0_above_1 :
-             (has_many_lines_left | |lines_left[2:0]));
+          & (line_readies    ? (lines_left_step ? any_lines_left_after_2 : any_lines_left_after_1) :
+             lines_left_step ? any_lines_left_after_1 :
+             any_lines_left_after_0);
       lines_left_step <= line_readies & ~start;
       many_lines_left <= ~start & |lines_left[31:3];
       started_with_many_lines_left <= start & |lines[31:3];
@@ -214,7 +209,11 @@ module contact_afu_feeder (
           start                          ? 7'd0 :
           (line_comes ^ lines_left_step) ? (line_comes ? (lines_waiting + 7'd1) : (lines_waiting - 7'd1)) :
           lines_waiting;
-      one_lines_left <= one_lines_left_next;
+      one_lines_left <=
+          ~start
+          & (line_readies    ? (lines_left_step ? one_lines_left_after_2 : one_lines_left_after_1) :
+             lines_left_step ? one_lines_left_after_1 :
+             one_lines_left_after_0);
       turn_block <= round_begins ? 7'd0 : ends_block ? (turn_block + 7'd1) : turn_block;
       carries <= carries_rank_0;
       carries_rank_0 <= {go_1, go_0};

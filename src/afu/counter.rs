@@ -5,6 +5,7 @@ use crate::hdl::{Graph, Register, Signal};
 
 /// A counter that counts down in steps of one, each one cycle late.
 pub(super) struct Countdown<'g> {
+    name: String,
     left: Register<'g>,
     /// True if anything is left.
     pub(super) any: Signal<'g>,
@@ -28,7 +29,8 @@ impl<'g> Countdown<'g> {
         let counts = graph.register(&format!("{name}_step"), 1, 0);
         let many = ["many", "started_with_many"].map(|flag| graph.register(&format!("{flag}_{name}"), 1, 0));
         let has_many = (*many[0] | *many[1]).named(&format!("has_many_{name}"));
-        Self { left: graph.register(name, width, 0), any, one, flags, many, has_many, counts, counted: *counts }
+        let left = graph.register(name, width, 0);
+        Self { name: name.to_owned(), left, any, one, flags, many, has_many, counts, counted: *counts }
     }
 
     /// Starts from `from` at `start`, and counts down at `step`, which is set only while something is left. Returns
@@ -41,8 +43,9 @@ impl<'g> Countdown<'g> {
         self.many[0].next(!start & left.drop_low(3).any());
         self.many[1].next(start & from.drop_low(3).any());
         let few = left.low(3);
-        let next_any = by_steps(counted, |steps| many | few.greater_than(few.same(steps.into())));
-        let next_one = by_steps(counted, |steps| !many & few.is(u128::from(steps + 1)));
+        let flag = |of: &str| format!("{of}_{}", self.name);
+        let next_any = by_steps(counted, &flag("any"), |steps| many | few.greater_than(few.same(steps.into())));
+        let next_one = by_steps(counted, &flag("one"), |steps| !many & few.is(u128::from(steps + 1)));
         // The flags know the new count a cycle after it is there.
         self.flags[0].next(!start & next_any.at(step));
         self.flags[1].next(!start & next_one.at(step));
@@ -77,18 +80,19 @@ impl<'g> AtStep<'g> {
 
 /// True if anything is left of `count` after a cycle with a step. `count` still includes the one that went a cycle
 /// before, at `counted`.
-pub(super) fn left_after<'g>(count: Signal<'g>, counted: Signal<'g>) -> AtStep<'g> {
+pub(super) fn left_after<'g>(count: Signal<'g>, counted: Signal<'g>, name: &str) -> AtStep<'g> {
     let count = count.extend(count.width().max(3));
-    by_steps(counted, |steps| match steps {
+    by_steps(counted, name, |steps| match steps {
         0 => count.any(),
         1 => count.drop_low(1).any(),
         _ => count.drop_low(2).any() | (count.bit(1) & count.bit(0)),
     })
 }
 
-/// `of` the number of steps that are not counted yet.
-fn by_steps<'g>(counted: Signal<'g>, of: impl Fn(u32) -> Signal<'g>) -> AtStep<'g> {
-    AtStep { with: counted.select(of(2), of(1)), without: counted.select(of(1), of(0)) }
+/// `of` the number of steps that are not counted yet; the signals are named after it.
+fn by_steps<'g>(counted: Signal<'g>, name: &str, of: impl Fn(u32) -> Signal<'g>) -> AtStep<'g> {
+    let [none, one, two] = [0, 1, 2].map(|steps| of(steps).named(&format!("{name}_after_{steps}")));
+    AtStep { with: counted.select(two, one), without: counted.select(one, none) }
 }
 
 /// Connects a counter that is 0 at `start`, and takes `next` where it `moves`. `start` resets it and delays nothing.
@@ -102,10 +106,42 @@ pub(super) fn up_down<'g>(count: Register<'g>, start: Signal<'g>, up: Signal<'g>
     from_zero(count, start, up ^ down, moved);
 }
 
+/// A counter of things that come and go, which knows whether there are any without a look at the count.
+#[derive(Clone, Copy)]
+pub(super) struct Outstanding<'g> {
+    /// Their number.
+    pub(super) count: Register<'g>,
+    any: Register<'g>,
+}
+
+impl<'g> Outstanding<'g> {
+    /// A counter of this number of bits, which is zero after reset.
+    pub(super) fn new(graph: &'g Graph, name: &str, width: u32) -> Self {
+        Self { count: graph.register(name, width, 0), any: graph.register(&format!("any_{name}"), 1, 0) }
+    }
+
+    /// One bit: there are some.
+    pub(super) fn any(self) -> Signal<'g> {
+        self.any.value()
+    }
+
+    /// One bit: there are fewer than half of those that can be counted, after a cycle in which one comes, or goes.
+    pub(super) fn has_room_after(self, comes: Signal<'g>, goes: Signal<'g>) -> Signal<'g> {
+        some_free(self.count, goes).at(comes)
+    }
+
+    /// One comes, or goes, which it does only while there are some.
+    pub(super) fn connect(self, comes: Signal<'g>, goes: Signal<'g>) {
+        let Self { count, any } = self;
+        any.next(comes | (*any & !(goes & count.is(1))));
+        up_down(count, comes.same(0), comes, goes);
+    }
+}
+
 /// True if one of a power of two slots is free after a cycle that may take one, with `reserved` in use before it.
 pub(super) fn some_free<'g>(reserved: Register<'g>, frees: Signal<'g>) -> AtStep<'g> {
     let slots = reserved.width() - 1;
-    let without = frees | !reserved.msb();
+    let without = (frees | !reserved.msb()).named("some_free_now");
     AtStep { with: without & (frees | !reserved.low(slots).all()), without }
 }
 
@@ -120,8 +156,20 @@ pub(super) fn waiting<'g>(
 ) -> AtStep<'g> {
     let count = graph.register(name, width, 0);
     up_down(count, start, comes, gone);
-    let left = left_after(*count, gone);
-    AtStep { with: left.with | (comes & left.without), without: left.without | comes }
+    let left = left_after(*count, gone, &format!("any_{name}"));
+    let now = left.without.named(&format!("any_{name}_now"));
+    AtStep { with: left.with | (comes & now), without: now | comes }
+}
+
+/// The place of the oldest word in a memory of a power of two of words, which `moves` on. Returns the place in the next
+/// cycle, to read the memory from. The place behind it is kept too, so that no sum stands before the memory.
+pub(super) fn oldest_place<'g>(graph: &'g Graph, name: &str, width: u32, moves: Signal<'g>) -> Signal<'g> {
+    let place = graph.register(name, width, 0);
+    let behind = graph.register(&format!("behind_{name}"), width, 1);
+    behind.next_if(moves, behind.plus(1));
+    let next = moves.select(*behind, *place).named(&format!("next_{name}"));
+    place.next(next);
+    next
 }
 
 /// A count of the cycles in which `counts` is set, from `first` at `restart`. Its upper half counts when the lower half

@@ -55,7 +55,7 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
     from_zero(tail, start, line_valid, tail.plus(1));
     from_zero(head, start, take, head.plus(1));
     up_down(stored, start, line_valid, left);
-    let is_ready = left_after(*stored, left).or(line_valid).at(take).named("some_ready");
+    let is_ready = left_after(*stored, left, "any_stored").or(line_valid).at(take).named("some_ready");
     ready.next(!start & is_ready);
     read_valid.next(!start & (take | (*read_valid & !goes)));
 

@@ -78,8 +78,9 @@ pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
         if lane > 0 {
             // A line may have been used up by a group that began in the line before it.
             let reach = after(lane);
-            let is_next = reach.drop_low(place_bits).any() & line_ready & is_in(reach.low(place_bits), next_last);
-            going = going & (holds_at(lane) | is_next).named(&format!("present_{lane}"));
+            let is_next = reach.drop_low(place_bits).any() & line_ready;
+            let has_place = is_in(reach.low(place_bits), next_last).named(&format!("next_line_has_place_{lane}"));
+            going = going & (holds_at(lane) | (is_next & has_place)).named(&format!("present_{lane}"));
         }
         going = going.named(&format!("go_{lane}"));
         go.push(going);
@@ -96,7 +97,8 @@ pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     // A group that goes on in the next line may use it up.
     let moved = |on: u32| {
         let goes_on =
-            by_group(&go, |pairs| is_in(place_after(pairs).extend(place_bits + 2).plus(on.into()), next_last));
+            by_group(&go, |pairs| is_in(place_after(pairs).extend(place_bits + 2).plus(on.into()), next_last))
+                .named(&format!("next_line_goes_on_{on}"));
         let begins = next_last.at_least(next_last.same(on.into()));
         in_hand.select(goes_on, begins).named(&format!("next_holds_{on}"))
     };

@@ -31,6 +31,7 @@ module axi_reads (
   wire [57:0] asked = rd_address;
 `include "bursts.svh"
   (* hierconn *) wire [4:0]  \dut.lines_expected ;
+  (* hierconn *) wire        \dut.any_lines_expected ;
   (* hierconn *) wire        \dut.complete ;
 
   reg [15:0] completed = 16'd0;
@@ -45,8 +46,9 @@ module axi_reads (
   always @* if (~rst & after_reset) begin
     whole_lines: assert (~arvalid | (araddr[5:0] == 6'd0 & arlen[0] & arlen[7:3] == 5'd0));
     within_a_page: assert ((~arvalid | {1'b0, araddr[11:6]} + {1'b0, arlen[7:1]} < 8'd64) & open_within_a_page);
-    never_more: assert (\dut.lines_expected <= 5'd16 & {11'd0, \dut.lines_expected } == accepted - completed);
-    in_order: assert (lines_in_order);
+    never_more: assert (\dut.lines_expected <= 5'd16 & {11'd0, \dut.lines_expected } == accepted - completed
+      & \dut.any_lines_expected == (accepted != completed) & ~(\dut.line_ready & \dut.lines_expected [4]));
+    in_order: assert (lines_in_order & ~(\dut.burst_closes & arvalid));
   end
   always @* if (held & ~rst) begin
     stable: assert (arvalid & {araddr, arlen} == was);

@@ -3,11 +3,14 @@
 // core's line `asked` is taken in this cycle.
   (* hierconn *) wire        \dut.burst_closes ;
   (* hierconn *) wire        \dut.burst_open ;
+  (* hierconn *) wire        \dut.burst_full ;
   (* hierconn *) wire [57:0] \dut.burst_first ;
   (* hierconn *) wire [1:0]  \dut.burst_more ;
   (* hierconn *) wire        \dut.line_waiting ;
-  (* hierconn *) wire        \dut.line_follows ;
-  (* hierconn *) wire [57:0] \dut.waiting_line ;
+  (* hierconn *) wire        \dut.second_waiting ;
+  (* hierconn *) wire        \dut.line_ready ;
+  (* hierconn *) wire [58:0] \dut.waiting_line ;
+  (* hierconn *) wire [58:0] \dut.second_line ;
   (* hierconn *) wire [57:0] \dut.next_line ;
 
   // The number of any one line, and its address; lines that the core asked for, and those whose bursts were closed.
@@ -34,14 +37,24 @@
     assume (accepted < 16'hfff0);
   end
 
+  // The two lines that may wait, each with whether it follows the line before it.
+  wire [57:0] oldest = \dut.waiting_line [58:1];
+  wire [57:0] second = \dut.second_line [58:1];
+  wire        is_oldest = \dut.line_waiting & chosen == closed + lines_open;
+  wire        is_second = \dut.second_waiting & chosen == closed + lines_open + 16'd1;
+  wire        after_oldest = ~\dut.second_waiting & \dut.line_waiting ;
   // Every line is in the burst that is open, waits for it, or was in one before, in order.
-  wire lines_in_order = accepted == closed + lines_open + {15'd0, \dut.line_waiting }
+  wire lines_in_order =
+    accepted == closed + lines_open + {15'd0, \dut.line_waiting } + {15'd0, \dut.second_waiting }
     & closed <= accepted & accepted < 16'hfff1
-    & (~(\dut.burst_open & \dut.line_waiting & \dut.line_follows )
-       | (\dut.waiting_line == last + 58'd1 & \dut.waiting_line [5:0] != 6'd0))
-    & (~\dut.line_waiting | \dut.next_line == \dut.waiting_line + 58'd1)
+    & (\dut.burst_open ? \dut.burst_full == (&\dut.burst_more ) : ~\dut.burst_closes )
+    & ~(\dut.second_waiting & (~\dut.line_waiting | \dut.line_ready ))
+    & (~(\dut.burst_open & \dut.line_waiting & \dut.waiting_line [0]) | (oldest == last + 58'd1 & oldest[5:0] != 6'd0))
+    & (~(\dut.second_waiting & \dut.second_line [0]) | (second == oldest + 58'd1 & second[5:0] != 6'd0))
+    & (~\dut.second_waiting | \dut.next_line == second + 58'd1)
+    & (~after_oldest | \dut.next_line == oldest + 58'd1)
     & (~\dut.burst_open | \dut.line_waiting | \dut.next_line == last + 58'd1)
     & (chosen < closed | chosen >= closed + lines_open | address == first + within)
-    & (~\dut.line_waiting | chosen != closed + lines_open | address == \dut.waiting_line );
+    & (~is_oldest | address == oldest) & (~is_second | address == second);
   // The open burst ends within its 4 KB.
   wire open_within_a_page = ~\dut.burst_open | {1'b0, first[5:0]} + more[6:0] < 7'd64;

@@ -9,7 +9,7 @@ use crate::bench::{Case, build, config, files, machine, run, session};
 
 /// File, left-hand side of an assignment, the expression assigned instead, the words of the error that must come.
 const FAULTS: [(&str, &str, &str, &str); 8] = [
-    ("axi_read.v", " line_follows <= ", "rd_address == next_line", "it crosses 4 KB"),
+    ("axi_read.v", " coming_follows = ", "rd_address == next_line", "it crosses 4 KB"),
     ("axi_read.v", " arvalid <= ", "burst_closes", "channel AR changed"),
     ("axi_write.v", " awvalid <= ", "burst_closes", "channel AW changed"),
     ("axi_write.v", " wvalid <= ", "beat_leaves", "channel W changed"),

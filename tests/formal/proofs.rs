@@ -165,8 +165,8 @@ pub fn proofs() -> Vec<Proof> {
     let whole_ways = [
         Proof::new("a read's whole way", "axi_read_lines", 1, Bounded(20)),
         Proof::new("reads are whole", "axi_read_lines", 1, Reached(20)),
-        Proof::new("a write's whole way", "axi_write_lines", 1, Bounded(20)),
-        Proof::new("writes are whole", "axi_write_lines", 1, Reached(20)),
+        Proof::new("a write's whole way", "axi_write_lines", 1, Bounded(23)),
+        Proof::new("writes are whole", "axi_write_lines", 1, Reached(23)),
     ];
     let axi = axi.into_iter().chain(whole_ways.map(|proof| proof.of(Design::Axi)));
     let queue = [

@@ -5,8 +5,8 @@ use super::Rows;
 const COLLECTOR: Rows = &[
     (
         "reads without a free slot",
-        "wire freed_or_reserved_2_n = freed | ~reserved[2];",
-        "wire freed_or_reserved_2_n = 1'b1;",
+        "wire some_free_now = freed | ~reserved[2];",
+        "wire some_free_now = 1'b1;",
         9,
         "never_more",
     ),
@@ -123,8 +123,8 @@ const DISPATCHER: Rows = &[
     ("ready for a line that has left", "take ? ((line_left", "1'b0 ? ((line_left", 4, "ready_is_right"),
     (
         "requests without a free slot",
-        "wire oldest_goes_or_reserved_2_n = oldest_goes | ~reserved[2];",
-        "wire oldest_goes_or_reserved_2_n = 1'b1;",
+        "wire some_free_now = oldest_goes | ~reserved[2];",
+        "wire some_free_now = 1'b1;",
         10,
         "never_more",
     ),

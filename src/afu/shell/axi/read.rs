@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use super::burst::{Bursts, Lines, beats, bursts, length};
 use super::port::BYTE_ADDRESS_BITS;
-use crate::afu::counter::up_down;
+use crate::afu::counter::{Outstanding, oldest_place};
 use crate::afu::{ADDRESS_BITS, Spec};
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
@@ -26,11 +26,13 @@ pub(super) fn read(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let (data, response, last) = (heard("rdata", bus), heard("rresp", 2), heard("rlast", 1));
 
     // Lines that were asked for and have not come yet.
-    let count = graph.register("lines_expected", spec.max_outstanding.ilog2() + 1, 0);
+    let expected = Outstanding::new(&graph, "lines_expected", spec.max_outstanding.ilog2() + 1);
     let arvalid = graph.register("arvalid", 1, 0);
-    let beat = (rvalid & count.any()).named("beat");
+    let beat = (rvalid & expected.any()).named("beat");
     let last_beat = (beat & last).named("last_beat");
-    let lines = Lines { valid, address, has_room: !count.msb(), may_close: !*arvalid, response: last_beat };
+    // A line is complete with its last beat.
+    let (line, complete) = assembled(&graph, beats(spec), beat, data);
+    let lines = Lines { valid, address, in_hand: expected, done: complete, may_close: !*arvalid, response: last_beat };
     let Bursts { ready, accepted, closes, first, more, .. } = bursts(&graph, spec, &lines);
     arvalid.next(closes | (*arvalid & !arready));
     let araddr = graph.data_register("araddr", BYTE_ADDRESS_BITS);
@@ -38,8 +40,6 @@ pub(super) fn read(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let arlen = graph.data_register("arlen", 8);
     arlen.next_if(closes, length(&graph, spec, more));
 
-    // A line is complete with its last beat.
-    let (line, complete) = assembled(&graph, beats(spec), beat, data);
     let failure = graph.register("failure", 2, 0);
     let is_failed = response.bit(1);
     let worst = failure.any().select(*failure, response.gate(is_failed)).named("worst");
@@ -50,11 +50,7 @@ pub(super) fn read(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let tail = graph.register("tail", index_bits, 0);
     tail.next_if(accepted, tail.plus(1));
     tags.write(accepted, *tail, address.concat(tag));
-    let head = graph.register("head", index_bits, 0);
-    let next_head = complete.select(head.plus(1), *head).named("next_head");
-    head.next(next_head);
-    up_down(count, graph.constant(1, 0), accepted, complete);
-    let oldest = tags.read(next_head).named("oldest");
+    let oldest = tags.read(oldest_place(&graph, "head", index_bits, complete)).named("oldest");
 
     let failed = complete & worst.any();
     graph.output("rd_ready", ready);
@@ -68,8 +64,8 @@ pub(super) fn read(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     graph.output("failed", failed.registered("line_failed"));
     graph.output("failed_response", worst.delay(1));
     graph.output("failed_address", oldest.drop_low(tag_bits).delay(1));
-    graph.output("unasked", (rvalid & !count.any()).registered("beat_unasked"));
-    graph.output("idle", (!count.any()).named("none_expected"));
+    graph.output("unasked", (rvalid & !expected.any()).registered("beat_unasked"));
+    graph.output("idle", (!expected.any()).named("none_expected"));
     graph.finish()
 }
 

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use super::burst::{Bursts, Lines, beats, bursts, length, most_lines};
 use super::port::BYTE_ADDRESS_BITS;
-use crate::afu::counter::up_down;
+use crate::afu::counter::{Outstanding, oldest_place};
 use crate::afu::{ADDRESS_BITS, Spec};
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
@@ -27,11 +27,12 @@ pub(super) fn write(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let response = graph.input("bresp", 2).delay(1).named("bresp_heard");
 
     // Lines that were taken and not acknowledged yet.
-    let count = graph.register("lines_taken", index_bits + 1, 0);
+    let acknowledges = graph.register("acknowledges", 1, 0);
+    let in_hand = Outstanding::new(&graph, "lines_taken", index_bits + 1);
     let awvalid = graph.register("awvalid", 1, 0);
     let next_valid = graph.register("next_burst", 1, 0);
     let may_close = (!*awvalid & !*next_valid).named("may_close");
-    let lines = Lines { valid, address, has_room: !count.msb(), may_close, response: bvalid };
+    let lines = Lines { valid, address, in_hand, done: *acknowledges, may_close, response: bvalid };
     let Bursts { ready, accepted, closes, first, more, answered, none_in_flight } = bursts(&graph, spec, &lines);
     awvalid.next(closes | (*awvalid & !awready));
     let awaddr = graph.data_register("awaddr", BYTE_ADDRESS_BITS);
@@ -47,29 +48,34 @@ pub(super) fn write(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let tags = graph.memory("taken", slots, tag_bits);
     tags.write(accepted, *tail, tag);
 
-    // The channel W: the burst whose beats leave, and the next one.
+    // The channel W: the burst whose lines leave, and the next one. A line passes a register between the memory, whose
+    // output comes late, and the choice of a beat.
     let next_more = graph.data_register("next_burst_more", most_lines(spec).ilog2());
     next_more.next_if(closes, more);
     let active = graph.register("burst_leaves", 1, 0);
+    let present = graph.register("line_present", 1, 0);
     let wvalid = graph.register("wvalid", 1, 0);
-    let sends = (*active & (!*wvalid | wready)).named("beat_leaves");
-    let head = graph.register("head", index_bits, 0);
+    let sends = (*present & (!*wvalid | wready)).named("beat_leaves");
     let (part, line_ends) = Beats::of(spec).next(&graph, sends);
-    let left = graph.data_register("lines_left", most_lines(spec).ilog2());
     let line_leaves = (sends & line_ends).named("line_leaves");
-    let burst_ends = (line_ends & !left.any()).named("burst_ends");
-    let begins = (*next_valid & (!*active | (sends & burst_ends))).named("burst_begins_to_leave");
-    active.next(begins | (*active & !(sends & burst_ends)));
+    let fetches = (*active & (!*present | line_leaves)).named("line_fetched");
+    present.next(fetches | (*present & !line_leaves));
+    let left = graph.data_register("lines_left", most_lines(spec).ilog2());
+    let fetches_last = (fetches & !left.any()).named("last_line_fetched");
+    let begins = (*next_valid & (!*active | fetches_last)).named("burst_begins_to_leave");
+    active.next(begins | (*active & !fetches_last));
     next_valid.next(closes | (*next_valid & !begins));
-    left.next_if(begins | line_leaves, begins.select(*next_more, left.minus(1)));
-    let next_head = line_leaves.select(head.plus(1), *head).named("next_head");
-    head.next(next_head);
-    let leaving = store.read(next_head).named("leaving");
+    left.next_if(begins | fetches, begins.select(*next_more, left.minus(1)));
+    let oldest_line = store.read(oldest_place(&graph, "head", index_bits, fetches)).named("oldest_line");
+    let leaving = graph.data_register("leaving", spec.line_bits);
+    leaving.next_if(fetches, oldest_line);
+    let is_last = graph.data_register("leaving_is_last", 1);
+    is_last.next_if(fetches, !left.any());
     wvalid.next(sends | (*wvalid & !wready));
     let wdata = graph.data_register("wdata", spec.config.bus);
-    wdata.next_if(sends, part(leaving));
+    wdata.next_if(sends, part(*leaving));
     let wlast = graph.data_register("wlast", 1);
-    wlast.next_if(sends, burst_ends);
+    wlast.next_if(sends, line_ends & *is_last);
 
     // The channel B: responses wait in order, and each acknowledges the lines of its burst, one per cycle.
     let sent = graph.memory("sent", slots, ADDRESS_BITS + most_lines(spec).ilog2());
@@ -80,17 +86,18 @@ pub(super) fn write(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let response_tail = graph.register("response_tail", index_bits, 0);
     response_tail.next_if(answered, response_tail.plus(1));
     responses.write(answered, *response_tail, response);
-    // A response is in its memory's output two cycles after it was written.
-    let waiting = graph.register("responses_waiting", index_bits + 1, 0);
-    let acknowledges = graph.register("acknowledges", 1, 0);
+    // A response is in its memory's output two cycles after it was written, and two after the one before it has had
+    // its turn.
+    let waiting = Outstanding::new(&graph, "responses_waiting", index_bits + 1);
     let acknowledged = graph.data_register("lines_to_acknowledge", most_lines(spec).ilog2());
-    let turns = (waiting.any() & (!*acknowledges | !acknowledged.any())).named("response_turns");
-    up_down(waiting, graph.constant(1, 0), answered.registered("answered_before"), turns);
+    let turned = graph.register("response_turned", 1, 0);
+    let turns = (waiting.any() & !*turned & (!*acknowledges | !acknowledged.any())).named("response_turns");
+    turned.next(turns);
+    waiting.connect(answered.registered("answered_before"), turns);
     let response_head = graph.register("response_head", index_bits, 0);
-    let next_response = turns.select(response_head.plus(1), *response_head).named("next_response");
-    response_head.next(next_response);
-    let burst = sent.read(next_response).named("burst");
-    let outcome = responses.read(next_response).named("outcome");
+    response_head.next_if(turns, response_head.plus(1));
+    let burst = sent.read(*response_head).named("burst");
+    let outcome = responses.read(*response_head).named("outcome");
     acknowledges.next(turns | (*acknowledges & acknowledged.any()));
     let more_bits = most_lines(spec).ilog2();
     let burst_lines = burst.low(more_bits);
@@ -100,11 +107,7 @@ pub(super) fn write(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let failed_address = graph.data_register("failed_address", ADDRESS_BITS);
     failed_address.next_if(turns, burst.drop_low(more_bits));
     let first_line = turns.registered("first_line");
-    let tag_head = graph.register("tag_head", index_bits, 0);
-    let next_tag = acknowledges.select(tag_head.plus(1), *tag_head).named("next_tag");
-    tag_head.next(next_tag);
-    let oldest = tags.read(next_tag).named("oldest");
-    up_down(count, graph.constant(1, 0), accepted, *acknowledges);
+    let oldest = tags.read(oldest_place(&graph, "tag_head", index_bits, *acknowledges)).named("oldest");
 
     graph.output("wr_ready", ready);
     graph.output("awvalid", awvalid.value());
@@ -120,7 +123,7 @@ pub(super) fn write(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     graph.output("failed_response", failure.delay(1));
     graph.output("failed_address", failed_address.delay(1));
     graph.output("unasked", (bvalid & none_in_flight).registered("response_unasked"));
-    graph.output("idle", (!count.any()).named("none_taken"));
+    graph.output("idle", (!in_hand.any()).named("none_taken"));
     graph.finish()
 }
 
