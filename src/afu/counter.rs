@@ -125,7 +125,7 @@ impl<'g> Outstanding<'g> {
         self.any.value()
     }
 
-    /// One bit: there are fewer than half of those that can be counted, after a cycle in which one comes, or goes.
+    /// One bit: there are fewer than `2^(width − 1)`, after a cycle in which one comes, or goes.
     pub(super) fn has_room_after(self, comes: Signal<'g>, goes: Signal<'g>) -> Signal<'g> {
         some_free(self.count, goes).at(comes)
     }

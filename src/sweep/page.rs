@@ -26,12 +26,19 @@ pub(super) fn page(results: &SweepResults) -> String {
             (page::figure(&plot))
             p { "LUTs are those of all SCPUs on an ECP5, as Yosys counts them; controller and shell are not included." }
         }
-        h2 { "Rows" }
-        (rows(results))
-        @if !results.missing.is_empty() { p { b { "Missing: " } (results.missing.join("; ")) "." } }
-        p.soft { code { "sweep.csv" } " has every column, " code { "manifest.json" } " the configuration." }
+        (end(results, rows(results)))
     };
     page::page("Throughput by number of SCPUs", &body)
+}
+
+/// The end of a sweep's page: its rows, and what is missing.
+pub(super) fn end(results: &SweepResults, rows: Markup) -> Markup {
+    html! {
+        h2 { "Rows" }
+        (rows)
+        @if !results.missing.is_empty() { p { b { "Missing: " } (results.missing.join("; ")) "." } }
+        p.soft { code { "sweep.csv" } " has every column, " code { "manifest.json" } " the configuration." }
+    }
 }
 
 /// Pairs per second over SCPUs: one line per interval, with its law and the link limit.

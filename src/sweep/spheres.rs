@@ -128,8 +128,8 @@ impl SpheresRow {
         self.mismatches == 0 && self.failed_checks == 0
     }
 
-    /// The heading of the table for people.
-    pub(super) const HEADING: [&'static str; 17] = [
+    /// The heading of the table, in the terminal and on the page.
+    pub(super) const HEADING: [&'static str; 18] = [
         "lanes",
         "deciders",
         "bits",
@@ -145,12 +145,13 @@ impl SpheresRow {
         "ns per sphere",
         "of link limit",
         "LUT",
+        "FF",
         "DSP",
         "block RAM",
     ];
 
-    /// The row of the table for people.
-    pub(super) fn cells(&self) -> [String; 17] {
+    /// The row of that table.
+    pub(super) fn cells(&self) -> [String; 18] {
         let count = |count: Option<u64>| count.map_or_else(|| "-".to_owned(), grouped);
         [
             self.lanes.to_string(),
@@ -168,6 +169,7 @@ impl SpheresRow {
             figure(self.ns_per_sphere, 2),
             self.efficiency.map_or_else(|| "-".to_owned(), |share| format!("{:.1} %", 100.0 * share)),
             count(self.luts),
+            count(self.ffs),
             count(self.dsps),
             count(self.brams),
         ]

@@ -1,11 +1,11 @@
 //! `report.html` of a sweep with spheres: time and candidates over each option that was varied, and over LUTs.
 
-use maud::{Markup, html};
+use maud::html;
 
 use super::{Size, SpheresRow, SweepResults};
 use crate::plot::{Axis, Line, Marker, Plot, Scale, Series};
 use crate::report::page::{self, table};
-use crate::report::table::{figure, grouped};
+use crate::report::table::grouped;
 
 /// An option that a sweep varies.
 struct Varied {
@@ -43,6 +43,7 @@ const OPTIONS: [Varied; 5] = [
 pub(super) fn page(results: &SweepResults) -> String {
     let config = &results.config;
     let candidates = |row: &SpheresRow| row.candidates_per_sphere;
+    let rows: Vec<_> = results.of_spheres().map(|row| row.cells().into()).collect();
     let body = html! {
         p { "The same search on accelerators of different sizes: " (results.spheres) " over the link " code { (results.link) }
             ", seed " (results.seed) ", " (config.profile.to_string()) " arithmetic at " (config.clock_mhz) " MHz, table of "
@@ -60,10 +61,7 @@ pub(super) fn page(results: &SweepResults) -> String {
             (page::figure(&plot))
             p { "LUTs are those of the whole accelerator on an ECP5, as Yosys counts them." }
         }
-        h2 { "Rows" }
-        (rows(results))
-        @if !results.missing.is_empty() { p { b { "Missing: " } (results.missing.join("; ")) "." } }
-        p.soft { code { "sweep.csv" } " has every column, " code { "manifest.json" } " the configuration." }
+        (super::page::end(results, table("", &SpheresRow::HEADING, 0, &rows)))
     };
     page::page("Search by its sizes", &body)
 }
@@ -73,7 +71,7 @@ fn model(row: &SpheresRow) -> Option<f64> {
     row.ns_per_sphere.map(|ns| ns * row.predicted_cycles as f64 / row.cycles.max(1) as f64)
 }
 
-/// The options of which there are several values, or the first one if there is none.
+/// The options that take more than one value; the first option, if each takes one.
 fn varied(results: &SweepResults) -> Vec<&'static Varied> {
     let is_varied = |option: &&Varied| {
         let mut values = results.of_spheres().filter_map(|row| (option.of)(&row.size()));
@@ -131,51 +129,6 @@ fn area(results: &SweepResults) -> Option<Plot> {
         let series = Series::new("rows", 0, points).marker(Marker::Circle).named(names);
         Plot::new("Time over area", axes.0, axes.1).with(series)
     })
-}
-
-fn rows(results: &SweepResults) -> Markup {
-    let heading = [
-        "lanes",
-        "deciders",
-        "bits of a box",
-        "SCPUs",
-        "interval",
-        "candidates",
-        "contacts",
-        "cycles",
-        "model",
-        "slowest stage",
-        "ns per sphere",
-        "share of the link limit",
-        "LUT",
-        "flip-flops",
-        "DSP",
-        "block RAMs",
-        "mismatches",
-    ];
-    let count = |count: Option<u64>| count.map_or_else(|| "–".to_owned(), grouped);
-    let row = |row: &SpheresRow| {
-        vec![
-            row.lanes.to_string(),
-            row.deciders.to_string(),
-            row.box_bits.to_string(),
-            count(row.scpus.map(u64::from)),
-            count(row.interval.map(u64::from)),
-            grouped(row.candidates),
-            grouped(row.contacts),
-            grouped(row.cycles),
-            grouped(row.predicted_cycles),
-            row.slowest_stage.clone(),
-            figure(row.ns_per_sphere, 2),
-            row.efficiency.map_or_else(|| "–".to_owned(), |share| format!("{:.1} %", 100.0 * share)),
-            count(row.luts),
-            count(row.ffs),
-            count(row.dsps),
-            count(row.brams),
-            grouped(row.mismatches),
-        ]
-    };
-    table("", &heading, 0, &results.of_spheres().map(row).collect::<Vec<_>>())
 }
 
 #[cfg(test)]

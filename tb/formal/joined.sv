@@ -54,13 +54,7 @@ module joined (
   (* hierconn *) wire [31:0] \dut.hits_record_3 ;
   (* hierconn *) wire        \dut.row_ends ;
 
-  function [4:0] ones(input [15:0] bits);
-    integer place;
-    begin
-      ones = 0;
-      for (place = 0; place < 16; place = place + 1) ones = ones + {4'd0, bits[place]};
-    end
-  endfunction
+`include "ones.svh"
   // A bit for each four hits.
   function [3:0] beats_of(input [4:0] hits);
     beats_of = {hits > 12, hits > 8, hits > 4, hits > 0};

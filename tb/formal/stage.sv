@@ -21,13 +21,7 @@ module stage (
   (* hierconn *) wire [15:0] \dut.bits_left ;
   (* hierconn *) wire [`ABOUT_BITS-1:0] \dut.about ;
 
-  function [4:0] ones(input [15:0] bits);
-    integer place;
-    begin
-      ones = 0;
-      for (place = 0; place < 16; place = place + 1) ones = ones + {4'd0, bits[place]};
-    end
-  endfunction
+`include "ones.svh"
   // As many bits, the lowest ones.
   function [15:0] first(input [4:0] number);
     first = ~(16'hFFFF << number);

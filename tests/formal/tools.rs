@@ -44,7 +44,7 @@ pub fn check(proof: &Proof, only: Option<&str>, files: &[(String, String)]) -> V
     let folder = tempfile::tempdir().expect("a temporary folder");
     let harness = format!("{}.sv", proof.harness);
     fs::write(folder.path().join(&harness), self::harness(&harness, only)).expect("written");
-    for name in ["slots.svh", "bursts.svh"] {
+    for name in ["slots.svh", "bursts.svh", "ones.svh"] {
         fs::copy(root().join("tb/formal").join(name), folder.path().join(name)).expect("copied");
     }
     for (name, text) in files {

@@ -9,6 +9,7 @@ mod between;
 mod bits;
 mod bounds;
 mod candidates;
+mod contacts;
 mod decider;
 mod hits;
 mod level;

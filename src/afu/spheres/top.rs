@@ -3,9 +3,8 @@
 use std::sync::Arc;
 
 use super::between::{Parts, named, parts, stage_queue, word_of};
+use super::contacts::{Found, contacts, numbers};
 use super::level::{Level, level};
-use super::resolver::resolver;
-use super::waiting::waiting_hits;
 use super::{LONG_QUEUE, QUEUE, ROW, ROW_BITS, Sizes, candidates, decider, hits, loader, near, rows};
 use crate::afu::control::control;
 use crate::afu::port::{JobInputs, JobOutputs, ReadInputs, ReadOutputs, WriteInputs, WriteOutputs, outputs};
@@ -13,9 +12,6 @@ use crate::afu::{Spec, collector, dispatcher, packer, resolver};
 use crate::count::counted;
 use crate::hdl::{BuildErrors, Error, Graph, Module, Signal};
 use crate::record::Capability;
-
-/// Lines that the dispatcher holds if only numbers come back.
-const LINES: u32 = 32;
 
 /// The top over the plain line port, around a kernel of `--contact hit` that decides, and the SCPU that computes the
 /// contacts; `None` if only their numbers come back.
@@ -311,57 +307,26 @@ pub(in crate::afu) fn spheres_top(
         take.drive(hits.output(&name));
     }
     has_room.drive(hits.output("has_room"));
-    let records: Vec<_> = (0..hits::HIT_LANES).map(|lane| format!("record_{lane}")).collect();
-    let mut packer_inputs = vec![("start", begin("packer"))];
-    let mut lines = LINES;
-    if let Some(scpu) = scpu {
-        // The contacts, in the order of their hits.
-        let to_numbers = hits::cycles_to_numbers(sizes.compared);
-        let (_, may_resolve) = wire("may_resolve", 1);
-        let (from, to_number) = if side_by_side == 1 {
-            row_ends.drive(hits.output("row_ends"));
-            hits_may_leave.drive(may_resolve);
-            (hits.clone(), to_numbers)
-        } else {
-            let mut inputs = vec![("start", begin("hits")), ("may_leave", may_resolve)];
-            inputs.extend([("comes", hits.output("carries")), ("row_comes_to_end", hits.output("row_ends"))]);
-            let names: Vec<_> = (0..lanes).map(|lane| format!("hit_{lane}")).collect();
-            inputs.extend(names.iter().zip(&records).map(|(name, record)| (name.as_str(), hits.output(record))));
-            let waiting = graph.instance("waiting_hits", &waiting_hits(&sizes, side_by_side)?, &inputs);
-            row_ends.drive(waiting.output("row_ends"));
-            hits_may_leave.drive(waiting.output("has_room"));
-            (waiting, resolver::BACKLOG_TO_NUMBER)
-        };
-        let carries = from.output("carries");
-        let mut resolvers = Vec::new();
-        let unit = resolver(spec, &sizes, scpu, to_number - 1)?;
-        for lane in 0..side_by_side {
-            let mut inputs = vec![
-                ("start", begin("hits")),
-                ("carries", carries.bit(lane)),
-                ("numbers", from.output(&records[lane as usize])),
-                ("write_column", column),
-                ("write_table", write_table),
-                ("write_table_row", table_row),
-                ("write_kept", write_own),
-                ("write_kept_row", row.low(kept_bits)),
-            ];
-            inputs.extend(named(&spheres));
-            let name = if side_by_side == 1 { "resolver".to_owned() } else { format!("resolver_{lane}") };
-            resolvers.push(graph.instance(&name, &unit, &inputs));
-        }
-        let about = [start, run, carries, hits.output("all_out"), accepts];
-        let contacts = resolver::resolved(&graph, spec, scpu, &resolvers, about);
-        may_resolve.drive(contacts.may_leave);
-        packer_inputs.extend([("carries", contacts.comes), ("all_out", contacts.all_out)]);
-        packer_inputs.extend(records.iter().map(String::as_str).zip(contacts.records));
-        lines = resolver::lines(spec, scpu, to_number);
-    } else {
-        row_ends.drive(hits.output("row_ends"));
-        hits_may_leave.drive(one);
-        packer_inputs.extend([("carries", hits.output("carries")), ("all_out", hits.output("all_out"))]);
-        packer_inputs.extend(records.iter().map(|name| (name.as_str(), hits.output(name))));
-    }
+    // The contacts of the hits, if more than numbers come back.
+    let mut resolver_writes = vec![
+        ("write_column", column),
+        ("write_table", write_table),
+        ("write_table_row", table_row),
+        ("write_kept", write_own),
+        ("write_kept_row", row.low(kept_bits)),
+    ];
+    resolver_writes.extend(named(&spheres));
+    let found =
+        Found { hits: &hits, lanes, begins: begin("hits"), job: [start, run, accepts], writes: &resolver_writes };
+    let behind = match scpu {
+        Some(scpu) => contacts(&graph, spec, &sizes, scpu, &found)?,
+        None => numbers(&found),
+    };
+    row_ends.drive(behind.row_ends);
+    hits_may_leave.drive(behind.may_leave.unwrap_or(one));
+    let names: Vec<_> = (0..behind.records.len()).map(|lane| format!("record_{lane}")).collect();
+    let mut packer_inputs = vec![("start", begin("packer")), ("carries", behind.carries), ("all_out", behind.all_out)];
+    packer_inputs.extend(names.iter().map(String::as_str).zip(behind.records));
 
     // Records into lines, lines into memory.
     let packer = graph.instance(
@@ -380,7 +345,7 @@ pub(in crate::afu) fn spheres_top(
         ("line", packer.output("line")),
         ("lines", control.output("job_destination_lines")),
     ]);
-    let dispatcher = graph.instance("dispatcher", &dispatcher::dispatcher(spec, lines)?, &inputs);
+    let dispatcher = graph.instance("dispatcher", &dispatcher::dispatcher(spec, behind.lines)?, &inputs);
     accepts.drive(dispatcher.output("accepts"));
     for (name, wire) in told {
         wire.drive(match name {

@@ -164,7 +164,7 @@ const JOIN: Rows = &[
     ),
     ("a hit too many", "{1'b0, beat_shifted_2} < step", "{1'b0, beat_shifted_2} <= step", 7, "each_hit_once"),
     (
-        "a hit that is none",
+        "a hit has the number of a sphere that does not touch",
         "step_numbered[11:0], hit_0_unit_number}",
         "step_numbered[11:0], ~hit_0_unit_number}",
         8,
