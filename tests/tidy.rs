@@ -79,7 +79,7 @@ const HOUSE: &[(&str, &[&str])] = &[
         "scene",
         &[
             "count", "spheres", "query", "record", "report", "plot", "synth", "ode", "config", "afu", "pipeline",
-            "kernel", "pairs", "number",
+            "link", "kernel", "pairs", "number",
         ],
     ),
     (

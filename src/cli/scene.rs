@@ -351,9 +351,11 @@ fn without_ode() -> Failure {
 impl From<SceneError> for Failure {
     fn from(error: SceneError) -> Self {
         let kind = match error {
-            SceneError::Value { .. } | SceneError::Form { .. } | SceneError::Read { .. } | SceneError::Effect(..) => {
-                Kind::Usage
-            }
+            SceneError::Value { .. }
+            | SceneError::Form { .. }
+            | SceneError::Read { .. }
+            | SceneError::Effect(..)
+            | SceneError::Predict(_) => Kind::Usage,
             SceneError::Afu(error) => return error.into(),
             SceneError::Synth(error) => return error.into(),
             #[cfg(feature = "ode")]

@@ -238,11 +238,16 @@ impl Config {
     /// because its default on the command line depends on SCPUs and link.
     pub fn flags(&self) -> Vec<String> {
         let default = Self::default();
-        // Input spheres has fields by default that are its own, and SCPUs behind deciders a number, so these are always
-        // named.
-        let contact = if self.input == Input::Spheres { String::new() } else { default.contact.to_string() };
-        let resolves = self.has_deciders() && self.contact != Fields::HIT;
-        let scpus = if resolves { String::new() } else { default.scpus.to_string() };
+        // Input spheres has fields and a shell by default that are its own, and SCPUs behind deciders a number, so
+        // these are always named. A search for numbers alone has no SCPUs.
+        let is_search = self.input == Input::Spheres;
+        let unless_search = |usual: String| if is_search { String::new() } else { usual };
+        let scpus = match self.contact {
+            Fields::HIT if is_search => self.scpus.to_string(),
+            Fields::HIT => default.scpus.to_string(),
+            _ if self.has_deciders() => String::new(),
+            _ => default.scpus.to_string(),
+        };
         let radius = |config: &Self| config.radius.map_or(String::new(), |radius| radius.to_string());
         let cut = |config: &Self| config.cut_mhz.map_or(String::new(), |clock| clock.to_string());
         let pairs = [
@@ -250,7 +255,7 @@ impl Config {
             ("--interval", self.interval.to_string(), String::new()),
             ("--query", self.query.to_string(), default.query.to_string()),
             ("--profile", self.profile.to_string(), default.profile.to_string()),
-            ("--contact", self.contact.to_string(), contact),
+            ("--contact", self.contact.to_string(), unless_search(default.contact.to_string())),
             ("--input", self.input.to_string(), default.input.to_string()),
             ("--table", self.search.table.to_string(), default.search.table.to_string()),
             ("--box-bits", self.search.box_bits.to_string(), default.search.box_bits.to_string()),
@@ -261,7 +266,7 @@ impl Config {
             ("--radius", radius(self), radius(&default)),
             ("--record", self.record.to_string(), default.record.to_string()),
             ("--multipliers", self.multipliers.to_string(), default.multipliers.to_string()),
-            ("--shell", self.shell.to_string(), default.shell.to_string()),
+            ("--shell", self.shell.to_string(), unless_search(default.shell.to_string())),
             ("--outstanding", self.outstanding.to_string(), default.outstanding.to_string()),
             ("--bus", self.bus.to_string(), default.bus.to_string()),
             ("--clock", self.clock_mhz.to_string(), default.clock_mhz.to_string()),
@@ -339,6 +344,9 @@ mod tests {
         let named =
             ["--scpus", "10", "--interval", "1", "--contact", "hit,depth,normal,position", "--input", "spheres"];
         assert_eq!(spheres.flags()[..8], named);
+        assert_eq!(spheres.flags()[8..], ["--results", "hits", "--shell", "spl2"]);
+        let numbers = Config { scpus: 1, contact: Fields::HIT, ..spheres };
+        assert_eq!(numbers.flags()[..4], ["--interval", "1", "--contact", "hit"]);
     }
 
     #[test]

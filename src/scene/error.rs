@@ -39,6 +39,9 @@ pub enum SceneError {
     /// The AFU that the scene calls for cannot be generated.
     #[error(transparent)]
     Afu(#[from] crate::afu::BuildError),
+    /// The cycle model has no prediction.
+    #[error(transparent)]
+    Predict(#[from] crate::afu::PredictError),
     /// Yosys failed.
     #[error(transparent)]
     Synth(#[from] crate::synth::SynthError),

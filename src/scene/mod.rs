@@ -7,6 +7,7 @@
 
 mod balance;
 mod bodies;
+mod choice;
 mod cost;
 mod demand;
 mod detector;
@@ -29,6 +30,7 @@ mod viewer;
 
 pub use balance::Balance;
 pub use bodies::{Ball, balls};
+pub use choice::{Choice, Considered, Pairs};
 pub use cost::Cost;
 pub use demand::{Demand, Part};
 pub use detector::Detector;

@@ -9,6 +9,8 @@ mod cli;
 #[cfg(feature = "cosim")]
 mod cli_accuracy;
 #[cfg(feature = "cosim")]
+mod cli_choose;
+#[cfg(feature = "cosim")]
 mod cli_cosim;
 mod cli_files;
 mod cli_hard;

@@ -121,6 +121,7 @@ pub struct SearchModel {
     /// Rows of a first set, which are loaded and not searched.
     before: u64,
     box_bits: u32,
+    candidates: u64,
 }
 
 impl SearchModel {
@@ -133,14 +134,26 @@ impl SearchModel {
         let search = Search::new(config.profile.arithmetic(), box_bits)?;
         let second = sets.second.as_deref();
         let found = search.find(&mut config.profile.reference(Fields::HIT), &sets.first, second);
+        let found = found.map_err(PredictError::Reference)?;
         let mut hits = Hits::new();
         let row = ROW as usize;
-        for hit in found.map_err(PredictError::Reference)?.hits {
+        for hit in found.hits {
             let [first, second] = hit.spheres.map(|number| number as usize);
             *hits.entry((first / row, second / row, second % row)).or_default() += 1;
         }
         let before = if second.is_some() { sets.first.len().div_ceil(row) as u64 } else { 0 };
-        Ok(Self { rows: search.trace(&sets.first, second), hits, before, box_bits })
+        let candidates = found.counts.candidates;
+        Ok(Self { rows: search.trace(&sets.first, second), hits, before, box_bits, candidates })
+    }
+
+    /// Pairs whose boxes meet.
+    pub fn candidates(&self) -> u64 {
+        self.candidates
+    }
+
+    /// Pairs that touch.
+    pub fn contacts(&self) -> u64 {
+        self.hits.values().sum()
     }
 
     /// The cycles that this takes in a configuration with such boxes, at the line port of a memory that is as fast
