@@ -244,7 +244,19 @@ fn no_file_names_a_registry_host_or_a_path_of_one_machine() {
     for folder in ["src", "tests", "examples", "benches", "tb", "rtl", "scripts", "docs"] {
         checked.extend(files(folder, &["rs", "h", "cpp", "v", "sv", "md", "json", "core", "f", "toml", "sdc", "xdc"]));
     }
-    for name in ["demo", "docs", "fit-delays", "intervals", "operators", "paper", "prove", "release", "setup", "test"] {
+    for name in [
+        "demo",
+        "docs",
+        "fit-delays",
+        "intervals",
+        "operators",
+        "paper",
+        "prove",
+        "release",
+        "setup",
+        "spheres",
+        "test",
+    ] {
         checked.push(Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts").join(name));
     }
     for name in ["local", "merge", "rehearse", "site.conf", "submit", "task"] {

@@ -19,7 +19,8 @@ const FUNCTIONS: &str = "
     dBodySetMaxAngularSpeed dBodySetPosition dCheckConfiguration dCloseODE dCollide dCreatePlane dCreateSphere dGeomDestroy dGeomGetData
     dGeomPlaneSetParams dGeomSetBody dGeomSetData dGeomSetPosition dGeomSphereSetRadius dHashSpaceCreate
     dInitODE2 dJointAttach dJointCreateContact dJointGroupCreate dJointGroupDestroy dJointGroupEmpty
-    dMassSetSphere dRandGetSeed dRandSetSeed dSetColliderOverride dSpaceCollide dSpaceDestroy dWorldCreate
+    dMassSetSphere dRandGetSeed dRandSetSeed dSetColliderOverride dSpaceCollide dSpaceDestroy
+    dSweepAndPruneSpaceCreate dWorldCreate
     dWorldDestroy dWorldQuickStep dWorldSetAngularDampingThreshold dWorldSetAutoDisableAngularThreshold
     dWorldSetAutoDisableFlag dWorldSetAutoDisableLinearThreshold dWorldSetAutoDisableSteps
     dWorldSetAutoDisableTime dWorldSetCFM dWorldSetDamping dWorldSetERP dWorldSetGravity

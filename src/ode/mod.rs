@@ -41,4 +41,4 @@ pub use library::{Collider, Ode};
 pub use motion::Motion;
 pub use space::SearchSpace;
 pub use sphere_pair::SpherePair;
-pub use world::{Sphere, World};
+pub use world::{BroadPhase, Sphere, World};

@@ -27,6 +27,35 @@ pub(super) struct Parts {
     radius: f64,
 }
 
+/// How ODE finds pairs that are close.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum BroadPhase {
+    /// ODE's hash space: cells of several sizes.
+    #[default]
+    Hash,
+    /// ODE's sweep-and-prune space: boxes sorted along x.
+    SweepAndPrune,
+}
+
+impl BroadPhase {
+    /// A space without geoms, or null if ODE has no memory.
+    ///
+    /// # Safety
+    /// ODE is started.
+    unsafe fn space(self) -> sys::dSpaceID {
+        // No space is the parent of this one. The axes of the other space are ODE's dSAP_AXES_XYZ.
+        const AXES_XYZ: c_int = 1 << 2 | 2 << 4;
+        let parent = std::ptr::null_mut();
+        // SAFETY: as the caller promises.
+        unsafe {
+            match self {
+                Self::Hash => sys::dHashSpaceCreate(parent),
+                Self::SweepAndPrune => sys::dSweepAndPruneSpaceCreate(parent, AXES_XYZ),
+            }
+        }
+    }
+}
+
 /// Spheres. Gravity and the effects after [`World::set_gravity`] are off until they are set.
 ///
 /// Two worlds that are built and stepped in the same way give the same bits, however many others exist. Each keeps its
@@ -56,9 +85,16 @@ impl World {
     /// # Errors
     /// Returns an error if ODE has no memory.
     pub fn new(ode: &Ode) -> Result<Self, Error> {
-        // SAFETY: ODE is started. No space is the parent of this one.
-        let (id, space, joints) =
-            unsafe { (sys::dWorldCreate(), sys::dHashSpaceCreate(std::ptr::null_mut()), sys::dJointGroupCreate(0)) };
+        Self::with_broad_phase(ode, BroadPhase::Hash)
+    }
+
+    /// A world without spheres, with this broad phase. The choice changes the time and the order of pairs.
+    ///
+    /// # Errors
+    /// Returns an error if ODE has no memory.
+    pub fn with_broad_phase(ode: &Ode, broad_phase: BroadPhase) -> Result<Self, Error> {
+        // SAFETY: ODE is started.
+        let (id, space, joints) = unsafe { (sys::dWorldCreate(), broad_phase.space(), sys::dJointGroupCreate(0)) };
         if id.is_null() || space.is_null() || joints.is_null() {
             return Err(Error::Memory);
         }

@@ -12,6 +12,7 @@ pub mod latency;
 pub mod manifest;
 pub mod operators;
 pub mod page;
+pub mod spheres_times;
 pub mod synth;
 pub mod synth_study;
 pub mod table;

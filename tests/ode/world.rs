@@ -2,7 +2,7 @@
 
 use contact_afu::kernel::contact;
 use contact_afu::number::{Format, Soft};
-use contact_afu::ode::{Collider, Contact, Diamond, Error, Ode, SpherePair, Surface, Touch, World};
+use contact_afu::ode::{BroadPhase, Collider, Contact, Diamond, Error, Ode, SpherePair, Surface, Touch, World};
 use contact_afu::pairs::Set;
 use contact_afu::query::{Fields, Query};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -122,6 +122,25 @@ fn worlds_do_not_disturb_each_other() {
         simulations[0].positions().map(|p| p.map(f64::to_bits)).collect::<Vec<_>>()
     };
     assert_eq!(run(0), run(2));
+}
+
+#[test]
+fn both_broad_phases_find_the_same_contacts() {
+    let ode = Ode::start(Collider::Own).unwrap();
+    let found = [BroadPhase::Hash, BroadPhase::SweepAndPrune].map(|broad_phase| {
+        let mut world = World::with_broad_phase(&ode, broad_phase).unwrap();
+        for number in 0..1000 {
+            // A lattice of spheres with overlaps, and spheres of very different sizes in it.
+            let at = [number % 10, number / 10 % 10, number / 100].map(f64::from);
+            world.add_sphere(at, if number % 97 == 0 { 3.0 } else { 0.51 }, 1.0).unwrap();
+        }
+        let touches = world.contacts().unwrap();
+        let mut pairs: Vec<_> = touches.iter().map(|t| [t.first.min(t.second), t.first.max(t.second)]).collect();
+        pairs.sort_unstable();
+        pairs
+    });
+    assert!(found[0].len() > 2700, "each inner sphere touches its neighbours: {}", found[0].len());
+    assert_eq!(found[0], found[1]);
 }
 
 #[test]
