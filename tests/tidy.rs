@@ -24,8 +24,11 @@ const HOUSE: &[(&str, &[&str])] = &[
     ("ode", &["count", "pairs", "spheres", "query", "kernel"]),
     ("operator", &["hdl", "number"]),
     ("pipeline", &["operator", "query", "kernel", "hdl", "number"]),
-    ("afu", &["count", "record", "config", "pipeline", "operator", "spheres", "kernel", "query", "hdl", "number"]),
     ("link", &["number"]),
+    (
+        "afu",
+        &["count", "link", "record", "config", "pipeline", "operator", "spheres", "kernel", "query", "hdl", "number"],
+    ),
     ("patience", &["link", "afu", "record", "config"]),
     ("outcome", &["link", "afu"]),
     (

@@ -111,7 +111,9 @@ pub fn run(options: &Scene) -> Result<(), Failure> {
             }
         };
         let predicted = match self::start(&story, &plan)? {
-            Some(sets) => format!("\n\n{}", super::spheres::predictions("the scene's start", &sets, &plan.config)?),
+            Some(sets) => {
+                format!("\n\n{}", super::spheres::predictions("the scene's start", &sets, &plan.config, None)?)
+            }
             None => String::new(),
         };
         return output::show(&format!("{}\n\n{costs}{predicted}", plan.text()), false);

@@ -53,10 +53,13 @@ pub struct Spheres {
     /// Predict how fast hardware of several sizes finds what touches; nothing else is written
     ///
     /// A model counts the cycles of `--input spheres` for each number of --lanes and --deciders, with a table that
-    /// holds the first set, at 200 MHz and behind a link that does not limit it. It counts those for numbers alone and,
-    /// with more fields of --contact, those for contacts by one and by two SCPUs at interval 1.
+    /// holds the first set, at 200 MHz over --link. It counts those for numbers alone and, with more fields of
+    /// --contact, those for contacts by one and by two SCPUs at interval 1.
     #[arg(long, conflicts_with_all = ["out", "hits", "json"])]
     plan: bool,
+    /// Link between AFU and memory, for --plan: a name or file as in `afu cosim` [default: harp1]
+    #[arg(long, value_name = "NAME|FILE", requires = "plan")]
+    link: Option<String>,
     /// Arithmetic that decides: wide, exact, or eXfY with at least 10 exponent bits
     #[arg(long, value_name = "NAME|eXfY", default_value = "wide")]
     profile: Profile,
@@ -138,7 +141,7 @@ fn plan(options: &Spheres, sets: &Sets) -> Result<(), Failure> {
     let base = Config { profile: options.profile.clone(), contact: options.contact, ..Config::default() };
     let search = config::Search { table: table_for(&options.source, sets)?, ..config::Search::default() };
     let search = config::Search { box_bits: options.box_bits, ..search };
-    output::show(&predictions(&options.source, sets, &Config { search, ..base })?, false)
+    output::show(&predictions(&options.source, sets, &Config { search, ..base }, options.link.as_deref())?, false)
 }
 
 /// The smallest table that holds the first set.
@@ -152,8 +155,10 @@ pub(super) fn table_for(source: &str, sets: &Sets) -> Result<u32, Failure> {
 }
 
 /// What a model predicts for these sets, for each number of lanes and deciders, in the arithmetic and with the table of
-/// `base`; with its fields too, if they are more than the hit.
-pub(super) fn predictions(source: &str, sets: &Sets, base: &Config) -> Result<String, Failure> {
+/// `base`, over a link; with its fields too, if they are more than the hit.
+pub(super) fn predictions(source: &str, sets: &Sets, base: &Config, link: Option<&str>) -> Result<String, Failure> {
+    let name = link.unwrap_or("harp1");
+    let link = &super::link::read(name, base.clock_mhz)?;
     let config = |lanes, deciders, contact, scpus| {
         let search = config::Search { lanes, deciders, ..base.search };
         let base = Config { input: Input::Spheres, results: Results::Hits, shell: Shell::Line, ..base.clone() };
@@ -167,7 +172,7 @@ pub(super) fn predictions(source: &str, sets: &Sets, base: &Config) -> Result<St
         let predicted = |contact, scpus| {
             let config = config(lanes, deciders, contact, scpus);
             config.check()?;
-            let predicted = model.predict(&config).map_err(failure)?;
+            let predicted = model.predict(&config, link).map_err(failure)?;
             let ns = format!("{:.1}", predicted.cycles as f64 / count * config.cycle_ns());
             Ok::<_, Failure>((predicted, ns))
         };
@@ -185,7 +190,8 @@ pub(super) fn predictions(source: &str, sets: &Sets, base: &Config) -> Result<St
     if base.contact != Fields::HIT {
         head.extend(["contacts: ns, 1 SCPU", "2 SCPUs"]);
     }
-    let title = format!("{source}: predicted, table of {}, {} MHz", grouped(base.search.table.into()), base.clock_mhz);
+    let of_table = grouped(base.search.table.into());
+    let title = format!("{source}: predicted, table of {of_table}, {} MHz, link {name}", base.clock_mhz);
     Ok(format!("{title}\n{}", table(&head, rows)))
 }
 

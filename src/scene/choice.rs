@@ -19,21 +19,21 @@ const SCPUS: [(u32, u32); 7] = [(1, 16), (1, 8), (1, 4), (1, 2), (1, 1), (2, 1),
 pub struct Considered {
     /// The AFU.
     pub config: Config,
-    /// Its cycles and its stages, where memory is as fast as it is.
+    /// Its cycles over the link, and its stages.
     pub predicted: Predicted,
     /// The cycles that the link needs at least.
     pub link_cycles: f64,
 }
 
 impl Considered {
-    /// The cycles that it takes at least: those of the search, or of the link if that is slower.
+    /// The cycles that it takes.
     pub fn cycles(&self) -> f64 {
-        self.link_cycles.max(self.predicted.cycles as f64)
+        self.predicted.cycles as f64
     }
 
     /// What sets the pace: the link, or the stage with the most steps.
     pub fn slowest(&self) -> &'static str {
-        if self.link_cycles > self.predicted.cycles as f64 { "link" } else { self.predicted.slowest() }
+        self.predicted.slowest()
     }
 }
 
@@ -89,7 +89,7 @@ impl Choice {
         let written = |config: &Config| Spec::from(config.clone()).layout().destination_lines(contacts);
         let consider = |config: Config| {
             let link_cycles = link.limit_cycles(read, written(&config));
-            Ok::<_, SceneError>(Considered { predicted: model.predict(&config)?, config, link_cycles })
+            Ok::<_, SceneError>(Considered { predicted: model.predict(&config, link)?, config, link_cycles })
         };
         // The search is sized for numbers alone, so that no SCPU slows it down.
         let sized = |lanes, deciders| {

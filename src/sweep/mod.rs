@@ -67,7 +67,7 @@ fn simulate(config: &Config, task: &Task) -> Result<Simulated, SweepError> {
             (Row::Pairs(PairsRow::of(config, &rtl_sha256, &verdict)), verdict.seconds)
         }
         Job::Spheres(sets) => {
-            let predicted = SearchModel::new(config, sets)?.predict(config)?;
+            let predicted = SearchModel::new(config, sets)?.predict(config, task.link)?;
             let verdict = bench.run_spheres(sets, task.link, task.seed, None)?;
             (Row::Spheres(SpheresRow::of(config, &rtl_sha256, &verdict, &predicted)), verdict.seconds)
         }

@@ -48,7 +48,7 @@ pub struct SpheresRow {
     pub bytes_read: u64,
     /// Bytes of the lines written.
     pub bytes_written: u64,
-    /// Clock cycles that the cycle model predicts, for memory that is as fast as the AFU.
+    /// Clock cycles that the cycle model predicts over the same link.
     pub predicted_cycles: u64,
     /// The stage that the model finds slowest.
     pub slowest_stage: String,

@@ -55,7 +55,7 @@ pub(super) fn page(results: &SweepResults) -> String {
                 (page::figure(&over(results, option, "candidates per sphere", candidates, None)))
             }
         }
-        p { "Dotted lines are the cycle model’s, for memory that is as fast as the accelerator. Fewer bits of a box make more "
+        p { "Dotted lines are the cycle model’s, over the same link. Fewer bits of a box make more "
             "candidates and the same contacts." }
         @if let Some(plot) = area(results) {
             (page::figure(&plot))

@@ -9,7 +9,7 @@ use crate::afu::{Spec, resolver as units};
 use crate::hdl::{BuildErrors, Graph, Instantiated, Module, Signal};
 
 /// Lines that the dispatcher holds if only numbers come back.
-const LINES: u32 = 32;
+pub(super) const LINES: u32 = 32;
 
 /// What leaves for the packer, and what the hits are told.
 pub(super) struct Behind<'g> {
