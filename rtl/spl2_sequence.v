@@ -78,6 +78,7 @@ module spl2_sequence (
   reg at_measure;
   reg [3:0] sequence_bytes_differ;
   reg [31:0] job_sequence;
+  reg [31:0] sequence_then;
   reg [3:0] start_word_bytes_differ;
   reg is_own;
   reg has_own_number;
@@ -88,6 +89,7 @@ module spl2_sequence (
   reg context_due;
   reg at_idle;
   reg holds_and_is_quiet;
+  reg asks_for_context;
   reg [57:0] job_context_line;
   reg [57:0] source_line;
   reg [57:0] first_pairs;
@@ -132,14 +134,14 @@ module spl2_sequence (
   wire fits = source_fits & destination_fits;
   wire refuses = at_start & ~fits;
   wire [32:0] destination_count = {1'b0, job_count} + 33'd1;
-  wire got_context = at_context & answered;
   wire [32:0] source_count = {1'b0, job_count} + 33'd3;
   wire to_performance = (at_latency & leaves_state) | (at_performance & ~leaves_state);
   wire to_latency = refuses | (at_run & core_done) | (at_latency & ~leaves_state);
   wire overdue = waiting & age[16];
   wire switches = at_poll & holds_and_is_quiet;
   wire reads_context = (at_idle & context_valid) | switches;
-  wire [57:0] address = at_context ? job_context_line : source_line;
+  wire got_context = at_context & answered;
+  wire [57:0] address = asks_for_context ? job_context_line : source_line;
   wire aborts = answered & abort_word_differs & runs;
   wire [511:0] shows_latency_copy_0_or_shows_busy_copy_0 =
       {
@@ -176,9 +178,9 @@ module spl2_sequence (
     sequence_differs <= |sequence_bytes_differ;
     source_fits <= {1'b0, buffer_lines} >= source_lines;
     destination_fits <= {1'b0, buffer_lines} >= destination_lines;
-    if (got_context) buffer_lines <= compared[223:192];
+    if (at_context) buffer_lines <= compared[223:192];
     destination_lines <= {1'b0, destination_count[32:1]};
-    if (got_job) job_count <= compared[63:32];
+    if (at_poll) job_count <= compared[63:32];
     compared <= rsp_data_d1;
     rsp_data_d1 <= rsp_data;
     source_lines <= {1'b0, source_count[32:1]};
@@ -188,7 +190,8 @@ module spl2_sequence (
       rsp_data[111:104] != job_sequence[15:8],
       rsp_data[103:96] != job_sequence[7:0]
     };
-    if (got_job) job_sequence <= compared[127:96];
+    if (at_measure) job_sequence <= sequence_then;
+    sequence_then <= compared[127:96];
     start_word_bytes_differ <= {
       rsp_data[31:24] != 8'd64, rsp_data[23:16] != 8'd108, rsp_data[15:8] != 8'd204, rsp_data[7:0] != 8'd255
     };
@@ -197,12 +200,13 @@ module spl2_sequence (
     comes_in_time <= rsp_valid & waiting;
     if (rd_granted) expected <= read_number;
     age <= rd_granted ? 17'd0 : (age + 17'd1);
+    asks_for_context <= at_context;
     if (reads_context) job_context_line <= context_line;
-    if (got_context) source_line <= compared[127:70];
+    if (at_context) source_line <= compared[127:70];
     first_pairs <= source_line + 58'd1;
-    if (got_context) destination_line <= compared[191:134];
-    if (got_job) job_mode <= compared[67:64] | {3'd0, |compared[95:68]};
-    if (got_job) job_watchdog <= compared[191:160];
+    if (at_context) destination_line <= compared[191:134];
+    if (at_poll) job_mode <= compared[67:64] | {3'd0, |compared[95:68]};
+    if (at_poll) job_watchdog <= compared[191:160];
     abort_word_differs <= |abort_word_bytes_differ;
     abort_word_bytes_differ <= {
       rsp_data[159:152] != 8'd0, rsp_data[151:144] != 8'd0, rsp_data[143:136] != 8'd0, rsp_data[135:128] != 8'd0

@@ -96,13 +96,15 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let context_line = graph.data_register("job_context_line", ADDRESS_BITS);
     context_line.next_if(reads_context, written_context);
     let got_context = (at_context & answered).named("got_context");
+    // Registers take every response while its line is awaited: what they have then has no meaning. So no logic stands
+    // between their enable and the state, and the last response is the right one.
     let line_of = |field: map::Field| field.of(response).drop_low(BYTE_BITS);
     let source = graph.data_register("source_line", ADDRESS_BITS);
-    source.next_if(got_context, line_of(pointers::SOURCE));
+    source.next_if(at_context, line_of(pointers::SOURCE));
     let destination = graph.data_register("destination_line", ADDRESS_BITS);
-    destination.next_if(got_context, line_of(pointers::DESTINATION));
+    destination.next_if(at_context, line_of(pointers::DESTINATION));
     let lines = graph.data_register("buffer_lines", COUNT_BITS);
-    lines.next_if(got_context, pointers::LINES.of(response));
+    lines.next_if(at_context, pointers::LINES.of(response));
 
     // The control memory: a job is new if its number is not the last one's.
     let some_job = graph.register("some_job", 1, 0);
@@ -112,9 +114,10 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let is_new = (!*some_job | is_other).named("is_new");
     let got_job = (at_poll & answered & starts & is_new).named("got_job");
     some_job.next(*some_job | got_job);
-    job_sequence.next_if(got_job, control::SEQUENCE.of(response));
+    // The last job's number is compared until then.
+    job_sequence.next_if(*measure, control::SEQUENCE.of(response).delay(1).named("sequence_then"));
     let job_count = graph.data_register("job_count", COUNT_BITS);
-    job_count.next_if(got_job, control::COUNT.of(response));
+    job_count.next_if(at_poll, control::COUNT.of(response));
     let mode = control::MODE.of(response);
     let mode_bits = JobInputs::of(spec).mode.bits;
     let job_mode = graph.data_register("job_mode", mode_bits);
@@ -123,14 +126,14 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let takes_spheres = spec.config.input == Input::Spheres;
     let unknown = if takes_spheres { higher.repeat(mode_bits) } else { higher.extend(mode_bits) };
     let folded = mode.low(mode_bits) | unknown;
-    job_mode.next_if(got_job, folded);
+    job_mode.next_if(at_poll, folded);
     let job_others = JobInputs::of(spec).others.map(|_| {
         let others = graph.data_register("job_others", COUNT_BITS);
-        others.next_if(got_job, control::OTHERS.of(response));
+        others.next_if(at_poll, control::OTHERS.of(response));
         others.value()
     });
     let job_watchdog = graph.data_register("job_watchdog", COUNT_BITS);
-    job_watchdog.next_if(got_job, control::WATCHDOG.of(response));
+    job_watchdog.next_if(at_poll, control::WATCHDOG.of(response));
     let abort = graph.register("abort", 1, 0);
     let has_abort = differs(control::ABORT.of(arrives), constant(32, 0), "abort_word");
     let aborts = (answered & has_abort & (got_job | at_run)).named("aborts");
@@ -264,7 +267,10 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     writes.next(((to_dsm & dsm_valid) | fences | at_status) & !written & !leaves);
 
     graph.output("rd_valid", asks);
-    graph.output("rd_address", at_context.select(*context_line, source.value()).named("address"));
+    graph.output(
+        "rd_address",
+        at_context.delay(1).named("asks_for_context").select(*context_line, source.value()).named("address"),
+    );
     graph.output("start", start);
     graph.output("source", source.plus(map::DATA_LINE.into()).delay(1).named("first_pairs"));
     graph.output("destination", destination.value());
