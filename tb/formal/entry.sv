@@ -23,6 +23,10 @@ module entry (
   (* hierconn *) wire        \dut.rows_launches ;
   (* hierconn *) wire [11:0] \dut.rows_launched_row ;
   (* hierconn *) wire        \dut.loader.goes ;
+  (* hierconn *) wire        \dut.loader.may_go ;
+  (* hierconn *) wire        \dut.loader.any_left ;
+  (* hierconn *) wire        \dut.loader.counts_spheres ;
+  (* hierconn *) wire        \dut.loader.line_waits ;
   (* hierconn *) wire        \dut.loader.row_begins ;
   (* hierconn *) wire        \dut.loader.is_searched ;
   (* hierconn *) wire  [3:0] \dut.loader.column_now ;
@@ -81,6 +85,9 @@ module entry (
     none_ends_early: assert (launched - ended <= KEPT);
     row_is_right: assert (!(stays & searched) | \dut.loader.row_now == began - {11'd0, column != 0});
     none_before: assert (!stays | searched | began == 0);
+    rows_let_it_go: assert (!(stays & \dut.control_run ) | \dut.loader.may_go == (column != 0 | !searched | \dut.loader.rows_inside < KEPT));
+    some_are_left: assert (\dut.loader.counts_spheres | \dut.loader.any_left == (\dut.loader.spheres_left != 0));
+    no_line_yet: assert (!(\dut.loader.counts_spheres & \dut.loader.line_waits ));
     whole_rows: assert (\dut.loader.spheres_left != 0 | column == 0);
     all_are_out: assert (!\dut.loader_all_ended | began == ended);
   end

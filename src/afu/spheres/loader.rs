@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::bits::{chosen, count as number_of};
 use super::bounds::{SPHERE_BITS, sphere_box};
-use super::{ROW_BITS, ROW_NUMBER_BITS, Sizes};
+use super::{ROW, ROW_BITS, ROW_NUMBER_BITS, Sizes};
 use crate::afu::counter::later;
 use crate::afu::counter::{up_down, waiting};
 use crate::afu::lines::CYCLES_TO_WORD;
@@ -41,13 +41,16 @@ pub(super) fn loader(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, BuildErr
     let left = graph.register("spheres_left", COUNT_BITS, 0);
     let row = graph.register("row_now", ROW_NUMBER_BITS, 0);
     let column = graph.register("column_now", sizes.loaded_bits(), 0);
-    let any_left = left.any().named("any_left");
     let searched = (!has_others | *second).named("is_searched");
     // A row that is searched needs a place among the rows that are kept.
     let inside_bits = sizes.kept_bits + 1;
     let inside = graph.register("rows_inside", inside_bits, 0);
-    let may_begin = !searched | !inside.msb();
-    let goes = (run & *line_waits & any_left & (column.any() | may_begin)).named("goes");
+    // Whether spheres of the set are left, and whether the rows let one be taken, is known a cycle ahead. A line comes
+    // later than that: in the cycle after the beginning it is still assumed that some are left.
+    let some_left = graph.register("any_left", 1, 0);
+    let may_go = graph.register("may_go", 1, 1);
+    let any_left = *some_left;
+    let goes = (run & *line_waits & any_left & *may_go).named("goes");
     let begins = (goes & searched & !column.any()).named("row_begins");
     let row_loaded = (goes & column.all()).named("row_loaded");
     let per_line_bits = (per_line / sizes.loaded).ilog2();
@@ -61,6 +64,14 @@ pub(super) fn loader(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, BuildErr
     let first_left = keeps_table.select(others, spheres);
     left.next_if(start | row_loaded | turns, start.select(first_left, turns.select(others, behind_row)));
     second.next(start.select(keeps_table, *second | turns));
+    let any_of_first = start.delay(1).named("counts_spheres").select(left.any(), any_left);
+    let any_behind_row = more & !left.is(u128::from(ROW));
+    let any_then = row_loaded.select(any_behind_row, any_of_first);
+    some_left.next(start | turns.select(others.any(), any_then));
+    // A row that begins is inside from the next cycle on, in which it is no longer at its first sphere.
+    let is_inside_row = goes.select(!column.all(), column.any()).named("goes_on_in_row");
+    let is_searched = !has_others | *second | turns;
+    may_go.next(start | is_inside_row | !is_searched | !inside.msb() | row_ends);
     row.next_if(start | row_loaded | turns, (start | turns).select(row.same(0), row.plus(1)));
     let present: Vec<_> = (0..sizes.loaded)
         .zip(sizes.of_loaded("is_present"))

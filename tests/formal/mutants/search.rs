@@ -233,11 +233,20 @@ const LOADER: Rows = &[
     ),
     (
         "a row of eight spheres",
-        "row_loaded = goes & &column_now;",
+        "row_loaded = goes & column_now_all;",
         "row_loaded = goes & &column_now[2:0];",
         11,
         "whole_rows",
     ),
+    (
+        "a row waits for the one before",
+        "~rows_inside[4] | row_ends",
+        "~rows_inside[0] | row_ends",
+        28,
+        "rows_let_it_go",
+    ),
+    ("an empty set has a row", "counts_spheres      ? |spheres_left", "counts_spheres      ? 1'b1", 5, "some_are_left"),
+    ("a line of the job before", "line_waits <= ~start & some_wait;", "line_waits <= some_wait;", 8, "no_line_yet"),
     ("the end before the last row", "set_ended & ~|rows_inside &", "set_ended &", 28, "all_are_out"),
 ];
 
