@@ -161,7 +161,7 @@ const FAULTS: [(&str, &str, &str, &str); 9] = [
         "about <= shares_oldest[20:8];",
         "about <= shares_oldest[20:8] ^ 13'd1;",
     ),
-    ("rows are kept too short", "contact_afu_loader.v", "~rows_inside[4])", "1'b1)"),
+    ("rows are kept too short", "contact_afu_loader.v", "~rows_inside[4] | row_ends", "1'b1"),
     ("a queue has room that it has not", "queue_32x50_slack_8.v", "words_inside < 6'd23", "words_inside < 6'd63"),
 ];
 
