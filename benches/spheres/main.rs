@@ -94,7 +94,7 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     for (set, spheres) in &sets {
         eprintln!("measuring {set}");
         let (contacts, measured) = measure::measure(set, spheres, seconds)?;
-        let count = (spheres.first.len() + spheres.second.as_ref().map_or(0, Vec::len)) as u64;
+        let count = spheres.count() as u64;
         rows.push(Row { set: (*set).to_owned(), spheres: count, contacts, measured, simulated: None });
     }
     let Some(folder) = &options.out else {

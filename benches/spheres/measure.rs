@@ -105,7 +105,7 @@ pub fn touching(spheres: &Spheres) -> Vec<PairRecord> {
 pub fn measure(set: &str, spheres: &Spheres, seconds: f64) -> Result<(u64, Measured), Box<dyn Error>> {
     let search = Search::new(Profile::WIDE.arithmetic(), 24)?;
     let Spheres { first, second } = spheres;
-    let count = first.len() + second.as_ref().map_or(0, Vec::len);
+    let count = spheres.count();
     let find = |fields| {
         let found = search.find(&mut Fast::new(fields), first, second.as_deref());
         found.expect("software does not fail").hits.len()

@@ -58,7 +58,7 @@ impl Afus {
 
     /// The jobs of one set. `touching` are the pairs for the AFU that is sent pairs.
     pub fn run(&self, set: &str, spheres: &Spheres, touching: &[PairRecord]) -> Result<Simulated, Box<dyn Error>> {
-        let count = (spheres.first.len() + spheres.second.as_ref().map_or(0, Vec::len)) as f64;
+        let count = spheres.count() as f64;
         let job = |bench: &Bench, outcome: &Outcome| Job {
             cycles: outcome.cycles,
             ns: outcome.cycles as f64 * bench.config().cycle_ns() / count,

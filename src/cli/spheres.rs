@@ -166,7 +166,7 @@ pub(super) fn predictions(source: &str, sets: &Sets, base: &Config, link: Option
     };
     let failure = |error: PredictError| Failure::new(Kind::Usage, error.to_string());
     let model = SearchModel::new(&config(16, 1, Fields::HIT, 1), sets).map_err(failure)?;
-    let count = (sets.first.len() + sets.second.as_ref().map_or(0, Vec::len)).max(1) as f64;
+    let count = sets.count().max(1) as f64;
     let mut rows = Vec::new();
     for (lanes, deciders) in PLANNED {
         let predicted = |contact, scpus| {

@@ -21,8 +21,6 @@ pub struct Considered {
     pub config: Config,
     /// Its cycles over the link, and its stages.
     pub predicted: Predicted,
-    /// The cycles that the link needs at least.
-    pub link_cycles: f64,
 }
 
 impl Considered {
@@ -84,13 +82,11 @@ impl Choice {
         let sets = still.sets().0;
         let model = SearchModel::new(base, &sets)?;
         let contacts = model.contacts();
-        let second = sets.second.as_ref().map_or(0, Vec::len) as u64;
-        let read = sphere_lines(sets.first.len() as u64) + sphere_lines(second);
+        let lines = |set: &Vec<_>| sphere_lines(set.len() as u64);
+        let read = lines(&sets.first) + sets.second.as_ref().map_or(0, lines);
         let written = |config: &Config| Spec::from(config.clone()).layout().destination_lines(contacts);
-        let consider = |config: Config| {
-            let link_cycles = link.limit_cycles(read, written(&config));
-            Ok::<_, SceneError>(Considered { predicted: model.predict(&config, link)?, config, link_cycles })
-        };
+        let consider =
+            |config: Config| Ok::<_, SceneError>(Considered { predicted: model.predict(&config, link)?, config });
         // The search is sized for numbers alone, so that no SCPU slows it down.
         let sized = |lanes, deciders| {
             let search = Search { lanes, deciders, ..base.search };
@@ -124,7 +120,7 @@ impl Choice {
             }
         }
         Ok(Self {
-            spheres: sets.first.len() as u64 + second,
+            spheres: sets.count() as u64,
             candidates: model.candidates(),
             contacts,
             bytes: 64 * (read + written(&chosen.config)),
@@ -146,7 +142,7 @@ impl Choice {
                 of_scpus(scpus),
                 of_scpus(interval),
                 grouped(one.predicted.cycles),
-                grouped(one.link_cycles.ceil() as u64),
+                grouped(one.predicted.link_cycles),
                 format!("{:.2}", each(one.cycles(), &one.config)),
                 one.slowest().to_owned(),
             ]

@@ -25,6 +25,13 @@ pub struct Spheres {
     pub second: Option<Vec<Sphere>>,
 }
 
+impl Spheres {
+    /// The number of spheres of both sets.
+    pub fn count(&self) -> usize {
+        self.first.len() + self.second.as_ref().map_or(0, Vec::len)
+    }
+}
+
 /// A set of spheres made from a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SphereSet {

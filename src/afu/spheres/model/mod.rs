@@ -27,12 +27,15 @@ pub struct Predicted {
     pub cycles: u64,
     /// The name of each stage, and the cycles in which it makes a step.
     pub stages: Vec<(&'static str, u64)>,
+    /// The cycles that the link needs at least.
+    pub link_cycles: u64,
 }
 
 impl Predicted {
-    /// The stage with the most steps.
+    /// The stage with the most steps, or the link.
     pub fn slowest(&self) -> &'static str {
-        self.stages.iter().max_by_key(|(_, steps)| *steps).map_or("", |(name, _)| name)
+        let stages = self.stages.iter().copied().chain([("link", self.link_cycles)]);
+        stages.max_by_key(|(_, steps)| *steps).map_or("", |(name, _)| name)
     }
 }
 
@@ -108,9 +111,43 @@ impl SearchModel {
         let (takers, room) = Takers::of(&spec, &sizes)?;
         let lines = (self.before + self.rows.len() as u64) * u64::from(ROW) / Port::PER_LINE;
         let mut port = Port::new(&spec, link, lines, room)?;
-        let mut predicted = run(&sizes, self.before, rows, takers, &mut port, decision(&spec, false)?.latency.into());
+        let decision = decision(&spec, false)?.latency.into();
+        let (cycles, stages) = run(&sizes, self.before, rows, takers, &mut port, decision);
         let written = spec.layout().destination_lines(self.contacts());
-        predicted.stages.push(("link", link.limit_cycles(lines, written).ceil() as u64));
-        Ok(predicted)
+        Ok(Predicted { cycles, stages, link_cycles: link.limit_cycles(lines, written).ceil() as u64 })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::{Input, Results};
+    use crate::link::Fault;
+    use crate::spheres::SphereSet;
+
+    fn cycles(sets: &Spheres, link: &LinkModel) -> u64 {
+        let search = config::Search { table: 2048, ..config::Search::default() };
+        let (contact, results) = (Fields::HIT, Results::Hits);
+        let config = Config { input: Input::Spheres, search, contact, results, scpus: 1, ..Config::default() };
+        SearchModel::new(&config, sets).expect("boxes").predict(&config, link).expect("a prediction").cycles
+    }
+
+    fn gas() -> Spheres {
+        "gas:200:0.3".parse::<SphereSet>().expect("a set").spheres(1)
+    }
+
+    /// A link whose response is lost once kept the model waiting for ever.
+    #[test]
+    fn faults_of_a_link_are_no_part_of_a_prediction() {
+        let ideal = LinkModel::ideal();
+        let faults = vec![Fault::ReadLost(3), Fault::WriteLost(0), Fault::ReadTwice(1)];
+        assert_eq!(cycles(&gas(), &LinkModel { faults, ..ideal.clone() }), cycles(&gas(), &ideal));
+    }
+
+    #[test]
+    fn a_first_set_is_loaded_even_if_the_second_is_empty() {
+        let sets = Spheres { second: Some(Vec::new()), ..gas() };
+        assert!((200..300).contains(&cycles(&sets, &LinkModel::ideal())));
+        assert!(cycles(&Spheres::default(), &LinkModel::ideal()) < 100);
     }
 }

@@ -56,16 +56,16 @@ pub(super) struct Port {
     /// Lines requested to be written, and those of them that were acknowledged.
     written: u64,
     acknowledged: InOrder,
-    /// The cycles in which tags of writes are free again, and how many are.
+    /// The cycles in which tags of writes that were acknowledged are free again.
     reused: VecDeque<u64>,
-    free: u64,
 }
 
 impl Port {
     /// A port to read so many lines, with places for `room` lines that are to be written.
     pub(super) fn new(spec: &Spec, link: &LinkModel, lines: u64, room: u32) -> Result<Self, LinkError> {
         Ok(Self {
-            link: Link::new(link.clone(), 1)?,
+            // A job whose response is lost or repeated ends with an error, which is no prediction.
+            link: Link::new(LinkModel { faults: Vec::new(), ..link.clone() }, 1)?,
             slots: spec.max_outstanding.into(),
             lines,
             asked: 0,
@@ -80,24 +80,22 @@ impl Port {
             written: 0,
             acknowledged: InOrder::default(),
             reused: VecDeque::new(),
-            free: spec.max_outstanding.into(),
         })
     }
 
     /// A cycle of the link.
     pub(super) fn cycle(&mut self, now: u64) {
-        while self.freed.front().is_some_and(|cycle| *cycle <= now) {
-            self.freed.pop_front();
-        }
-        while self.reused.front().is_some_and(|cycle| *cycle <= now) {
-            self.reused.pop_front();
-            self.free += 1;
+        for later in [&mut self.freed, &mut self.reused] {
+            while later.front().is_some_and(|cycle| *cycle <= now) {
+                later.pop_front();
+            }
         }
         let places = self.asked - self.given + self.freed.len() as u64;
+        let tags = self.written - self.acknowledged.next + self.reused.len() as u64;
         let reads = now >= CYCLES_TO_REQUEST && self.asked < self.lines && places < self.slots;
         let to_request = u64::from(dispatcher::CYCLES_TO_REQUEST);
         let is_ready = self.waiting.front().is_some_and(|cycle| cycle + to_request <= now);
-        let writes = is_ready && self.free > 0;
+        let writes = is_ready && tags < self.slots;
         let tag = |number: u64| (number % self.slots) as u16;
         let replies = self.link.cycle(&Requests {
             read: reads.then(|| ReadRequest { address: self.asked, tag: tag(self.asked) }),
@@ -107,7 +105,6 @@ impl Port {
         if writes && replies.write_ready {
             self.waiting.pop_front();
             self.written += 1;
-            self.free -= 1;
         }
         if let Some(response) = replies.write {
             let come = self.acknowledged.come(response.tag, self.slots);
@@ -156,8 +153,8 @@ impl Port {
         self.waiting.iter().take(self.room / 2).filter(|cycle| **cycle <= now).count() < self.room / 2
     }
 
-    /// Whether every line was written.
+    /// Whether every line of spheres was taken, and every line of results was written.
     pub(super) fn is_done(&self) -> bool {
-        self.waiting.is_empty() && self.written == self.acknowledged.next
+        self.given == self.lines && self.waiting.is_empty() && self.written == self.acknowledged.next
     }
 }

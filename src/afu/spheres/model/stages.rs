@@ -2,7 +2,6 @@
 
 use std::collections::{HashMap, VecDeque};
 
-use super::Predicted;
 use super::item::{Item, STAGES};
 use super::port::Port;
 use super::takers::Takers;
@@ -62,7 +61,8 @@ struct Undecided {
     ends_row: bool,
 }
 
-/// Runs rows through all stages, behind so many rows that are loaded alone.
+/// Runs rows through all stages, behind so many rows that are loaded alone. Returns the cycles, and the name and the steps
+/// of each stage.
 pub(super) fn run(
     sizes: &Sizes,
     before: u64,
@@ -70,7 +70,7 @@ pub(super) fn run(
     mut takers: Takers,
     port: &mut Port,
     decision: u64,
-) -> Predicted {
+) -> (u64, Vec<(&'static str, u64)>) {
     let room = |inside: usize, depth: u32| inside < (depth - SLACK - 1) as usize;
     let (count, per_row) = (rows.len(), u64::from(ROW / sizes.loaded));
     let per_line = Port::PER_LINE / u64::from(sizes.loaded);
@@ -178,5 +178,5 @@ pub(super) fn run(
     told.push(("deciders", decided / u64::from(sizes.deciders)));
     told.push(("hits", leave_steps));
     told.extend(takers.scpus().map(|busy| ("SCPUs", busy)));
-    Predicted { cycles: now + CYCLES_TO_END, stages: told }
+    (now + CYCLES_TO_END, told)
 }
