@@ -61,8 +61,8 @@ struct Undecided {
     ends_row: bool,
 }
 
-/// Runs rows through all stages, behind so many rows that are loaded alone. Returns the cycles, and the name and the steps
-/// of each stage.
+/// Runs rows through all stages, behind so many rows that are loaded alone. Returns the cycles, and the name and the
+/// steps of each stage.
 pub(super) fn run(
     sizes: &Sizes,
     before: u64,
