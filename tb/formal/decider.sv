@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // A decider, by induction: each candidate of a share is decided once, with the spheres of its own places, and each
-// share is answered once, in order. What the kernel says is free in every cycle, and so are the shares that stand at the
-// output of the decider's first queue. Both of its queues are those of queue.sv.
+// share is answered once, in order. Neither of its two queues overflows, though nobody asks them for room. What the
+// kernel says is free in every cycle, and so is what stands at the outputs of the queues (queue.sv: in_order).
 //
-// Assumed here, and proven of the fork in front: a share has a candidate (joined.sv: first_is_asked).
+// Assumed here, and proven of fork and join: a share has a candidate (joined.sv: first_is_asked); an answer is taken only
+// where there is one (joined.sv: all_have_answered, first_is_taken); no more shares wait for that than there are places
+// for steps (undecided.sv: few_shares).
 //
-// Defines: TO_ANSWER, the cycles from a candidate to its decision.
+// Defines: TO_ANSWER, the cycles from a candidate to its decision; UNDECIDED, the places for steps.
 `default_nettype none
 
 module decider (
   `include "inputs.svh"
 );
   localparam CYCLES = `TO_ANSWER;
+  localparam DEPTH = `UNDECIDED;
 
   `include "dut.svh"
   (* hierconn *) wire        \dut.shares_valid ;
@@ -23,6 +26,12 @@ module decider (
   (* hierconn *) wire [14:0] \dut.place_in_table ;
   (* hierconn *) wire  [3:0] \dut.row_in_hand ;
   (* hierconn *) wire  [3:0] \dut.place_in_row ;
+  (* hierconn *) wire  [6:0] \dut.shares.waiting ;
+  (* hierconn *) wire  [5:0] \dut.shares.head ;
+  (* hierconn *) wire  [5:0] \dut.shares.tail ;
+  (* hierconn *) wire  [6:0] \dut.answers.waiting ;
+  (* hierconn *) wire  [5:0] \dut.answers.head ;
+  (* hierconn *) wire  [5:0] \dut.answers.tail ;
   (* hierconn *) wire        \dut.kernel_hit ;
   (* hierconn *) wire        \dut.is_fresh ;
   (* hierconn *) wire  [7:0] \dut.hits_so_far ;
@@ -66,6 +75,11 @@ module decider (
   reg [6:0] shares_in = 0;
   reg [6:0] answers = 0;
   reg [6:0] inside;
+  // Shares that were put and whose answers were not taken, and where they are: in the first queue, between the queues
+  // or in the second one.
+  reg [8:0] undecided = 0;
+  wire [8:0] somewhere = {2'd0, \dut.shares.waiting } + {8'd0, \dut.shares_valid } + {2'd0, inside}
+      + {2'd0, \dut.answers.waiting } + {8'd0, answer_valid};
   integer   at;
   integer   on;
   always @* begin
@@ -90,11 +104,14 @@ module decider (
     right <= right_now;
     shares_in <= (rst | start) ? 7'd0 : shares_in + {6'd0, \dut.takes };
     answers <= (rst | start) ? 7'd0 : answers + {6'd0, \dut.answer_comes };
+    undecided <= (rst | start) ? 9'd0 : undecided + {8'd0, put} - {8'd0, take_answer};
   end
 
   always @* begin
     assume (after_reset | rst);
     assume (!\dut.shares_valid | \dut.shares_oldest [7:0] != 0);
+    assume (!take_answer | answer_valid);
+    assume (undecided + {8'd0, put} <= DEPTH);
   end
 
   always @* if (after_reset & ~rst) begin
@@ -108,6 +125,11 @@ module decider (
     fresh_is_right: assert (\dut.is_fresh == !is_begun & (!is_begun | \dut.hits_so_far == so_far));
     conserved: assert (shares_in - answers == inside);
     takes_at_once: assert (\dut.takes == (\dut.shares_valid & (!hand | leaves)));
+    none_is_lost: assert (undecided == somewhere);
+    shares_fit: assert (!(put & \dut.shares.waiting == DEPTH));
+    shares_in_place: assert (\dut.shares.tail == \dut.shares.head + \dut.shares.waiting [5:0]);
+    answers_fit: assert (!(\dut.answer_comes & \dut.answers.waiting == DEPTH));
+    answers_in_place: assert (\dut.answers.tail == \dut.answers.head + \dut.answers.waiting [5:0]);
     // A share is in hand for a cycle per candidate.
     oldest_leaves: assert (!\dut.active | hand_waits + ones(\dut.bits_left ) <= 8);
   end

@@ -130,7 +130,7 @@ fn of_hits(latency: u32) -> [Proof; 6] {
 /// The proofs of the parts of the search among spheres. The step of an induction is as long as the part.
 fn of_search() -> Vec<Proof> {
     let of = |name, harness, part, method| Proof::new(name, harness, 1, method).of(Design::Search(part));
-    let short = ["decider", "join of deciders", "begin of a job"];
+    let short = ["decider", "shares of any step", "shares of a decider", "join of deciders", "begin of a job"];
     let proofs = [
         of("begin of a job", "begins", Part::Control, Inductive(2)),
         of("entry of rows", "entry", Part::Entry, Inductive(10)),
@@ -143,6 +143,9 @@ fn of_search() -> Vec<Proof> {
         of("rows pass box against box", "stage", Part::BoxPairs, Reached(30)),
         of("decider", "decider", Part::Decider, Inductive(18)),
         of("shares are answered", "decider", Part::Decider, Reached(34)),
+        of("shares of any step", "undecided", Part::Undecided, Inductive(2)).with(&["CHOSEN"]),
+        of("shares of a decider", "undecided", Part::Undecided, Inductive(2)),
+        of("a decider has many shares", "undecided", Part::Undecided, Reached(30)),
         of("join of deciders", "joined", Part::Join, Inductive(8)),
         of("steps are joined", "joined", Part::Join, Reached(24)),
     ];

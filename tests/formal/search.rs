@@ -22,6 +22,8 @@ pub enum Part {
     BoxPairs,
     /// A decider.
     Decider,
+    /// The fork in front of two deciders and the queue of steps behind them, in the AFU.
+    Undecided,
     /// The fork in front of two deciders and the join behind them, in the AFU.
     Join,
     /// What loads rows and launches them, in the AFU.
@@ -30,7 +32,7 @@ pub enum Part {
     Control,
 }
 
-use Part::{BoxPairs, Control, Decider, Entry, GroupRows, Groups, Join, Near};
+use Part::{BoxPairs, Control, Decider, Entry, GroupRows, Groups, Join, Near, Undecided};
 
 /// Parts of the AFU that neither join nor entry needs.
 const OTHERS: &[&str] = &[
@@ -47,8 +49,10 @@ const OTHERS: &[&str] = &[
     "near_queue",
     "candidate_queue",
 ];
-/// Parts of a decider whose outputs are free.
-const IN_DECIDER: &[&str] = &["shares", "answers", "kernel", "columns", "rows"];
+/// Parts of a decider whose outputs are free, if its queues are not.
+const IN_DECIDER: &[&str] = &["kernel", "columns", "rows"];
+/// The module of the queue of steps, the bits of a step and the number of places.
+const STEPS: (&str, u32, u32) = ("queue_64x31_slack_8", 31, 64);
 
 /// What Yosys makes free: these parts of a module.
 fn free(module: &str, parts: &[&str]) -> String {
@@ -64,7 +68,7 @@ impl Part {
             Near => "contact_afu_near",
             BoxPairs => "contact_afu_candidates",
             Decider => "contact_afu_decider",
-            Join | Entry => "contact_afu",
+            Undecided | Join | Entry => "contact_afu",
             Control => "contact_afu_control",
         }
     }
@@ -76,7 +80,8 @@ impl Part {
             GroupRows => &["STAGE_CYCLES=5", "FOUND=mask", "NUMBER=place[3:0]", "ABOUT_BITS=17", "ROW_AT=5"],
             Near => &["STAGE_CYCLES=6", "FOUND=spheres", "NUMBER=other[3:0]", "ABOUT_BITS=21", "ROW_AT=9", "NEAR"],
             BoxPairs => &["STAGE_CYCLES=8", "FOUND={share_1,share_0}", "ABOUT_BITS=41", "ROW_AT=13", "BOX_PAIRS"],
-            Decider => &["TO_ANSWER=12"],
+            Decider => &["TO_ANSWER=12", "UNDECIDED=64"],
+            Undecided => &["UNDECIDED=64"],
             Join | Entry | Control => &[],
         }
     }
@@ -86,11 +91,29 @@ impl Part {
         let module = self.module();
         let free = match self {
             Control => return String::new(),
-            Decider => free(module, IN_DECIDER),
+            // What its queues give is free, and when is not.
+            Decider => [
+                free(module, IN_DECIDER),
+                free("queue_64x28_slack_8", &["w:oldest"]),
+                free("queue_64x8_slack_8", &["w:oldest"]),
+            ]
+            .concat(),
+            Undecided => {
+                let others = [
+                    free(module, OTHERS),
+                    free(module, &["loader", "rows"]),
+                    free("contact_afu_decider", IN_DECIDER),
+                    free("contact_afu_decider", &["shares", "answers"]),
+                    free("contact_afu_hits", &["hit_queue"]),
+                ];
+                // The harness looks into this memory.
+                return format!("cutpoint{}; memory_map {};", others.concat(), STEPS.0);
+            }
             Join => [
                 free(module, OTHERS),
                 free(module, &["loader", "rows"]),
                 free("contact_afu_decider", IN_DECIDER),
+                free("contact_afu_decider", &["shares", "answers"]),
                 free("contact_afu_hits", &["step_queue", "hit_queue"]),
             ]
             .concat(),
@@ -120,9 +143,22 @@ impl Part {
         let includes = [
             ("inputs.svh".to_owned(), inputs(module, "  input wire clk,\n  input wire rst")),
             ("dut.svh".to_owned(), instance(module, self.module())),
+            ("words.svh".to_owned(), steps()),
         ];
         verilog.chain(includes).collect()
     }
+}
+
+/// Declares the words of the memory of the queue of steps, and the low bits of all, one for each decider.
+fn steps() -> String {
+    let (_, bits, depth) = STEPS;
+    let names: Vec<_> = (0..depth).map(|place| format!("\\dut.hits.step_queue.words[{place}] ")).collect();
+    let wires = names.iter().map(|name| format!("  (* hierconn *) wire [{}:0] {name};\n", bits - 1));
+    let bits_of = |bit: u32| {
+        let all: Vec<_> = names.iter().rev().map(|name| format!("{name}[{bit}]")).collect();
+        format!("  wire [{}:0] steps_bit_{bit} = {{\n    {}\n  }};\n", depth - 1, all.join(",\n    "))
+    };
+    wires.chain([bits_of(0), bits_of(1)]).collect()
 }
 
 /// A part and its files.
@@ -142,7 +178,7 @@ fn files() -> &'static [Files] {
             ..Config::default()
         };
         let afu = Afu::generate(Spec::from(config)).expect("a sound accelerator");
-        let parts = [Groups, GroupRows, Near, BoxPairs, Decider, Join, Entry, Control];
+        let parts = [Groups, GroupRows, Near, BoxPairs, Decider, Undecided, Join, Entry, Control];
         parts.into_iter().map(|part| (part, part.files_in(&afu))).collect()
     })
 }

@@ -7,17 +7,17 @@ const DECIDER: Rows = &[
         "a candidate is decided again",
         "takes ? shares_oldest[7:0] : rest;",
         "takes ? shares_oldest[7:0] : bits_left;",
-        3,
+        5,
         "share_in_hand",
     ),
     (
         "a share is decided for ever",
         "takes ? shares_oldest[7:0] : rest;",
         "takes ? shares_oldest[7:0] : bits_left;",
-        3,
+        5,
         "oldest_leaves",
     ),
-    ("the places of the next share", "if (takes) about", "if (shares_valid) about", 3, "places_in_hand"),
+    ("the places of the next share", "if (takes) about", "if (shares_valid) about", 5, "places_in_hand"),
     (
         "a decider takes a share that is not there",
         "takes = shares_valid & (~active | ends)",
@@ -25,44 +25,104 @@ const DECIDER: Rows = &[
         2,
         "some_are_left",
     ),
-    ("another column's sphere", "{about[11:0], candidate}", "{about[11:0], ~candidate}", 2, "first_sphere"),
-    ("another sphere of the row", "place_in_row = about[15:12]", "place_in_row = about[14:11]", 2, "second_sphere"),
+    ("another column's sphere", "{about[11:0], candidate}", "{about[11:0], ~candidate}", 4, "first_sphere"),
+    ("another sphere of the row", "place_in_row = about[15:12]", "place_in_row = about[14:11]", 4, "second_sphere"),
     (
         "an answer for each candidate",
         "answer_comes <= share_ends & ~start;",
         "answer_comes <= decided[11] & ~start;",
-        15,
+        17,
         "answered_once",
     ),
     (
         "more answers than shares",
         "answer_comes <= share_ends & ~start;",
         "answer_comes <= decided[11] & ~start;",
-        16,
+        18,
         "conserved",
     ),
     (
         "only the last candidate is answered",
         "answer_put <= answer_now;",
         "answer_put <= candidate_then_if_kernel_hit;",
-        16,
+        18,
         "answer_is_right",
     ),
     (
         "the hits of the share before",
         "start | (decided[11] ? is_last_then : is_fresh)",
         "start | (is_fresh & ~decided[11])",
-        15,
+        17,
         "fresh_is_right",
     ),
     (
         "a share waits for a cycle",
         "takes = shares_valid & (~active | ends)",
         "takes = shares_valid & ~active",
-        2,
+        4,
         "takes_at_once",
     ),
+    (
+        "a decider forgets the share in hand",
+        "takes = shares_valid & (~active | ends)",
+        "takes = shares_valid",
+        5,
+        "none_is_lost",
+    ),
+    (
+        "an answer for each candidate fills the queue",
+        "answer_comes <= share_ends & ~start;",
+        "answer_comes <= decided[11] & ~start;",
+        82,
+        "answers_fit",
+    ),
 ];
+
+const SHARES: Rows = &[
+    (
+        "a share is lost as the next one comes",
+        "(reads | (oldest_valid & ~take))",
+        "(reads & ~put | (oldest_valid & ~take))",
+        3,
+        "none_is_lost",
+    ),
+    ("a share counts twice", "(waiting + {6'd0, put})", "(waiting + {5'd0, put, 1'd0})", 36, "shares_fit"),
+    ("half as many places for shares", "(tail + 6'd1)", "{1'b0, tail[4:0] + 5'd1}", 33, "shares_in_place"),
+];
+
+const ANSWERS: Rows =
+    &[("places for eight answers", "(tail + 6'd1)", "{3'd0, tail[2:0] + 3'd1}", 25, "answers_in_place")];
+
+const STEPS: Rows = &[
+    ("steps have room for one too many", "words_inside < 7'd55", "words_inside < 7'd56", 66, "room_is_right"),
+    ("a step counts twice", "(waiting + {6'd0, put})", "(waiting + {5'd0, put, 1'd0})", 11, "bounded"),
+    (
+        "a step counts twice, and there is room",
+        "(waiting + {6'd0, put})",
+        "(waiting + {5'd0, put, 1'd0})",
+        39,
+        "enough",
+    ),
+    ("a step counts twice, and is put", "(waiting + {6'd0, put})", "(waiting + {5'd0, put, 1'd0})", 43, "steps_fit"),
+    ("places for eight steps", "(tail + 6'd1)", "{3'd0, tail[2:0] + 3'd1}", 18, "in_place"),
+];
+
+const ASKED: Rows =
+    &[("a decider gets a share without a step", "(box_pairs_put & asked_0)", "(asked_0)", 2, "oldest_first")];
+
+const ASKED_SINCE: Rows =
+    &[("more shares than steps", "(box_pairs_put & asked_0)", "(asked_0)", 13, "no_more_than_steps")];
+
+const ANSWERED: Rows = &[(
+    "an answer is taken for a step that did not ask",
+    "take_answer_0 = step_leaves & asked[0]",
+    "take_answer_0 = step_leaves",
+    13,
+    "few_shares",
+)];
+
+const TOLD: Rows =
+    &[("a step remembers the other decider", "last, asks_1, asks_0}", "last, asks_0, asks_1}", 11, "step_for_step")];
 
 const FORK: Rows = &[
     (
@@ -320,6 +380,13 @@ const CONTROL: Rows = &[
 
 pub const TABLES: &[(&str, &str, Rows)] = &[
     ("decider", "contact_afu_decider.v", DECIDER),
+    ("decider", "queue_64x28_slack_8.v", SHARES),
+    ("decider", "queue_64x8_slack_8.v", ANSWERS),
+    ("shares of a decider", "queue_64x31_slack_8.v", STEPS),
+    ("shares of a decider", "contact_afu.v", ASKED),
+    ("shares of a decider", "contact_afu_hits.v", ANSWERED),
+    ("shares of any step", "contact_afu.v", ASKED_SINCE),
+    ("shares of any step", "contact_afu_hits.v", TOLD),
     ("join of deciders", "contact_afu.v", FORK),
     ("join of deciders", "contact_afu_hits.v", JOIN),
     ("entry of rows", "contact_afu_loader.v", LOADER),
