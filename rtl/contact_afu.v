@@ -68,7 +68,6 @@ module contact_afu #(
   wire control_drops_requests;
   wire [57:0] control_job_source;
   wire [57:0] control_job_destination;
-  wire [31:0] control_job_count;
   wire [3:0] control_job_epoch;
   wire [31:0] control_lines;
   wire control_last_place;
@@ -83,6 +82,7 @@ module contact_afu #(
   wire dispatched;
   wire may_enter;
   wire none_inside;
+  wire credits_all_emerged;
   wire filled;
   wire collector_line_comes;
   wire [511:0] collector_line;
@@ -91,6 +91,7 @@ module contact_afu #(
   wire read_responded;
   wire read_idle;
   wire [1:0] entered;
+  wire all_given;
   wire [1:0] feeder_carries;
   wire [13:0] feeder_targets;
   wire [511:0] feeder_pairs;
@@ -160,7 +161,6 @@ module contact_afu #(
     .drops_requests   (control_drops_requests),
     .job_source       (control_job_source),
     .job_destination  (control_job_destination),
-    .job_count        (control_job_count),
     .job_epoch        (control_job_epoch),
     .lines            (control_lines),
     .last_place       (control_last_place)
@@ -170,7 +170,7 @@ module contact_afu #(
     .clk           (clk),
     .rst           (rst),
     .start         (control_begin_packer),
-    .count         (control_job_count),
+    .all_emerged   (credits_all_emerged),
     .filled        (filled),
     .leaves        (slots_leaves_out),
     .record_0      (slots_record_0_out),
@@ -221,9 +221,11 @@ module contact_afu #(
     .scpus       (SCPUS_IN_TURN[6:0]),
     .entered     (entered),
     .emerged     (group),
+    .all_given   (all_given),
     .line_left   (line_left),
     .may_enter   (may_enter),
     .none_inside (none_inside),
+    .all_emerged (credits_all_emerged),
     .filled      (filled)
   );
 
@@ -266,6 +268,7 @@ module contact_afu #(
     .line             (collector_line),
     .may_enter        (may_enter),
     .entered          (entered),
+    .all_given        (all_given),
     .carries          (feeder_carries),
     .targets          (feeder_targets),
     .pairs            (feeder_pairs),

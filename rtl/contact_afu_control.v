@@ -46,7 +46,6 @@ module contact_afu_control (
   output reg         drops_requests,
   output reg  [57:0] job_source,
   output reg  [57:0] job_destination,
-  output reg  [31:0] job_count,
   output reg  [3:0]  job_epoch,
   output wire [31:0] lines,
   output reg         last_place
@@ -66,10 +65,11 @@ module contact_afu_control (
   reg expired;
   reg response_heard;
   reg link_idle_before;
-  reg has_watchdog;
   reg silence_is_over;
+  reg has_watchdog;
   reg [31:0] silence;
   reg [31:0] job_watchdog;
+  reg needs_watchdog;
   (* keep = "true", dont_merge *) reg busy_copy_1;
   reg running;
   reg fails;
@@ -104,10 +104,9 @@ module contact_afu_control (
   wire gives_up = busy_copy_0 & expired & ~completes;
   wire is_given_up = ~accept & (given_up | gives_up);
   wire link_is_alive = response_heard | link_idle_before;
-  wire expires = busy_copy_0 & ~link_is_alive & has_watchdog & silence_is_over;
+  wire expires = busy_copy_0 & ~link_is_alive & silence_is_over;
   wire begins_to_drain = draining & ~|cycles_draining;
   wire silence_restarts = link_is_alive | ~busy_copy_0 | begins_to_drain;
-  wire takes_values = start & ~busy_copy_1;
   wire link_idle = read_idle & write_idle;
   wire has_unknown_mode = |mode;
   wire refuses = accept & has_unknown_mode;
@@ -130,6 +129,7 @@ module contact_afu_control (
       4'd0;
   wire [3:0] failed = failing ? cause : error;
   wire [3:0] ended = gives_up ? 4'd4 : failed;
+  wire takes_values = start & ~busy_copy_1;
   wire [32:0] rounded_count = {1'b0, count} + 33'd1;
 
   // ---- at the clock edge ----
@@ -152,10 +152,11 @@ module contact_afu_control (
       expired <= 1'b0;
       response_heard <= 1'b0;
       link_idle_before <= 1'b0;
-      has_watchdog <= 1'b0;
       silence_is_over <= 1'b0;
+      has_watchdog <= 1'b0;
       silence <= 32'd0;
       job_watchdog <= 32'd0;
+      needs_watchdog <= 1'b0;
       running <= 1'b0;
       fails <= 1'b0;
       unexpected_heard <= 1'b0;
@@ -176,7 +177,6 @@ module contact_afu_control (
       error <= 4'd0;
       told_cause <= 4'd0;
       drops_requests <= 1'b1;
-      job_count <= 32'd0;
       job_epoch <= 4'd0;
       job_lines <= 32'd0;
     end else begin
@@ -193,10 +193,11 @@ module contact_afu_control (
       expired <= expires;
       response_heard <= read_answered | write_answered;
       link_idle_before <= link_idle_heard;
-      has_watchdog <= accept ? |watchdog : (has_watchdog | draining);
-      silence_is_over <= ~silence_restarts & (silence >= job_watchdog);
+      silence_is_over <= ~silence_restarts & has_watchdog & (silence >= job_watchdog);
+      has_watchdog <= accept ? |watchdog : (has_watchdog | needs_watchdog);
       silence <= silence_restarts ? 32'd0 : (silence + 32'd1);
-      if (takes_values | (draining & ~has_watchdog)) job_watchdog <= draining ? 32'h10000 : watchdog;
+      if (~busy_copy_1 | needs_watchdog) job_watchdog <= needs_watchdog ? 32'h10000 : watchdog;
+      needs_watchdog <= draining & ~has_watchdog;
       running <= takes_job | goes_on;
       fails <= (running & (abort_job | read_failed | write_failed)) | expires;
       unexpected_heard <= (read_responded & ~read_answered) | (write_responded & ~write_answered);
@@ -221,9 +222,8 @@ module contact_afu_control (
       error <= accept ? (has_unknown_mode ? 4'd5 : 4'd0) : ended;
       told_cause <= running ? (abort_job ? 4'd1 : read_failed ? 4'd2 : write_failed ? 4'd3 : 4'd0) : 4'd0;
       drops_requests <= begins | is_given_up;
-      if (takes_values) job_count <= count;
       if (takes_values) job_epoch <= epoch;
-      if (takes_values) job_lines <= rounded_count[32:1];
+      if (~busy_copy_1) job_lines <= rounded_count[32:1];
     end
   end
   (* keep = "true" *) always @(posedge clk) begin

@@ -14,9 +14,11 @@ module contact_afu_credits (
   input  wire [6:0] scpus,
   input  wire [1:0] entered,
   input  wire [1:0] emerged,
+  input  wire       all_given,
   input  wire       line_left,
   output reg        may_enter,
   output reg        none_inside,
+  output reg        all_emerged,
   output reg        filled
 );
 
@@ -30,6 +32,7 @@ module contact_afu_credits (
   // ---- logic ----
   wire [9:0] room_now = room + room_change;
   wire room_for_more = |room_now[9:3];
+  wire is_empty = ~|pairs_inside & ~|entered;
   wire [7:0] cycles_to_fill = {1'b0, scpus} + 8'd114;
 
   // ---- at the clock edge ----
@@ -43,15 +46,17 @@ module contact_afu_credits (
       emerged_now <= 2'd0;
       filled <= 1'b0;
       cycles_since_reset <= 8'd0;
+      all_emerged <= 1'b0;
     end else begin
       may_enter <= run & room_for_more;
       room <= start ? 10'd512 : room_now;
       room_change <= start ? 10'd0 : ((line_left ? 10'd2 : 10'd0) - {8'd0, entered});
-      none_inside <= ~|pairs_inside & ~|entered;
+      none_inside <= is_empty;
       pairs_inside <= (pairs_inside + {8'd0, entered}) - {8'd0, emerged_now};
       emerged_now <= filled ? emerged : 2'd0;
       filled <= filled | (cycles_since_reset == cycles_to_fill);
       if (~filled) cycles_since_reset <= cycles_since_reset + 8'd1;
+      all_emerged <= ~start & all_given & is_empty;
     end
   end
 

@@ -18,6 +18,7 @@ module contact_afu_feeder (
   input  wire [511:0] line,
   input  wire         may_enter,
   output reg  [1:0]   entered,
+  output reg          all_given,
   output reg  [1:0]   carries,
   output reg  [13:0]  targets,
   output reg  [511:0] pairs,
@@ -49,6 +50,7 @@ module contact_afu_feeder (
   reg one_lines_left;
   reg last;
   reg [6:0] turn_block;
+  reg began;
   reg [1:0] carries_rank_0;
   reg [6:0] turn;
   (* keep = "true", dont_merge *) reg aligns_by_1_copy_3;
@@ -122,6 +124,7 @@ module contact_afu_feeder (
       go_0 ? next_line_has_place_1 :
       ({2'd0, next_last} >= place_after_0);
   wire next_holds_0 = in_hand ? next_line_goes_on_0 : 1'b1;
+  wire some_left = in_hand | line_ready | any_lines_left;
   wire [6:0] turns_before_1 = scpus - 7'd1;
   wire [6:0] turn_after_1 = (turn >= turns_before_1) ? (turn - turns_before_1) : (turn + 7'd1);
   wire [6:0] turns_before_2 = scpus - 7'd2;
@@ -133,7 +136,7 @@ module contact_afu_feeder (
     aligns_by_1_copy_1 ? held_3 : held_1,
     aligns_by_1_copy_0 ? held_2 : held_0
   };
-  wire waits = run & (in_hand | line_ready | any_lines_left);
+  wire waits = run & some_left;
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
@@ -172,6 +175,8 @@ module contact_afu_feeder (
       lines_waiting <= 7'd0;
       one_lines_left <= 1'b0;
       turn_block <= 7'd0;
+      all_given <= 1'b0;
+      began <= 1'b0;
       carries <= 2'd0;
       carries_rank_0 <= 2'd0;
       turn <= 7'd0;
@@ -215,6 +220,8 @@ module contact_afu_feeder (
              lines_left_step ? one_lines_left_after_1 :
              one_lines_left_after_0);
       turn_block <= round_begins ? 7'd0 : ends_block ? (turn_block + 7'd1) : turn_block;
+      all_given <= start ? ~|lines : ((all_given | ~began) & ~some_left);
+      began <= start;
       carries <= carries_rank_0;
       carries_rank_0 <= {go_1, go_0};
       turn <= start ? 7'd0 : next_turn;

@@ -10,7 +10,7 @@ module contact_afu_packer (
   input  wire         clk,
   input  wire         rst,
   input  wire         start,
-  input  wire [31:0]  count,
+  input  wire         all_emerged,
   input  wire         filled,
   input  wire [1:0]   leaves,
   input  wire [255:0] record_0,
@@ -32,10 +32,6 @@ module contact_afu_packer (
   reg went;
   reg filled_here;
   reg place;
-  reg all_seen;
-  reg [31:0] emerged;
-  reg [31:0] count_here;
-  reg [1:0] group_here;
   (* keep = "true", dont_merge *) reg enters_1_place_1_copy_1;
   reg [255:0] entering_1;
   (* keep = "true", dont_merge *) reg enters_0_place_1_copy_1;
@@ -61,7 +57,12 @@ module contact_afu_packer (
   reg [31:0] invalid_count;
   reg [1:0] invalid_now;
   reg [31:0] first_invalid_pair;
+  reg some_invalid;
   reg none_invalid;
+  reg [31:0] emerged_before;
+  reg first_invalid_lane;
+  reg [31:0] emerged;
+  reg [1:0] group_here;
 
   // ---- logic ----
   wire [1:0] leaves_now = filled_here ? leaves : 2'd0;
@@ -70,8 +71,7 @@ module contact_afu_packer (
       leaves_now[0] ? ({1'b0, place} + 2'd1) :
       {1'b0, place};
   wire fills = place_behind >= 2'd2;
-  wire flushes = all_seen & place & ~|leaves_now;
-  wire [1:0] group = leaves_now[1] ? 2'd2 : leaves_now[0] ? 2'd1 : 2'd0;
+  wire flushes = all_emerged & place & ~|leaves_now;
   wire start_or_flushes = start | flushes;
   wire [1:0] place_in_line = fills ? (place_behind - 2'd2) : place_behind;
   wire next_place = place_in_line[0];
@@ -80,16 +80,15 @@ module contact_afu_packer (
   wire [3:0] enters_1_soon = carried[1] ? {1'b0, first_place_one_hot, 1'b0} : 4'd0;
   wire [3:0] enters_0_soon = carried[0] ? {2'd0, first_place_one_hot} : 4'd0;
   wire stores_0_copy_1_next = enters_1_soon[2] | empties_soon | enters_0_soon[0];
-  wire done_next = ~start & (all_seen & ~place & ~went & ~comes) & ~line_valid;
+  wire done_next = ~start & (all_emerged & ~place & ~went & ~comes) & ~line_valid;
   wire contact_here_0 = contact_0 & leaves_here[0];
   wire contact_here_1 = contact_1 & leaves_here[1];
   wire invalid_here_0 = invalid_0 & leaves_here[0];
   wire invalid_here_1 = invalid_1 & leaves_here[1];
-  wire some_invalid = invalid_here_0 | invalid_here_1;
+  wire [1:0] group = leaves_now[1] ? 2'd2 : leaves_now[0] ? 2'd1 : 2'd0;
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
-    count_here <= count;
     line <= {
       enters_1_place_1_copy_1 ? entering_1[255:128] : enters_0_place_1_copy_1 ? entering_0[255:128] : 128'd0,
       enters_1_place_1_copy_0 ? entering_1[127:0] : enters_0_place_1_copy_0 ? entering_0[127:0] : 128'd0,
@@ -109,6 +108,8 @@ module contact_afu_packer (
     empties_soon <= empties;
     first_place <= place;
     carried <= leaves_now;
+    emerged_before <= emerged;
+    first_invalid_lane <= invalid_here_0 ? 1'b0 : 1'b1;
   end
   always @(posedge clk) begin
     if (rst) begin
@@ -117,9 +118,6 @@ module contact_afu_packer (
       went <= 1'b0;
       filled_here <= 1'b0;
       place <= 1'b0;
-      all_seen <= 1'b0;
-      emerged <= 32'd0;
-      group_here <= 2'd0;
       done <= 1'b0;
       contact_count <= 32'd0;
       contacts_now <= 2'd0;
@@ -127,16 +125,16 @@ module contact_afu_packer (
       invalid_count <= 32'd0;
       invalid_now <= 2'd0;
       first_invalid_pair <= 32'hffffffff;
+      some_invalid <= 1'b0;
       none_invalid <= 1'b1;
+      emerged <= 32'd0;
+      group_here <= 2'd0;
     end else begin
       line_valid <= ~start & comes;
       comes <= ~start & went;
       went <= ~start & (fills | flushes);
       filled_here <= filled;
       place <= start_or_flushes ? 1'b0 : next_place;
-      all_seen <= ~start & (emerged == count_here);
-      emerged <= start ? 32'd0 : (emerged + {30'd0, group_here});
-      group_here <= group;
       done <= done_next;
       contact_count <= start ? 32'd0 : (contact_count + {30'd0, contacts_now});
       contacts_now <= {1'b0, contact_here_0} + {1'b0, contact_here_1};
@@ -145,9 +143,12 @@ module contact_afu_packer (
       invalid_now <= {1'b0, invalid_here_0} + {1'b0, invalid_here_1};
       first_invalid_pair <=
           start                         ? 32'hffffffff :
-          (some_invalid & none_invalid) ? (invalid_here_0 ? emerged : (emerged + 32'd1)) :
+          (some_invalid & none_invalid) ? (emerged_before + {31'd0, first_invalid_lane}) :
           first_invalid_pair;
+      some_invalid <= invalid_here_0 | invalid_here_1;
       none_invalid <= start | (none_invalid & ~some_invalid);
+      emerged <= start ? 32'd0 : (emerged + {30'd0, group_here});
+      group_here <= group;
     end
   end
   (* keep = "true" *) always @(posedge clk) begin

@@ -74,27 +74,28 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let takes_values = (start & !keeps_values).named("takes_values");
 
     // The job is held from its start; everything downstream begins one cycle later. The addresses are wide, so they
-    // are loaded in every cycle without a job and do not depend on `start`.
+    // are loaded in every cycle without a job and do not depend on `start`. So are numbers that are read only as a job
+    // begins.
     let job_source = graph.data_register("job_source", ADDRESS_BITS);
     job_source.next_if(!keeps_addresses, source);
     let job_destination = graph.data_register("job_destination", ADDRESS_BITS);
     job_destination.next_if(!keeps_addresses, destination);
-    let job_count = graph.register("job_count", COUNT_BITS, 0);
-    job_count.next_if(takes_values, count);
     let job_epoch = graph.register("job_epoch", EPOCH_BITS, 0);
     job_epoch.next_if(takes_values, epoch);
     let job_watchdog = graph.register("job_watchdog", COUNT_BITS, 0);
     let has_watchdog = graph.register("has_watchdog", 1, 0);
-    has_watchdog.next(accept.select(watchdog.any(), *has_watchdog | *draining));
+    // A job without a watchdog that is to end gets one.
+    let needs_watchdog = (*draining & !*has_watchdog).registered("needs_watchdog");
+    has_watchdog.next(accept.select(watchdog.any(), *has_watchdog | needs_watchdog));
     let drain_cycles = watchdog.same(u128::from(DRAIN_CYCLES));
-    job_watchdog.next_if(takes_values | (*draining & !*has_watchdog), draining.select(drain_cycles, watchdog));
+    job_watchdog.next_if(!keeps_values | needs_watchdog, needs_watchdog.select(drain_cycles, watchdog));
     let takes_spheres = spec.config.input == Input::Spheres;
     let (lines, has_unknown_mode, is_too_large) = match &job.others {
         Some(port) => spheres(&graph, spec, [takes_values, count, mode], port.input(&graph)),
         None => (pairs(spec, count), mode.any(), graph.constant(1, 0)),
     };
     let job_lines = graph.register("job_lines", COUNT_BITS, 0);
-    job_lines.next_if(takes_values, lines);
+    job_lines.next_if(!keeps_values, lines);
 
     let stopping = graph.register("cycles_draining", CYCLES_TO_STOP.ilog2(), 0);
     let stopped = stopping.all().named("stopped");
@@ -108,8 +109,8 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let restarts = (quiet | !busy | stops).named("silence_restarts");
     silence.next(restarts.select(silence.same(0), silence.plus(1)));
     // It is compared one cycle before it is used: it will be above the watchdog's cycles.
-    let is_over = (!restarts & silence.at_least(*job_watchdog)).registered("silence_is_over");
-    let expires = (busy & !quiet & *has_watchdog & is_over).named("expires");
+    let is_over = (!restarts & *has_watchdog & silence.at_least(*job_watchdog)).registered("silence_is_over");
+    let expires = (busy & !quiet & is_over).named("expires");
     let expired = expires.registered("expired");
 
     // The end.
@@ -166,7 +167,7 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
         // The room for results in memory, for the dispatcher.
         let lines = port.input(&graph);
         let job_lines = graph.register("job_destination_lines", COUNT_BITS, 0);
-        job_lines.next_if(takes_values, lines);
+        job_lines.next_if(!keeps_values, lines);
         graph.output("job_destination_lines", job_lines.value());
     }
     let ended = gives_up.select(error.same(JobError::Watchdog.code().into()), ended).named("ended");
@@ -195,7 +196,6 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     graph.output("drops_requests", drops.value());
     graph.output("job_source", job_source.value());
     graph.output("job_destination", job_destination.value());
-    graph.output("job_count", job_count.value());
     graph.output("job_epoch", job_epoch.value());
     graph.output("lines", job_lines.value());
     if spec.config.input == Input::Direct {
@@ -237,9 +237,11 @@ fn spheres<'g>(
         register.next_if(takes, value);
         graph.output(name, register.value());
     }
-    let job_others = graph.register("job_others", COUNT_BITS, 0);
-    job_others.next_if(takes, others);
-    graph.output("job_others", job_others.value());
+    for (name, value) in [("job_count", count), ("job_others", others)] {
+        let register = graph.register(name, COUNT_BITS, 0);
+        register.next_if(takes, value);
+        graph.output(name, register.value());
+    }
     let exceeds = |spheres: Signal<'g>, most: u32| spheres.greater_than(spheres.same(most.into()));
     let is_too_large =
         (!keeps & exceeds(count, spec.config.search.table)) | (has_others & exceeds(others, MOST_OTHERS));

@@ -2,7 +2,8 @@
 //! places when it leaves for memory. If only hits are written, a pair without contact frees its place as soon as the
 //! decision is known, and a contact when it leaves the backlog; with `--decide`, when no pair before it is needed.
 //!
-//! It also knows when the delay lines beside the SCPUs are filled, before which no job begins.
+//! It also knows when all pairs of the job have left the slots, and when the delay lines beside the SCPUs are filled,
+//! before which no job begins.
 
 use std::sync::Arc;
 
@@ -33,6 +34,7 @@ pub(super) fn credits(spec: &Spec, capacity: u32, slot_latency: u32) -> Result<A
     let scpus = graph.input("scpus", SCPU_BITS);
     let entered = graph.input("entered", spec.group_bits());
     let emerged = graph.input("emerged", spec.group_bits());
+    let all_given = graph.input("all_given", 1);
     let freed = match spec.config.results {
         Results::All => graph.input("line_left", 1),
         Results::Hits => graph.input("places_freed", freed_bits(spec, capacity)),
@@ -62,7 +64,9 @@ pub(super) fn credits(spec: &Spec, capacity: u32, slot_latency: u32) -> Result<A
     let inside = graph.register("pairs_inside", room_bits, 0);
     let emerged = emerged.gate(*filled).registered("emerged_now");
     inside.next(inside.value() + entered.extend(room_bits) - emerged.extend(room_bits));
-    graph.output("none_inside", (!inside.any() & !entered.any()).registered("none_inside"));
+    let is_empty = (!inside.any() & !entered.any()).named("is_empty");
+    graph.output("none_inside", is_empty.registered("none_inside"));
+    graph.output("all_emerged", (!start & all_given & is_empty).registered("all_emerged"));
     graph.output("filled", filled.value());
     graph.finish()
 }

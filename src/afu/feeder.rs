@@ -140,13 +140,20 @@ pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
         before.registered(&if is_last { "carries".to_owned() } else { format!("carries_rank_{rank}") })
     });
     let targets = targets(&graph, start, scpus, group, lanes);
+    // No pair of the job is left to give. This is known many cycles before the last pair leaves the slots, except for a
+    // job without lines, which is known as it begins. In the cycle after that, the flags do not know the lines yet.
+    let some_left = (*in_hand | line_ready | coming.some_left).named("some_left");
+    let all_given = graph.register("all_given", 1, 0);
+    let began = start.registered("began");
+    all_given.next(start.select(!lines.any(), (*all_given | !began) & !some_left));
     graph.output("entered", group);
+    graph.output("all_given", all_given.value());
     graph.output("carries", carries);
     graph.output("targets", targets.delay(RANKS_TO_GROUP - 1).named("targets"));
     graph.output("pairs", aligned.delay(1).named("pairs"));
     graph.output("head", head.value());
     graph.output("taken", taken);
-    let waits = (run & (*in_hand | line_ready | coming.some_left)).named("waits");
+    let waits = (run & some_left).named("waits");
     graph.output("waits_for_input", (waits & !*in_hand).delay(1));
     graph.output("waits_for_output", (waits & *in_hand & !may_enter).delay(1));
     graph.finish()

@@ -7,7 +7,7 @@ use crate::config::Results;
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
 use super::gather::{self, gather};
-use super::{COUNT_BITS, Spec, status};
+use super::{Spec, status};
 
 /// Cycles from the records of a group to the line that they fill.
 pub(super) fn cycles_to_line(spec: &Spec) -> u32 {
@@ -45,7 +45,7 @@ fn of_all(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let (lanes, record_bits) = (spec.lanes(), spec.layout().contact_bits());
 
     let start = graph.input("start", 1);
-    let count = graph.input("count", COUNT_BITS);
+    let all_emerged = graph.input("all_emerged", 1);
     let results = status::results(&graph, lanes);
     let mut records = Vec::new();
     let mut contacts = Vec::new();
@@ -56,8 +56,8 @@ fn of_all(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
         invalids.push(results.of(lane, "invalid"));
     }
     let group = results.group.registered("group_here");
-    let (emerged, all_out) = status::emerged(&graph, start, group, count);
-    fill(&graph, spec, start, results.leaves, records, all_out);
+    let emerged = status::emerged(&graph, start, group);
+    fill(&graph, spec, start, results.leaves, records, all_emerged);
     status::count(&graph, start, emerged, &contacts, &invalids);
     graph.finish()
 }

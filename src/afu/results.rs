@@ -60,11 +60,11 @@ pub(super) struct Parts {
     resolver: Option<[Arc<Module>; 2]>,
 }
 
-/// What the first of them gets: the beginning of a job, the number of its pairs, whether the delay lines are filled,
-/// and the slots' outputs by name, which arrive one cycle after `leaves` says on which lanes.
+/// What the first of them gets: the beginning of a job, whether all its pairs have left the slots, whether the delay
+/// lines are filled, and the slots' outputs by name, which arrive one cycle after `leaves` says on which lanes.
 pub(super) struct Results<'a, 'g> {
     pub(super) begin: Signal<'g>,
-    pub(super) count: Signal<'g>,
+    pub(super) all_emerged: Signal<'g>,
     pub(super) filled: Signal<'g>,
     pub(super) leaves: Signal<'g>,
     pub(super) lanes: &'a [(String, Signal<'g>)],
@@ -120,7 +120,8 @@ impl Parts {
         of_hits: Option<OfHits<'g>>,
     ) -> Packed<'g> {
         let start = ("start", results.begin);
-        let mut inputs = vec![start, ("count", results.count), ("filled", results.filled), ("leaves", results.leaves)];
+        let mut inputs = vec![start, ("all_emerged", results.all_emerged)];
+        inputs.extend([("filled", results.filled), ("leaves", results.leaves)]);
         inputs.extend(results.lanes.iter().map(|(name, signal)| (name.as_str(), *signal)));
         let (Some([sieve, backlog]), Some(OfHits { run, accepts, enters, pairs })) = (&self.before, of_hits) else {
             let packer = graph.instance("packer", &self.packer, &inputs);

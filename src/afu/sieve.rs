@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
-use super::{COUNT_BITS, Spec, status};
+use super::{Spec, status};
 
 /// A contact with the number of lanes that it still has to move.
 #[derive(Clone, Copy)]
@@ -28,7 +28,7 @@ pub(super) fn sieve(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let (lanes, group_bits, result_bits) = (spec.lanes(), spec.group_bits(), spec.layout().result_bits());
 
     let start = graph.input("start", 1);
-    let count = graph.input("count", COUNT_BITS);
+    let all_emerged = graph.input("all_emerged", 1);
     let results = status::results(&graph, lanes);
     let group = results.group.registered("group_here");
     let mut records = Vec::new();
@@ -41,7 +41,7 @@ pub(super) fn sieve(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
         contacts.push(results.of(lane, "contact"));
         invalids.push(results.of(lane, "invalid"));
     }
-    let (emerged, all_seen) = status::emerged(&graph, start, group, count);
+    let emerged = status::emerged(&graph, start, group);
 
     // Each contact moves by the number of lanes before it without a contact.
     let steps = lanes.ilog2();
@@ -83,7 +83,7 @@ pub(super) fn sieve(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     } else {
         graph.output("dropped", (group - hits).gate(!start).registered("dropped_pairs"));
     }
-    graph.output("all_out", all_seen & !on_its_way);
+    graph.output("all_out", all_emerged & !on_its_way);
     status::count(&graph, start, emerged, &contacts, &invalids);
     graph.finish()
 }

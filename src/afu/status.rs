@@ -38,19 +38,11 @@ pub(super) fn number<'g>(graph: &'g Graph, lanes: Signal<'g>) -> Signal<'g> {
     count.named("group")
 }
 
-/// The number of pairs that left before this cycle's `group` since `start`, and a bit that is set if all `count` had
-/// left one cycle ago.
-pub(super) fn emerged<'g>(
-    graph: &'g Graph,
-    start: Signal<'g>,
-    group: Signal<'g>,
-    count: Signal<'g>,
-) -> (Signal<'g>, Signal<'g>) {
-    // A job's count stays, so a copy of it may be a cycle late.
-    let count = count.delay(1).named("count_here");
+/// The number of pairs that left before this cycle's `group` since `start`.
+pub(super) fn emerged<'g>(graph: &'g Graph, start: Signal<'g>, group: Signal<'g>) -> Signal<'g> {
     let emerged = graph.register("emerged", COUNT_BITS, 0);
     emerged.next(start.select(emerged.same(0), emerged.value() + group.extend(COUNT_BITS)));
-    (emerged.value(), (!start & emerged.equals(count)).registered("all_seen"))
+    emerged.value()
 }
 
 /// Counts contacts and invalid pairs, as the outputs `contacts`, `invalid` and `first_invalid`. `emerged` is the number
@@ -70,12 +62,17 @@ pub(super) fn count<'g>(
         let now = ones(graph, bits).registered(name).extend(COUNT_BITS);
         count.next(start.select(count.same(0), count.value() + now));
     }
+    // The first invalid lane is found before its number is added, so all lanes share one sum.
     let none_yet = graph.register("none_invalid", 1, 1);
-    let mut first = emerged.plus(u128::from(lanes - 1));
-    for lane in (0..lanes - 1).rev() {
-        first = invalids[lane as usize].select(emerged.plus(u128::from(lane)), first);
+    let mut first = emerged.delay(1).named("emerged_before");
+    if lanes > 1 {
+        let of_lane = |lane: u32| graph.constant(lanes.ilog2(), lane.into());
+        let lane = (0..lanes - 1)
+            .rev()
+            .fold(of_lane(lanes - 1), |later, lane| invalids[lane as usize].select(of_lane(lane), later));
+        first = first + lane.delay(1).named("first_invalid_lane").extend(COUNT_BITS);
     }
-    let some = invalids.iter().fold(graph.constant(1, 0), |any, bit| any | *bit).named("some_invalid");
+    let some = invalids.iter().fold(graph.constant(1, 0), |any, bit| any | *bit).registered("some_invalid");
     none_yet.next(start | (*none_yet & !some));
     let updated = (some & *none_yet).select(first, *first_invalid);
     first_invalid.next(start.select(first_invalid.same(u128::from(u32::MAX)), updated));

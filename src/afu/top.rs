@@ -74,7 +74,8 @@ pub(super) fn line_top(
     } else {
         wire("line_left", 1)
     };
-    let told_to_credits = vec![wire("entered", spec.group_bits()), wire("emerged", spec.group_bits()), freed];
+    let told_to_credits =
+        vec![wire("entered", spec.group_bits()), wire("emerged", spec.group_bits()), wire("all_given", 1), freed];
     let (_, may_enter) = wire("may_enter", 1);
     let (_, taken) = wire("line_taken", 1);
     let (_, head) = wire("line_place", spec.max_outstanding.ilog2());
@@ -141,7 +142,7 @@ pub(super) fn line_top(
     let lane_outputs: Vec<_> = passed.into_iter().filter(|(name, _)| name.contains('_')).collect();
     let all = Results {
         begin: begin("packer"),
-        count: control.output("job_count"),
+        all_emerged: credits.output("all_emerged"),
         filled: credits.output("filled"),
         leaves,
         lanes: &lane_outputs,
@@ -169,7 +170,7 @@ pub(super) fn line_top(
             "packer_done" => packer.output("done"),
             "dispatched" => dispatcher.output("empty"),
             "none_inside" | "filled" => credits.output(name),
-            "waits_for_input" | "waits_for_output" | "entered" => feeder.output(name),
+            "waits_for_input" | "waits_for_output" | "entered" | "all_given" => feeder.output(name),
             "emerged" => status::number(&graph, leaves),
             "places_freed" => packed_results.places_freed.unwrap_or(leaves),
             _ => match name.split_once('_') {

@@ -46,11 +46,11 @@ module credits (
   (* hierconn *) wire                       \dut.control.filled_heard ;
   (* hierconn *) wire                       \dut.control.waits_to_begin ;
   (* hierconn *) wire                       \dut.control.completes ;
-  (* hierconn *) wire [31:0]                \dut.control.job_count ;
   (* hierconn *) wire [31:0]                \dut.control.job_lines ;
   (* hierconn *) wire                       \dut.control.last_place ;
   (* hierconn *) wire                       \dut.credits.may_enter ;
   (* hierconn *) wire                       \dut.credits.filled ;
+  (* hierconn *) wire                       \dut.credits.all_emerged ;
   (* hierconn *) wire [ROOM_BITS-1:0]       \dut.credits.room ;
   (* hierconn *) wire [ROOM_BITS-1:0]       \dut.credits.room_change ;
   (* hierconn *) wire [ROOM_BITS-1:0]       \dut.credits.pairs_inside ;
@@ -121,6 +121,9 @@ module credits (
   reg begun = 1'b0;
   // The job began one cycle ago; the feeder's flags know its lines one cycle later.
   reg began;
+  // The number of the job's pairs, and whether all of them had come out one cycle ago.
+  reg [31:0] job_count;
+  reg all_out;
   // Whether a job ran one cycle ago, two, three.
   reg [2:0] ran = 3'd0;
   reg completed = 1'b0;
@@ -129,6 +132,8 @@ module credits (
     was_reset <= rst;
     begun <= ~rst & (begun | \dut.control.begin_job );
     began <= \dut.control.begin_job ;
+    if (start & ~busy) job_count <= count;
+    all_out <= ~\dut.control.begin_job & emerged == job_count;
     ran <= rst ? 3'd0 : {ran[1:0], \dut.control.run };
     completed <= \dut.control.completes & ~rst;
     ranks <= rst ? {2 * RANKS + 2{1'b0}} : {ranks[2*RANKS-1:0], \dut.feeder.entered };
@@ -176,9 +181,8 @@ module credits (
     begins_rested: assert (~\dut.control.begin_job | ~ran[0]);
     begins_empty: assert (~\dut.control.begin_job | (busy & counted_inside == 8'd0 & \dut.feeder.entered == 2'd0));
     idle_is_empty: assert (busy | (counted_inside == 8'd0 & \dut.feeder.entered == 2'd0));
-    lines_are_right: assert (~(begun | \dut.control.begin_job | \dut.control.waits_to_begin )
-      | (\dut.control.job_lines == {1'b0, \dut.control.job_count [31:1]} + {31'd0, \dut.control.job_count [0]}
-        & \dut.control.last_place == ~\dut.control.job_count [0]));
+    lines_are_right: assert (~busy | \dut.control.job_lines == {1'b0, job_count[31:1]} + {31'd0, job_count[0]});
+    last_is_right: assert (~(begun | busy) | \dut.control.last_place == ~job_count[0]);
     takes_a_line: assert (\dut.feeder.lines_waiting <= 3'd4
       & \dut.feeder.some_come == (\dut.feeder.lines_waiting != {2'd0, \dut.feeder.lines_left_step })
       & (\dut.feeder.line_ready | ~\dut.feeder.two_lines_ready )
@@ -199,7 +203,8 @@ module credits (
       & \dut.feeder.holds_1 == (\dut.feeder.last & ~\dut.feeder.place )));
     only_last_is_short: assert (~\dut.feeder.in_hand | \dut.feeder.last | lines_left == 33'd0);
     each_once: assert (to_give + {26'd0, inside} + {32'd0, \dut.feeder.entered } + {32'd0, uncounted} + {2'd0, emerged}
-      == {2'd0, \dut.control.job_count });
+      == {2'd0, job_count});
+    all_come_out: assert (\dut.credits.all_emerged == all_out);
     room_is_seen: assert (~\dut.credits.may_enter | \dut.credits.room >= 8);
     never_negative: assert (\dut.feeder.entered <= next_room);
     lines_fit: assert (\dut.dispatcher.stored + gathered <= `LINES);
@@ -231,7 +236,7 @@ module credits (
   wire [ROOM_BITS-1:0] leaving = {1'b0, \dut.dispatcher.stored } + \dut.packer.went + \dut.packer.comes
     + \dut.packer.line_valid ;
   always @* if (begun & ~\dut.control.begin_job & ~rst) begin
-    last_line_once: assert (~flushed | (emerged == \dut.control.job_count & ~\dut.packer.place ));
+    last_line_once: assert (~flushed | (emerged == job_count & ~\dut.packer.place ));
     places_add_up: assert ({4'd0, next_room} + inside + {7'd0, \dut.packer.place } + {3'd0, leaving, 1'b0}
       == CAPACITY + {7'd0, flushed});
     fits: assert (leaving - {3'd0, \dut.dispatcher.line_left } <= `LINES);

@@ -100,14 +100,8 @@ enum Controller {
 /// File, left-hand side of the assignment, number of the fault from 1, and the expression assigned then.
 pub type Planted = (&'static str, &'static str, u32, &'static str);
 
-const FAULTS: [Planted; 8] = [
+const FAULTS: [Planted; 7] = [
     ("contact_afu_control.v", "assign lines = ", Controller::LastPairDropped as u32, "job_lines - 32'd1"),
-    (
-        "contact_afu_packer.v",
-        "all_seen <= ~start",
-        Controller::LastPairDropped as u32,
-        "~start & (emerged == (count_here - 32'd2))",
-    ),
     ("contact_afu_packer.v", "entering_0 <= ", Controller::LanesSwapped as u32, "record_1"),
     ("contact_afu_packer.v", "entering_1 <= ", Controller::LanesSwapped as u32, "record_0"),
     ("contact_afu_dispatcher.v", "idle <= ~|outstanding", Controller::DoneEarly as u32, "~wr_req_valid"),

@@ -105,7 +105,13 @@ const JOB_SIEVE: Rows = &[
         31,
         "invalid_counted",
     ),
-    ("the wrong invalid pair", "(invalid_here_0 ? emerged : number_1)", "emerged", 31, "first_is_right"),
+    (
+        "the wrong invalid pair",
+        "(emerged_before + {31'd0, first_invalid_lane})",
+        "emerged_before",
+        31,
+        "first_is_right",
+    ),
 ];
 
 const JOB_CONTROL: Rows = &[

@@ -83,6 +83,7 @@ const CONTROL: Rows = &[
         2,
         "lines_are_right",
     ),
+    ("the last line is full", "last_place <= count[0] - 1'b1;", "last_place <= 1'b1;", 2, "last_is_right"),
 ];
 
 const FEEDER: Rows = &[
@@ -120,6 +121,7 @@ const FEEDER: Rows = &[
         "knows_the_last",
     ),
     ("a short line holds two", "next_last >= 1'b1", "1'b1", 19, "knows_what_it_holds"),
+    ("a job with lines has no pairs", "all_given <= start ? ~|lines : ", "all_given <= start | ", 10, "all_come_out"),
 ];
 
 const CREDITS: Rows = &[
@@ -150,6 +152,13 @@ const CREDITS: Rows = &[
         "(line_left ? 6'd2 : 6'd0) - {1'b0, entered, 3'd0}",
         22,
         "never_negative",
+    ),
+    (
+        "a job is complete with pairs inside",
+        "all_emerged <= ~start & all_given & is_empty;",
+        "all_emerged <= ~start & all_given;",
+        22,
+        "all_come_out",
     ),
 ];
 
@@ -254,7 +263,7 @@ const PORT_PACKER: Rows = &[
         40,
         "done_invalid",
     ),
-    ("the wrong invalid pair", "(invalid_here_0 ? emerged : (emerged + 32'd1))", "emerged", 40, "done_first"),
+    ("the wrong invalid pair", "(emerged_before + {31'd0, first_invalid_lane})", "emerged_before", 40, "done_first"),
 ];
 
 const ANY_COLLECTOR: Rows = &[(
