@@ -11,7 +11,7 @@ use super::counter::{later, up_down};
 use super::lines::{Access, CYCLES_TO_WORD, line_memory};
 use super::slot::{self, slot};
 use super::{COUNT_BITS, SCPU_BITS, Spec, packer, status, wide};
-use crate::hdl::{BuildErrors, Graph, Instantiated, Module, Signal};
+use crate::hdl::{BuildErrors, Graph, Instantiated, Module, Signal, delay_block};
 
 /// Words of a block memory.
 const MEMORY_DEPTH: u32 = 512;
@@ -152,7 +152,12 @@ pub(super) fn resolve<'g>(
         let passed = slot::row(graph, "scpu", &slot, units, passing);
         passed.into_iter().find(|(name, _)| name == "record_0").map_or(pair, |(_, record)| record)
     };
-    let record = contact.concat(number.delay(latency).named("number_then")).extend(spec.layout().contact_bits());
+    // Each hit's number waits beside its SCPU: in a block memory, if the target has them.
+    let number_then = match delay_block(latency, number.width(), &spec.delays)? {
+        Some(block) => graph.instance("number_waits", &block, &[("value", number)]).output("delayed"),
+        None => number.delay(latency),
+    };
+    let record = contact.concat(number_then.named("number_then")).extend(spec.layout().contact_bits());
     // What was inside when a job was stopped does not come out in the next one.
     graph.output("comes", later(start, carries, latency, "resolving"));
     graph.output("record", record);
