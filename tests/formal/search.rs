@@ -76,9 +76,9 @@ impl Part {
     /// Macros that describe it to its harness.
     pub fn defines(self) -> &'static [&'static str] {
         match self {
-            Groups => &["STAGE_CYCLES=5", "FOUND=mask", "NUMBER=place[3:0]", "ABOUT_BITS=13", "ROW_AT=1"],
-            GroupRows => &["STAGE_CYCLES=5", "FOUND=mask", "NUMBER=place[3:0]", "ABOUT_BITS=17", "ROW_AT=5"],
-            Near => &["STAGE_CYCLES=6", "FOUND=spheres", "NUMBER=other[3:0]", "ABOUT_BITS=21", "ROW_AT=9", "NEAR"],
+            Groups => &["STAGE_CYCLES=6", "FOUND=mask", "NUMBER=place[3:0]", "ABOUT_BITS=13", "ROW_AT=1"],
+            GroupRows => &["STAGE_CYCLES=6", "FOUND=mask", "NUMBER=place[3:0]", "ABOUT_BITS=17", "ROW_AT=5"],
+            Near => &["STAGE_CYCLES=7", "FOUND=spheres", "NUMBER=other[3:0]", "ABOUT_BITS=21", "ROW_AT=9", "NEAR"],
             BoxPairs => &["STAGE_CYCLES=8", "FOUND={share_1,share_0}", "ABOUT_BITS=41", "ROW_AT=13", "BOX_PAIRS"],
             Decider => &["TO_ANSWER=12", "UNDECIDED=64"],
             Undecided => &["UNDECIDED=64"],

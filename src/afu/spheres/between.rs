@@ -1,6 +1,6 @@
 //! What goes from one stage of the search to the next one, through a queue.
 
-use super::{ROW, ROW_BITS, ROW_NUMBER_BITS, SLACK};
+use super::{ROW, ROW_NUMBER_BITS, SLACK};
 use crate::afu::queue::queue;
 use crate::hdl::{BuildErrors, Graph, Instantiated, Signal};
 
@@ -27,11 +27,6 @@ pub(super) fn stage_queue<'g>(
 /// last of its row.
 pub(super) fn parts<'g>(stage: &Instantiated<'g>, place: &[&str]) -> Vec<Signal<'g>> {
     ["row"].iter().chain(place).chain(&["mask", "last"]).map(|part| stage.output(part)).collect()
-}
-
-/// The number of the word that a group is in.
-pub(super) fn word_of(group: Signal<'_>, top_bits: u32) -> Signal<'_> {
-    group.extend(top_bits + ROW_BITS).drop_low(ROW_BITS)
 }
 
 /// What stands at the output of a queue between two stages.

@@ -16,6 +16,16 @@ use crate::hdl::{BuildErrors, Graph, Module, Signal};
 /// Steps that are on the way when the queue behind has no room left still fit into it.
 const _: () = assert!(cycles_to_nth(1) + CYCLES_TO_WORD + CYCLES_TO_MEET < SLACK);
 
+/// Cycles from a step to its places. All spheres of a row stand side by side if so many are compared.
+const fn cycles_to_places(sizes: &Sizes) -> u32 {
+    if sizes.places_bits() == 0 { 0 } else { cycles_to_nth(1) }
+}
+
+/// Cycles from a step to what comes out.
+pub(super) const fn cycles(sizes: &Sizes) -> u32 {
+    cycles_to_places(sizes) + CYCLES_TO_WORD + CYCLES_TO_MEET + 1
+}
+
 /// Builds the module `contact_afu_candidates`.
 ///
 /// A step takes some spheres of the row that is searched, 1 to 16 side by side: the next ones that are near the other
@@ -54,8 +64,8 @@ pub(super) fn candidates(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, Buil
 
     // The places of the next spheres; all of a row stand side by side if so many are compared.
     let is_row = sizes.places_bits() == 0;
-    let cycles_to_places = if is_row { 0 } else { cycles_to_nth(1) };
-    let cycles = cycles_to_places + CYCLES_TO_WORD + CYCLES_TO_MEET;
+    let cycles_to_places = cycles_to_places(sizes);
+    let cycles = cycles(sizes) - 1;
     let places = if is_row {
         (0..ROW).map(|place| graph.constant(ROW_BITS, place.into())).collect()
     } else {

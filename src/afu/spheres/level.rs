@@ -7,13 +7,15 @@ use super::bits::number;
 use super::bounds::{CYCLES_TO_MEET, meet};
 use super::store::{CYCLES_TO_WORD, Store, kept_boxes};
 use super::walk::{Item, walk};
-use super::{ROW, ROW_BITS, ROW_NUMBER_BITS, Sizes};
+use super::{ROW, ROW_BITS, ROW_NUMBER_BITS, SLACK, Sizes};
 use crate::afu::Spec;
 use crate::afu::counter::later;
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
-/// Cycles from a step to what it found.
-pub(super) const CYCLES: u32 = CYCLES_TO_WORD + CYCLES_TO_MEET + 1;
+/// Cycles from a step to what it found. The place of its boxes is registered, because many memories read it.
+pub(super) const CYCLES: u32 = 1 + CYCLES_TO_WORD + CYCLES_TO_MEET + 1;
+/// So many steps still fit into the queue behind when it has no room left.
+const _: () = assert!(CYCLES <= SLACK);
 
 /// Which level it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,31 +58,39 @@ pub(super) fn level(spec: &Spec, sizes: &Sizes, level: Level) -> Result<Arc<Modu
     let item = Item { valid: graph.input("item_valid", 1), mask: graph.input("item_mask", ROW), about };
     let walk = walk(&graph, start, &item, may_step);
 
-    // The word of a step.
+    // The boxes are written a cycle late, too. They are not read before that.
+    let column = graph.input("write_column", ROW_BITS);
+    let write = column.one_hot().gate(graph.input("write", 1)).registered("writes_column");
+    let write_box = graph.input("write_box", sizes.box_bits()).delay(1).named("written_box");
+    let row = walk.about.high(ROW_NUMBER_BITS).delay(1).named("row_in_hand");
+    let query = kept_boxes(&graph, spec, sizes, "query", row)?;
+    // The word of a step, if there are several.
     let low = number(walk.bit).named("word_in_item");
-    let word = match place {
+    let word = (index_bits > 0).then(|| match place {
         Some(_) => walk.about.slice(1, place_bits).concat(low),
         None => low.low(index_bits),
-    };
-    let word = word.named("word");
+    });
+    let word = word.map(|word| word.delay(1).named("word"));
+    let write_word = word.map(|_| graph.input("write_word", index_bits).delay(1).named("written_word"));
     let store = Store::new(spec, index_bits);
-    let column = graph.input("write_column", ROW_BITS);
-    let write = column.one_hot().gate(graph.input("write", 1)).named("writes_column");
-    let write_word = graph.input("write_word", index_bits);
-    let write_box = graph.input("write_box", sizes.box_bits());
-    let row = walk.about.high(ROW_NUMBER_BITS).named("row_in_hand");
-    let query = kept_boxes(&graph, spec, sizes, "query", row)?;
     let mut meets = Vec::new();
     for column in 0..ROW {
-        let name = format!("column_{column}");
-        let bounds = store.column(&graph, &name, [write.bit(column), write_word, write_box], word)?;
+        let (name, write) = (format!("column_{column}"), write.bit(column));
+        let bounds = match (word, write_word) {
+            (Some(word), Some(write_word)) => store.column(&graph, &name, [write, write_word, write_box], word)?,
+            // A register, which is as good as its word two cycles later: no box changes that is compared.
+            _ => {
+                let bounds = graph.data_register(&name, sizes.box_bits());
+                bounds.next_if(write, write_box);
+                bounds.value()
+            }
+        };
         meets.push(meet(bounds, query, &format!("meets_{column}")));
     }
     let meets = Signal::join(&meets.into_iter().rev().collect::<Vec<_>>());
 
     // Boxes behind the last one are not there yet.
-    let cycles = CYCLES - 1;
-    let word_then = word.delay(cycles).named("word_then");
+    let cycles = CYCLES - 2;
     let one_set = graph.input("one_set", 1);
     let last_row = one_set.select(row.low(sizes.row_bits), graph.input("table_last", sizes.row_bits));
     let limit = match level {
@@ -88,7 +98,9 @@ pub(super) fn level(spec: &Spec, sizes: &Sizes, level: Level) -> Result<Arc<Modu
         Level::Rows => last_row,
     };
     let limit = limit.delay(cycles).named("last_box");
-    let in_last = word_then.equals(limit.drop_low(ROW_BITS)).named("is_last_word");
+    let word_then = word.map(|word| word.delay(cycles).named("word_then"));
+    let in_last = word_then.map_or(graph.constant(1, 1), |word| word.equals(limit.drop_low(ROW_BITS)));
+    let in_last = in_last.named("is_last_word");
     let present: Vec<_> = (0..ROW)
         .rev()
         .map(|column| {
@@ -102,16 +114,16 @@ pub(super) fn level(spec: &Spec, sizes: &Sizes, level: Level) -> Result<Arc<Modu
         found = found | limit.low(ROW_BITS).one_hot().gate(one_set & in_last);
     }
     // A row that is compared with none has an item without a bit.
-    let stepped = later(start, walk.steps, cycles, "stepped");
-    let had_bit = walk.bit.any().delay(cycles).named("had_bit");
-    let ends = (walk.is_last & walk.about.bit(0)).delay(cycles).named("ends_row");
+    let stepped = later(start, walk.steps, CYCLES - 1, "stepped");
+    let had_bit = walk.bit.any().delay(CYCLES - 1).named("had_bit");
+    let ends = (walk.is_last & walk.about.bit(0)).delay(CYCLES - 1).named("ends_row");
     let found = found.gate(had_bit).named("found_in_word");
     let put = (stepped & (found.any() | ends)).named("puts");
     graph.output("takes", walk.takes);
     graph.output("put", (put & !start).registered("put"));
-    graph.output("row", row.delay(CYCLES).named("row"));
-    if level == Level::Rows || sizes.group_bits > ROW_BITS {
-        graph.output("place", word_then.delay(1).named("place"));
+    graph.output("row", row.delay(CYCLES - 1).named("row"));
+    if let Some(word) = word_then {
+        graph.output("place", word.delay(1).named("place"));
     }
     graph.output("mask", found.delay(1).named("mask"));
     graph.output("last", ends.delay(1).named("last"));

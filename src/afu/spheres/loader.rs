@@ -62,7 +62,8 @@ pub(super) fn loader(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, BuildErr
     let behind_row = more.select(fewer, left.same(0)).named("left_behind_row");
     let turns = (!any_left & has_others & !*second).named("turns_to_second_set");
     let first_left = keeps_table.select(others, spheres);
-    left.next_if(start | row_loaded | turns, start.select(first_left, turns.select(others, behind_row)));
+    let row_changes = (start | row_loaded | turns).named("row_changes");
+    left.next_if(row_changes, start.select(first_left, turns.select(others, behind_row)));
     second.next(start.select(keeps_table, *second | turns));
     let any_of_first = start.delay(1).named("counts_spheres").select(left.any(), any_left);
     let any_behind_row = more & !left.is(u128::from(ROW));
@@ -72,7 +73,7 @@ pub(super) fn loader(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, BuildErr
     let is_inside_row = goes.select(!column.all(), column.any()).named("goes_on_in_row");
     let is_searched = !has_others | *second | turns;
     may_go.next(start | is_inside_row | !is_searched | !inside.msb() | row_ends);
-    row.next_if(start | row_loaded | turns, (start | turns).select(row.same(0), row.plus(1)));
+    row.next_if(row_changes, (start | turns).select(row.same(0), row.plus(1)));
     let present: Vec<_> = (0..sizes.loaded)
         .zip(sizes.of_loaded("is_present"))
         .map(|(side, name)| {

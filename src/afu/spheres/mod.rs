@@ -58,7 +58,7 @@ struct Sizes {
     row_bits: u32,
     /// Bits of a group's number.
     group_bits: u32,
-    /// Bits of the number of a word of 16 groups.
+    /// Bits of the number of a word of 16 groups; 0 if there is one.
     top_bits: u32,
     /// Spheres whose boxes are compared with those of a row in a cycle.
     compared: u32,
@@ -94,7 +94,7 @@ impl Sizes {
             rule,
             row_bits: group_bits + ROW_BITS,
             group_bits,
-            top_bits: above(group_bits),
+            top_bits: group_bits.saturating_sub(ROW_BITS),
             compared: config.search.lanes / ROW,
             deciders: config.search.deciders,
             // Few lanes are slower than one sphere per cycle, and one decider has the spheres of all columns.
@@ -135,7 +135,7 @@ impl Sizes {
     }
 
     /// Bits of the places in their row of the spheres that are compared in a cycle; 0 if these are all.
-    fn places_bits(&self) -> u32 {
+    const fn places_bits(&self) -> u32 {
         if self.compared == ROW { 0 } else { self.compared * ROW_BITS }
     }
 

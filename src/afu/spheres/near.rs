@@ -12,10 +12,10 @@ use crate::afu::Spec;
 use crate::afu::counter::later;
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
-/// Cycles from a step to the spheres that it found.
-const CYCLES_TO_FIND: u32 = CYCLES_TO_WORD + CYCLES_TO_MEET;
+/// Cycles from a step to the spheres that it found. The place of its boxes is registered, because many memories read it.
+const CYCLES_TO_FIND: u32 = 1 + CYCLES_TO_WORD + CYCLES_TO_MEET;
 /// Cycles from a step to what comes out: the spheres, and how many steps they take.
-const CYCLES: u32 = CYCLES_TO_FIND + cycles_to_count(1) + 1;
+pub(super) const CYCLES: u32 = CYCLES_TO_FIND + cycles_to_count(1) + 1;
 /// So many steps still fit into the queue behind when it has no room left.
 const _: () = assert!(CYCLES <= SLACK);
 
@@ -48,13 +48,11 @@ pub(super) fn near(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, BuildError
     };
     let walk = walk(&graph, start, &item, may_step);
 
-    let other = walk.about.slice(1, sizes.group_bits).concat(number(walk.bit)).named("other_row");
-    let write = ["write", "write_row", "write_box"]
-        .into_iter()
-        .zip([1, sizes.row_bits, sizes.box_bits()])
-        .map(|(name, width)| graph.input(name, width))
-        .collect::<Vec<_>>();
-    let (write, write_row, write_box) = (write[0], write[1], write[2]);
+    let other = walk.about.slice(1, sizes.group_bits).concat(number(walk.bit)).delay(1).named("other_row");
+    // All boxes are written a cycle late, too. They are not read before that.
+    let write = graph.input("write", 1).registered("writes_around");
+    let write_row = graph.input("write_row", sizes.row_bits).delay(1).named("written_row");
+    let write_box = graph.input("write_box", sizes.box_bits()).delay(1).named("written_box");
     // Each row's box, and whether the row is one of those that are asked for.
     let side_bits = sides.ilog2();
     let arounds = Store::new(spec, sizes.row_bits - side_bits);
@@ -72,18 +70,19 @@ pub(super) fn near(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, BuildError
         }
     }
     // All boxes of the row that is searched, at once.
-    let row = walk.about.high(ROW_NUMBER_BITS).named("row_in_hand");
+    let row = walk.about.high(ROW_NUMBER_BITS).delay(1).named("row_in_hand");
     let kept = sizes.kept_bits;
     let column = graph.input("write_column", sizes.loaded_bits());
     let write_own = graph.input("write_own", 1);
-    let own_row = graph.input("write_own_row", ROW_NUMBER_BITS).low(kept);
-    let own_boxes = sizes.of_loaded("write_own_box");
-    let own_boxes: Vec<_> = own_boxes.iter().map(|name| graph.input(name, sizes.box_bits())).collect();
+    let own_row = graph.input("write_own_row", ROW_NUMBER_BITS).low(kept).delay(1).named("written_own_row");
+    let own_boxes = sizes.of_loaded("write_own_box").into_iter().zip(sizes.of_loaded("written_own_box"));
+    let own_boxes: Vec<_> =
+        own_boxes.map(|(input, name)| graph.input(&input, sizes.box_bits()).delay(1).named(&name)).collect();
     let store = Store::new(spec, kept);
     let mut own_boxes_now = Vec::new();
     for place in 0..ROW {
         let (is_loaded, side) = sizes.is_loaded(column, place);
-        let writes = [(is_loaded & write_own).named(&format!("writes_own_{place}")), own_row, own_boxes[side]];
+        let writes = [(is_loaded & write_own).registered(&format!("writes_own_{place}")), own_row, own_boxes[side]];
         own_boxes_now.push(store.column(&graph, &format!("own_{place}"), writes, row.low(kept))?);
     }
     let mut found = Vec::new();
@@ -109,8 +108,8 @@ pub(super) fn near(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, BuildError
     let rest = CYCLES - CYCLES_TO_FIND;
     graph.output("takes", walk.takes);
     graph.output("put", later(start, put, rest, "putting"));
-    graph.output("row", row.delay(CYCLES).named("row"));
-    graph.output("other", other.delay(CYCLES).named("other"));
+    graph.output("row", row.delay(CYCLES - 1).named("row"));
+    graph.output("other", other.delay(CYCLES - 1).named("other"));
     graph.output("spheres", found.delay(rest).named("spheres"));
     graph.output("mask", Signal::join(&turns).named("turns").delay(1).named("mask"));
     graph.output("last", ends.delay(rest).named("last"));

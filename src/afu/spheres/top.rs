@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::between::{Parts, named, parts, stage_queue, word_of};
+use super::between::{Parts, named, parts, stage_queue};
 use super::contacts::{Found, contacts, numbers};
 use super::level::{Level, level};
 use super::{LONG_QUEUE, QUEUE, ROW, ROW_BITS, Sizes, candidates, decider, hits, loader, near, rows};
@@ -141,9 +141,11 @@ pub(in crate::afu) fn spheres_top(
         ("item_mask", item.mask),
         ("write", rows.output("writes_group_box")),
         ("write_column", rows.output("group_box_group").extend(ROW_BITS.max(sizes.group_bits)).low(ROW_BITS)),
-        ("write_word", word_of(rows.output("group_box_group"), sizes.top_bits)),
         ("write_box", rows.output("group_box")),
     ];
+    if sizes.top_bits > 0 {
+        inputs.push(("write_word", rows.output("group_box_group").drop_low(ROW_BITS)));
+    }
     inputs.extend(queries);
     let groups = graph.instance("groups", &level(spec, &sizes, Level::Groups)?, &inputs);
     groups_takes.drive(groups.output("takes"));
@@ -155,7 +157,7 @@ pub(in crate::afu) fn spheres_top(
         start,
         ("group_queue", QUEUE),
         groups.output("put"),
-        &parts(&groups, if sizes.group_bits > ROW_BITS { &["place"] } else { &[] }),
+        &parts(&groups, if sizes.top_bits > 0 { &["place"] } else { &[] }),
         level_takes,
     )?;
     groups_may.drive(level_queue.output("has_room"));

@@ -37,8 +37,8 @@ const ORDER: Rows = &[
 ];
 
 const GROUPS: Rows = &[
-    ("a row's number comes early", "row <= row_line[delay_5_next];", "row <= row_line[delay_5];", 7, "in_order"),
-    ("a token leaves with each step", "is_last & about[0]}", "about[0]}", 8, "conserved"),
+    ("a row's number comes early", "row <= row_line[delay_5_next];", "row <= row_line[delay_5];", 8, "in_order"),
+    ("a token leaves with each step", "is_last & about[0]}", "about[0]}", 9, "conserved"),
     (
         "the same word is looked at again",
         "takes ? item_mask : rest;",
@@ -80,27 +80,27 @@ const GROUPS: Rows = &[
         "what is found right after another is lost",
         "put <= puts & ~start;",
         "put <= puts & ~put & ~start;",
-        8,
+        9,
         "each_step_once",
     ),
     (
         "only a step that finds something ends a row",
         "last <= ends_row;",
         "last <= ends_row & |found_in_word;",
-        7,
+        8,
         "token_is_last",
     ),
-    ("a row without words finds something", "had_bit <= had_bit_line[2];", "had_bit <= 1'b1;", 7, "none_without_bit"),
+    ("a row without words finds something", "had_bit <= had_bit_line[3];", "had_bit <= 1'b1;", 8, "none_without_bit"),
     (
         "the number of the next word",
         "word_then <= word_then_line[11:8];",
         "word_then <= word_then_line[7:4];",
-        7,
+        8,
         "bits_in_order",
     ),
 ];
 
-const NEAR: Rows = &[("a turn too few", "mask <= turns;", "mask <= {1'b0, turns[15:1]};", 8, "turns_are_right")];
+const NEAR: Rows = &[("a turn too few", "mask <= turns;", "mask <= {1'b0, turns[15:1]};", 9, "turns_are_right")];
 
 const BOX_PAIRS: Rows = &[
     ("a sphere is left out", "about <= {item_near,", "about <= {item_near[15:1], 1'b0,", 2, "near_in_hand"),

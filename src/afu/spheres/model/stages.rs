@@ -5,10 +5,10 @@ use std::collections::{HashMap, VecDeque};
 use super::item::{Item, STAGES};
 use super::port::Port;
 use super::takers::Takers;
-use crate::afu::spheres::{QUEUE, ROW, SLACK, Sizes};
+use crate::afu::spheres::{QUEUE, ROW, SLACK, Sizes, candidates, level, near};
 
-/// Cycles from a step to the queue behind it.
-const CYCLES_OF_A_STAGE: u64 = 6;
+/// Cycles in a queue, besides the two that an item takes here from its arrival to its first step.
+const CYCLES_IN_QUEUE: u32 = 1;
 /// Cycles from a line of spheres to their boxes, and from a complete row to the start of its search, together.
 const CYCLES_TO_SEARCH: u64 = 20;
 /// Cycles of a decision besides those of the kernel: memory, and two queues.
@@ -22,18 +22,23 @@ struct Stage {
     queue: VecDeque<Item>,
     in_hand: Option<(Item, usize)>,
     on_the_way: VecDeque<(u64, Item)>,
+    /// There was room in the queue behind it a cycle ago, which is what its steps go by.
+    had_room: bool,
+    /// Cycles from a step to its arrival behind it.
+    cycles: u32,
     steps: u64,
 }
 
 impl Stage {
     /// A cycle: a step, if there is room behind the stage.
     fn step(&mut self, now: u64, has_room: bool) {
+        let has_room = std::mem::replace(&mut self.had_room, has_room);
         if let Some((item, place)) = &mut self.in_hand
             && has_room
         {
             self.steps += 1;
             if let Some(put) = item.steps.get_mut(*place).and_then(Option::take) {
-                self.on_the_way.push_back((now + CYCLES_OF_A_STAGE, put));
+                self.on_the_way.push_back((now + u64::from(self.cycles), put));
             }
             *place += 1;
             if *place >= item.steps.len() {
@@ -75,7 +80,9 @@ pub(super) fn run(
     let (count, per_row) = (rows.len(), u64::from(ROW / sizes.loaded));
     let per_line = Port::PER_LINE / u64::from(sizes.loaded);
     let mut rows = rows.into_iter();
-    let mut stages: Vec<Stage> = STAGES.iter().map(|_| Stage::default()).collect();
+    let between = [level::CYCLES, level::CYCLES, near::CYCLES].map(|cycles| cycles + CYCLES_IN_QUEUE);
+    let cycles = between.into_iter().chain([candidates::cycles(sizes)]);
+    let mut stages: Vec<_> = cycles.map(|cycles| Stage { cycles, ..Stage::default() }).collect();
     let mut launches: VecDeque<u64> = VecDeque::new();
     let mut steps: VecDeque<Undecided> = VecDeque::new();
     let mut shares: Vec<VecDeque<(u64, u64)>> = vec![VecDeque::new(); sizes.deciders as usize];
