@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::bits::number;
 use super::bounds::{CYCLES_TO_MEET, meet};
-use super::store::{CYCLES_TO_WORD, Store, kept_boxes};
+use super::store::{COPIES, CYCLES_TO_WORD, Store, kept_boxes};
 use super::walk::{Item, walk};
 use super::{ROW, ROW_BITS, ROW_NUMBER_BITS, SLACK, Sizes};
 use crate::afu::Spec;
@@ -70,14 +70,19 @@ pub(super) fn level(spec: &Spec, sizes: &Sizes, level: Level) -> Result<Arc<Modu
         Some(_) => walk.about.slice(1, place_bits).concat(low),
         None => low.low(index_bits),
     });
-    let word = word.map(|word| word.delay(1).named("word"));
+    // Each copy is read by a quarter of the memories.
+    let words = word.map(|word| word.data_copies("word", COPIES));
+    let word = words.as_ref().map(|words| words[0]);
     let write_word = word.map(|_| graph.input("write_word", index_bits).delay(1).named("written_word"));
     let store = Store::new(spec, index_bits);
     let mut meets = Vec::new();
     for column in 0..ROW {
         let (name, write) = (format!("column_{column}"), write.bit(column));
-        let bounds = match (word, write_word) {
-            (Some(word), Some(write_word)) => store.column(&graph, &name, [write, write_word, write_box], word)?,
+        let bounds = match (&words, write_word) {
+            (Some(words), Some(write_word)) => {
+                let word = words[(column * COPIES / ROW) as usize];
+                store.column(&graph, &name, [write, write_word, write_box], word)?
+            }
             // A register, which is as good as its word two cycles later: no box changes that is compared.
             _ => {
                 let bounds = graph.data_register(&name, sizes.box_bits());

@@ -82,14 +82,15 @@ pub(super) fn loader(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, BuildErr
         })
         .collect();
 
-    // The line in the collector's memory.
+    // The line in the collector's memory, a cycle after its spheres are counted: the collector may be far away.
     let head = graph.register("head", slot_bits, 0);
-    head.next_if(start | line_ends, start.select(head.same(0), head.plus(1)));
-    let word = column.low(per_line_bits).delay(CYCLES_TO_WORD).named("word");
+    head.next_if(start | taken, start.select(head.same(0), head.plus(1)));
+    let to_line = 1 + CYCLES_TO_WORD;
+    let word = column.low(per_line_bits).delay(to_line).named("word");
     let together = sizes.loaded * SPHERE_BITS;
     let parts: Vec<_> = (0..per_line / sizes.loaded).map(|part| line.slice(part * together, together)).collect();
     let spheres_now = chosen("sphere", word.one_hot(), &parts).delay(1).named("spheres_now");
-    let to_unit = CYCLES_TO_WORD + 1;
+    let to_unit = to_line + 1;
     let cycles = to_unit + unit.latency;
     let mut invalid = Vec::new();
     for (side, present) in (0..sizes.loaded).zip(&present) {

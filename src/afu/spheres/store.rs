@@ -8,6 +8,8 @@ use crate::hdl::{BuildErrors, Graph, Signal};
 
 /// Cycles from a place to its word.
 pub(super) const CYCLES_TO_WORD: u32 = lines::CYCLES_TO_WORD;
+/// Registers with the same place, where all memories of a row's columns read at it.
+pub(super) const COPIES: u32 = 4;
 /// A deeper memory is one of block memories.
 const DEEPEST_IN_TABLES: u32 = 64;
 

@@ -10,7 +10,7 @@ use crate::afu::spheres::{QUEUE, ROW, SLACK, Sizes, candidates, level, near};
 /// Cycles in a queue, besides the two that an item takes here from its arrival to its first step.
 const CYCLES_IN_QUEUE: u32 = 1;
 /// Cycles from a line of spheres to their boxes, and from a complete row to the start of its search, together.
-const CYCLES_TO_SEARCH: u64 = 20;
+const CYCLES_TO_SEARCH: u64 = 21;
 /// Cycles of a decision besides those of the kernel: memory, and two queues.
 const CYCLES_AROUND_DECISION: u64 = 6;
 /// Cycles at the end of a job, from the last hit on.
