@@ -280,7 +280,7 @@ const LOADER: Rows = &[
         "a row that ends as another begins",
         "(row_begins ^ row_ends) ?",
         "(row_begins | row_ends) ?",
-        27,
+        28,
         "inside_is_right",
     ),
     ("every other row", "row_now + 12'd1", "row_now + 12'd2", 19, "row_is_right"),
@@ -307,7 +307,7 @@ const LOADER: Rows = &[
     ),
     ("an empty set has a row", "counts_spheres      ? |spheres_left", "counts_spheres      ? 1'b1", 5, "some_are_left"),
     ("a line of the job before", "line_waits <= ~start & some_wait;", "line_waits <= some_wait;", 8, "no_line_yet"),
-    ("the end before the last row", "set_ended & ~|rows_inside &", "set_ended &", 28, "all_are_out"),
+    ("the end before the last row", "set_ended & ~|rows_inside &", "set_ended &", 29, "all_are_out"),
 ];
 
 const ROWS: Rows = &[
@@ -315,21 +315,21 @@ const ROWS: Rows = &[
         "a row is launched as the next one",
         "launched_row <= group_row;",
         "launched_row <= complete_row;",
-        25,
+        26,
         "launched_in_order",
     ),
     (
         "a row is launched again and again",
         "{launching[0], row_of_search}",
         "{|launching, row_of_search}",
-        26,
+        27,
         "launched_once",
     ),
     (
         "a row is complete too early",
         "row_complete <= valid & &column & ~start",
         "row_complete <= valid & &column[3:1] & ~start",
-        25,
+        26,
         "conserved",
     ),
     ("a row is launched in each cycle", "{launching[0], row_of_search}", "2'd3", 19, "none_ends_early"),
