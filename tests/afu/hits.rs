@@ -78,8 +78,9 @@ fn deciders_give_the_same_hits_over_every_link() {
     }
 }
 
-/// Pairs of which one in eight touches take no more time with one decider and an SCPU that takes a pair every seven or
-/// eight cycles than with an SCPU that takes one every cycle; where all touch, the SCPU sets the pace, and none is lost.
+/// One pair in eight touches. These pairs take no more time with one decider and an SCPU that takes a pair every seven
+/// or eight cycles than with an SCPU that takes one every cycle. Where all touch, the SCPU sets the pace, and none is
+/// lost.
 #[test]
 fn one_decider_takes_a_pair_every_cycle() {
     let alone = hits(1, "e8f3z", WHOLE);

@@ -12,7 +12,7 @@ use crate::afu::Spec;
 use crate::afu::counter::later;
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
-/// Cycles from a step to the spheres that it found. The place of its boxes is registered, because many memories read it.
+/// Cycles from a step to the spheres that it found. The place of its boxes is registered: many memories read there.
 const CYCLES_TO_FIND: u32 = 1 + CYCLES_TO_WORD + CYCLES_TO_MEET;
 /// Cycles from a step to what comes out: the spheres, and how many steps they take.
 pub(super) const CYCLES: u32 = CYCLES_TO_FIND + cycles_to_count(1) + 1;
