@@ -1,5 +1,6 @@
 //! All combinations of numbers of SCPUs, counts of pairs, links and variants of SPL2; the AFU's writes and their order.
 
+use contact_afu::afu::shell::spl2;
 use contact_afu::afu::shell::spl2::map::{self, control, identity, latency, performance, scratch, status};
 use contact_afu::config::Input;
 use contact_afu::host::{HostError, Transport};
@@ -129,8 +130,8 @@ fn the_map_in_the_documentation_is_the_hardware_s() {
     let text = std::fs::read_to_string(page).unwrap();
     let (before, found) = text.split_once("\n## Map\n\n").expect("a section of that name");
     if std::env::var_os("UPDATE_EXPECT").is_some() {
-        std::fs::write(page, format!("{before}\n## Map\n\n{}", map::markdown(Input::Direct))).unwrap();
+        std::fs::write(page, format!("{before}\n## Map\n\n{}", spl2::markdown(Input::Direct))).unwrap();
     } else {
-        assert!(found == map::markdown(Input::Direct), "run this test again with UPDATE_EXPECT=1");
+        assert!(found == spl2::markdown(Input::Direct), "run this test again with UPDATE_EXPECT=1");
     }
 }

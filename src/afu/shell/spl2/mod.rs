@@ -1,9 +1,10 @@
 //! The shell of Intel HARP v1, as in the paper: the core behind SPL2's port, with the handshake in memory.
 //!
 //! `registers` answers CSR writes and `sequence` runs jobs. `transmit` passes requests to SPL's ports, and
-//! `acknowledge` returns write responses. [`map`] has the registers and lines.
+//! `acknowledge` returns write responses. [`map`] has the registers and lines, and `document` tells people about them.
 
 mod acknowledge;
+mod document;
 pub mod map;
 mod port;
 mod registers;
@@ -19,6 +20,7 @@ use crate::afu::port::{Ports, clock};
 use crate::afu::{Afu, Spec};
 use crate::config::Input;
 use crate::hdl::{BuildErrors, Module};
+pub use document::{job, markdown};
 pub(crate) use port::{SplInputs, SplOutputs};
 
 /// The shell.
@@ -61,7 +63,7 @@ impl ShellDesign for Spl2 {
 
     fn files(&self, afu: &Afu) -> Vec<(String, String)> {
         let (title, input) = (format!("# Registers and lines of `{}`", afu.top_name()), afu.spec().config.input);
-        vec![("REGISTERS.md".to_owned(), format!("{title}\n\n{}\n{}", map::markdown(input), map::job(input)))]
+        vec![("REGISTERS.md".to_owned(), format!("{title}\n\n{}\n{}", markdown(input), job(input)))]
     }
 }
 
