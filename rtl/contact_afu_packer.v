@@ -109,7 +109,7 @@ module contact_afu_packer (
     first_place <= place;
     carried <= leaves_now;
     emerged_before <= emerged;
-    first_invalid_lane <= invalid_here_0 ? 1'b0 : 1'b1;
+    first_invalid_lane <= ~invalid_here_0;
   end
   always @(posedge clk) begin
     if (rst) begin

@@ -31,6 +31,9 @@ pub(super) fn results(graph: &Graph, lanes: u32) -> Leaving<'_> {
 
 /// The number of lanes in use, which are the lowest.
 pub(super) fn number<'g>(graph: &'g Graph, lanes: Signal<'g>) -> Signal<'g> {
+    if lanes.width() == 1 {
+        return lanes;
+    }
     let bits = lanes.width().ilog2() + 1;
     let count = (0..lanes.width()).fold(graph.constant(bits, 0), |fewer, lane| {
         lanes.bit(lane).select(graph.constant(bits, u128::from(lane + 1)), fewer)

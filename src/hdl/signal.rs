@@ -271,6 +271,11 @@ impl<'g> Signal<'g> {
             None if yes.id == no.id => return yes,
             None => {}
         }
+        match (yes.width(), yes.as_constant(), no.as_constant()) {
+            (1, Some(1), Some(0)) => return self,
+            (1, Some(0), Some(1)) => return !self,
+            _ => {}
+        }
         self.graph.shared(Op::Mux, yes.width(), ids, place)
     }
 
