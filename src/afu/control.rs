@@ -74,8 +74,8 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let takes_values = (start & !keeps_values).named("takes_values");
 
     // The job is held from its start; everything downstream begins one cycle later. The addresses are wide, so they
-    // are loaded in every cycle without a job and do not depend on `start`. So are numbers that are read only as a job
-    // begins.
+    // are loaded in every cycle without a job and do not depend on `start`. So are numbers that
+    // matter only while a job runs.
     let job_source = graph.data_register("job_source", ADDRESS_BITS);
     job_source.next_if(!keeps_addresses, source);
     let job_destination = graph.data_register("job_destination", ADDRESS_BITS);
@@ -232,13 +232,10 @@ fn spheres<'g>(
     };
     let own = lines(count).gate(!keeps).named("lines_of_table");
     let of_others = lines(others).gate(has_others).named("lines_of_others");
-    for (name, value) in [("has_others", has_others), ("keeps_table", keeps)] {
-        let register = graph.register(name, 1, 0);
-        register.next_if(takes, value);
-        graph.output(name, register.value());
-    }
-    for (name, value) in [("job_count", count), ("job_others", others)] {
-        let register = graph.register(name, COUNT_BITS, 0);
+    for (name, value) in
+        [("has_others", has_others), ("keeps_table", keeps), ("job_count", count), ("job_others", others)]
+    {
+        let register = graph.register(name, value.width(), 0);
         register.next_if(takes, value);
         graph.output(name, register.value());
     }

@@ -16,7 +16,7 @@ use crate::hdl::{BuildErrors, Graph, Module, Signal};
 /// Steps that are on the way when the queue behind has no room left still fit into it.
 const _: () = assert!(cycles_to_nth(1) + CYCLES_TO_WORD + CYCLES_TO_MEET < SLACK);
 
-/// Cycles from a step to its places. All spheres of a row stand side by side if so many are compared.
+/// Cycles from a step to its places, which are known at once if all spheres of a row are compared.
 const fn cycles_to_places(sizes: &Sizes) -> u32 {
     if sizes.places_bits() == 0 { 0 } else { cycles_to_nth(1) }
 }

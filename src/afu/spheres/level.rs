@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::bits::number;
 use super::bounds::{CYCLES_TO_MEET, meet};
-use super::store::{COPIES, CYCLES_TO_WORD, Store, kept_boxes};
+use super::store::{CYCLES_TO_WORD, Places, Store, kept_boxes};
 use super::walk::{Item, walk};
 use super::{ROW, ROW_BITS, ROW_NUMBER_BITS, SLACK, Sizes};
 use crate::afu::Spec;
@@ -58,7 +58,7 @@ pub(super) fn level(spec: &Spec, sizes: &Sizes, level: Level) -> Result<Arc<Modu
     let item = Item { valid: graph.input("item_valid", 1), mask: graph.input("item_mask", ROW), about };
     let walk = walk(&graph, start, &item, may_step);
 
-    // The boxes are written a cycle late, too. They are not read before that.
+    // The boxes of columns are written a cycle late, too. They are not read before that.
     let column = graph.input("write_column", ROW_BITS);
     let write = column.one_hot().gate(graph.input("write", 1)).registered("writes_column");
     let write_box = graph.input("write_box", sizes.box_bits()).delay(1).named("written_box");
@@ -70,9 +70,8 @@ pub(super) fn level(spec: &Spec, sizes: &Sizes, level: Level) -> Result<Arc<Modu
         Some(_) => walk.about.slice(1, place_bits).concat(low),
         None => low.low(index_bits),
     });
-    // Each copy is read by a quarter of the memories.
-    let words = word.map(|word| word.data_copies("word", COPIES));
-    let word = words.as_ref().map(|words| words[0]);
+    let words = word.map(|word| Places::new(word, "word"));
+    let word = words.as_ref().map(|words| words.of(0));
     let write_word = word.map(|_| graph.input("write_word", index_bits).delay(1).named("written_word"));
     let store = Store::new(spec, index_bits);
     let mut meets = Vec::new();
@@ -80,8 +79,7 @@ pub(super) fn level(spec: &Spec, sizes: &Sizes, level: Level) -> Result<Arc<Modu
         let (name, write) = (format!("column_{column}"), write.bit(column));
         let bounds = match (&words, write_word) {
             (Some(words), Some(write_word)) => {
-                let word = words[(column * COPIES / ROW) as usize];
-                store.column(&graph, &name, [write, write_word, write_box], word)?
+                store.column(&graph, &name, [write, write_word, write_box], words.of(column))?
             }
             // A register, which is as good as its word two cycles later: no box changes that is compared.
             _ => {

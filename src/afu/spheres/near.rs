@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::bits::{every, number};
 use super::bounds::{CYCLES_TO_MEET, meet};
 use super::nth::{count_up_to_slices, cycles_to_count};
-use super::store::{COPIES, CYCLES_TO_WORD, Store};
+use super::store::{CYCLES_TO_WORD, Places, Store};
 use super::walk::{Item, walk};
 use super::{ROW, ROW_NUMBER_BITS, SLACK, Sizes};
 use crate::afu::Spec;
@@ -72,7 +72,7 @@ pub(super) fn near(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, BuildError
     // All boxes of the row that is searched, at once.
     let row = walk.about.high(ROW_NUMBER_BITS);
     let kept = sizes.kept_bits;
-    let places = row.low(kept).data_copies("row_in_hand", COPIES);
+    let own_place = Places::new(row.low(kept), "row_in_hand");
     let column = graph.input("write_column", sizes.loaded_bits());
     let write_own = graph.input("write_own", 1);
     let own_row = graph.input("write_own_row", ROW_NUMBER_BITS).low(kept).delay(1).named("written_own_row");
@@ -84,8 +84,7 @@ pub(super) fn near(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, BuildError
     for place in 0..ROW {
         let (is_loaded, side) = sizes.is_loaded(column, place);
         let writes = [(is_loaded & write_own).registered(&format!("writes_own_{place}")), own_row, own_boxes[side]];
-        let row = places[(place * COPIES / ROW) as usize];
-        own_boxes_now.push(store.column(&graph, &format!("own_{place}"), writes, row)?);
+        own_boxes_now.push(store.column(&graph, &format!("own_{place}"), writes, own_place.of(place))?);
     }
     let mut found = Vec::new();
     let mut turns = Vec::new();

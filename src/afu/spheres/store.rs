@@ -1,15 +1,15 @@
 //! Memories of the search, each a word two cycles after its place: in look-up tables if it is shallow, otherwise in
 //! block memory.
 
-use super::{ROW_NUMBER_BITS, Sizes};
+use super::{ROW, ROW_NUMBER_BITS, Sizes};
 use crate::afu::Spec;
 use crate::afu::lines::{self, Access, line_memory};
 use crate::hdl::{BuildErrors, Graph, Signal};
 
 /// Cycles from a place to its word.
 pub(super) const CYCLES_TO_WORD: u32 = lines::CYCLES_TO_WORD;
-/// Registers with the same place, where all memories of a row's columns read at it.
-pub(super) const COPIES: u32 = 4;
+/// Registers with the same place.
+const COPIES: u32 = 4;
 /// A deeper memory is one of block memories.
 const DEEPEST_IN_TABLES: u32 = 64;
 
@@ -27,6 +27,21 @@ pub(super) fn kept_boxes<'g>(
     let write_row = graph.input(&format!("write_{name}_row"), ROW_NUMBER_BITS).low(kept);
     let bounds = graph.input(&format!("write_{name}_box"), sizes.box_bits());
     Store::new(spec, kept).column(graph, &format!("{name}_boxes"), [write, write_row, bounds], row.low(kept))
+}
+
+/// The place at which the memories of a row's 16 columns read, in registers: one for every four columns.
+pub(super) struct Places<'g>(Vec<Signal<'g>>);
+
+impl<'g> Places<'g> {
+    /// The place of a cycle ago.
+    pub(super) fn new(place: Signal<'g>, name: &str) -> Self {
+        Self(place.data_copies(name, COPIES))
+    }
+
+    /// The place for a column.
+    pub(super) fn of(&self, column: u32) -> Signal<'g> {
+        self.0[(column * COPIES / ROW) as usize]
+    }
 }
 
 /// Memories of the same depth.
