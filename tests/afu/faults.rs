@@ -95,12 +95,14 @@ enum Controller {
     CreditsIgnored,
     /// Invalid pairs are counted in one lane only.
     HalfCounted,
+    /// All pairs are said to have come out when the last ones have entered.
+    EndsEarly,
 }
 
 /// File, left-hand side of the assignment, number of the fault from 1, and the expression assigned then.
 pub type Planted = (&'static str, &'static str, u32, &'static str);
 
-const FAULTS: [Planted; 7] = [
+const FAULTS: [Planted; 8] = [
     ("contact_afu_control.v", "assign lines = ", Controller::LastPairDropped as u32, "job_lines - 32'd1"),
     ("contact_afu_packer.v", "entering_0 <= ", Controller::LanesSwapped as u32, "record_1"),
     ("contact_afu_packer.v", "entering_1 <= ", Controller::LanesSwapped as u32, "record_0"),
@@ -108,6 +110,7 @@ const FAULTS: [Planted; 7] = [
     ("contact_afu_collector.v", "is_current <= rd_rsp_valid", Controller::EpochIgnored as u32, "rd_rsp_valid"),
     ("contact_afu_credits.v", "may_enter <= run", Controller::CreditsIgnored as u32, "run"),
     ("contact_afu_packer.v", "wire invalid_here_1 = ", Controller::HalfCounted as u32, "1'b0"),
+    ("contact_afu_credits.v", "all_emerged <= ~start", Controller::EndsEarly as u32, "~start & all_given"),
 ];
 
 pub const SELECTOR_BIT: u32 = 28;
@@ -153,6 +156,16 @@ fn faults_of_the_controller_are_found() {
     let crowded = run(Controller::CreditsIgnored);
     assert!(!matches!(crowded, Found::Nothing | Found::WrongStatus), "{crowded:?}");
     assert_eq!(run(Controller::HalfCounted), Found::WrongStatus);
+
+    // This fault shows where nothing else keeps a job from ending: in one whose pairs are all inside at once.
+    let short = Case::random(&config, 3, 5);
+    let run_short = |planted: Controller| {
+        let afu = model.instance(1).unwrap();
+        judge(&short, driver(&afu, "ideal", 1).run(&job(&short, planted)))
+    };
+    assert_eq!(run_short(Controller::Nothing), Found::Nothing);
+    let cut_off = run_short(Controller::EndsEarly);
+    assert!(matches!(cut_off, Found::WrongLines(_) | Found::Error(_)), "{cut_off:?}");
 
     // This fault shows only after a reset.
     let spoilt = Case::random(&config, 301, 4);
