@@ -75,6 +75,7 @@ module contact_afu_control (
   reg fails;
   reg unexpected_heard;
   reg begin_job;
+  reg has_unknown_mode;
   reg waits_to_begin;
   reg filled_heard;
   reg cycles_busy_low_is_full;
@@ -108,13 +109,11 @@ module contact_afu_control (
   wire begins_to_drain = draining & ~|cycles_draining;
   wire silence_restarts = link_is_alive | ~busy_copy_0 | begins_to_drain;
   wire link_idle = read_idle & write_idle;
-  wire has_unknown_mode = |mode;
-  wire refuses = accept & has_unknown_mode;
   wire is_unexpected = unexpected_heard & ~begin_job;
-  wire failing = running & (fails | is_unexpected) & ~completes;
+  wire refuses = first_cycle & has_unknown_mode;
+  wire failing = running & (fails | is_unexpected | refuses) & ~completes;
   wire still_waits = waits_to_begin & ~fails;
   wire begins = (accept | still_waits) & filled_heard;
-  wire takes_job = accept & ~refuses;
   wire keeps_waiting = waits_to_begin & ~failing;
   wire goes_on = running & ~completes & ~failing;
   wire cycles_busy_moves = first_cycle | busy_copy_0;
@@ -123,6 +122,7 @@ module contact_afu_control (
   assign cycles_output = {cycles_output_high, cycles_output_low};
   wire cycles_output_moves = first_cycle | counts_output;
   wire [3:0] cause =
+      refuses       ? 4'd5 :
       |told_cause   ? told_cause :
       is_unexpected ? 4'd7 :
       expired       ? 4'd4 :
@@ -134,6 +134,7 @@ module contact_afu_control (
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
+    has_unknown_mode <= |mode;
     if (~busy_copy_2) job_source <= source;
     if (~busy_copy_2) job_destination <= destination;
     if (takes_values) last_place <= count[0] - 1'b1;
@@ -185,7 +186,7 @@ module contact_afu_control (
       if (cycles_busy_moves) cycles_busy_low <= first_cycle ? 32'd1 : (cycles_busy_low + 32'd1);
       first_cycle <= accept;
       completes <= run & packer_done & dispatched & link_idle & goes_on;
-      draining <= refuses | failing | (draining & ~drained);
+      draining <= failing | (draining & ~drained);
       cycles_draining <= draining ? (stopped ? cycles_draining : (cycles_draining + 3'd1)) : 3'd0;
       none_inside_heard <= none_inside;
       link_idle_heard <= link_idle;
@@ -198,11 +199,11 @@ module contact_afu_control (
       silence <= silence_restarts ? 32'd0 : (silence + 32'd1);
       if (~busy_copy_1 | needs_watchdog) job_watchdog <= needs_watchdog ? 32'h10000 : watchdog;
       needs_watchdog <= draining & ~has_watchdog;
-      running <= takes_job | goes_on;
+      running <= accept | goes_on;
       fails <= (running & (abort_job | read_failed | write_failed)) | expires;
       unexpected_heard <= (read_responded & ~read_answered) | (write_responded & ~write_answered);
       begin_job <= begins;
-      waits_to_begin <= (takes_job | keeps_waiting) & ~filled_heard;
+      waits_to_begin <= (accept | keeps_waiting) & ~filled_heard;
       filled_heard <= filled;
       run <= (run | begin_job) & goes_on;
       if (cycles_busy_moves) cycles_busy_low_is_full <= ~first_cycle & (&cycles_busy_low[31:1] & ~cycles_busy_low[0]);
@@ -219,7 +220,7 @@ module contact_afu_control (
       if (cycles_output_moves) cycles_output_low_is_full <=
           ~first_cycle & (&cycles_output_low[31:1] & ~cycles_output_low[0]);
       done <= ~accept & (done | completes | drained);
-      error <= accept ? (has_unknown_mode ? 4'd5 : 4'd0) : ended;
+      error <= accept ? 4'd0 : ended;
       told_cause <= running ? (abort_job ? 4'd1 : read_failed ? 4'd2 : write_failed ? 4'd3 : 4'd0) : 4'd0;
       drops_requests <= begins | is_given_up;
       if (takes_values) job_epoch <= epoch;

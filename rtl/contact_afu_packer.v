@@ -45,7 +45,7 @@ module contact_afu_packer (
   (* keep = "true", dont_merge *) reg enters_1_place_2_copy_0;
   (* keep = "true", dont_merge *) reg empties_0_copy_0;
   reg empties_soon;
-  reg first_place;
+  reg [1:0] first_place;
   reg [1:0] carried;
   (* keep = "true", dont_merge *) reg stores_0_copy_0;
   (* keep = "true", dont_merge *) reg enters_1_place_2_copy_1;
@@ -76,9 +76,8 @@ module contact_afu_packer (
   wire [1:0] place_in_line = fills ? (place_behind - 2'd2) : place_behind;
   wire next_place = place_in_line[0];
   wire empties = start_or_flushes | fills;
-  wire [1:0] first_place_one_hot = 2'd1 << first_place;
-  wire [3:0] enters_1_soon = carried[1] ? {1'b0, first_place_one_hot, 1'b0} : 4'd0;
-  wire [3:0] enters_0_soon = carried[0] ? {2'd0, first_place_one_hot} : 4'd0;
+  wire [3:0] enters_1_soon = carried[1] ? {1'b0, first_place, 1'b0} : 4'd0;
+  wire [3:0] enters_0_soon = carried[0] ? {2'd0, first_place} : 4'd0;
   wire stores_0_copy_1_next = enters_1_soon[2] | empties_soon | enters_0_soon[0];
   wire done_next = ~start & (all_emerged & ~place & ~went & ~comes) & ~line_valid;
   wire contact_here_0 = contact_0 & leaves_here[0];
@@ -106,7 +105,7 @@ module contact_afu_packer (
         empties_0_copy_0        ? 128'd0 :
         entering_0[127:0];
     empties_soon <= empties;
-    first_place <= place;
+    first_place <= 2'd1 << place;
     carried <= leaves_now;
     emerged_before <= emerged;
     first_invalid_lane <= ~invalid_here_0;

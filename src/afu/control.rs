@@ -71,6 +71,7 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let copies = is_busy.copies("busy", 3);
     let (busy, keeps_values, keeps_addresses) = (copies[0], copies[1], copies[2]);
     let accept = (start & !busy).named("accept");
+    let first_cycle = accept.registered("first_cycle");
     let takes_values = (start & !keeps_values).named("takes_values");
 
     // The job is held from its start; everything downstream begins one cycle later. The addresses are wide, so they
@@ -115,8 +116,10 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
 
     // The end.
     let complete = graph.register("completes", 1, 0);
-    let has_unknown_mode = has_unknown_mode.named("has_unknown_mode");
-    let refuses = (accept & (has_unknown_mode | is_too_large)).named("refuses");
+    // What is no job is refused one cycle after its start.
+    let has_unknown_mode = has_unknown_mode.delay(1).named("has_unknown_mode");
+    let is_too_large = is_too_large.delay(1).named("is_too_large");
+    let refuses = (first_cycle & (has_unknown_mode | is_too_large)).named("refuses");
     // What ends a job early, in order of precedence. The first three are known with their code from a register.
     let code_of = |error: JobError| graph.constant(JobError::BITS, error.code().into());
     let none = code_of(JobError::Aborted).same(0);
@@ -126,10 +129,12 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     // What arrives as a job completes is used only after the next one begins.
     let unexpected = (unexpected & !*begin).named("is_unexpected");
     let watched = unexpected.select(code_of(JobError::Response), expired.select(code_of(JobError::Watchdog), none));
-    let cause = told_cause.any().select(told_cause, watched).named("cause");
+    let cause = told_cause.any().select(told_cause, watched);
+    let refusal = (is_too_large & !has_unknown_mode).select(code_of(JobError::Table), code_of(JobError::Mode));
+    let cause = refuses.select(refusal, cause).named("cause");
     let fails = (*running & (abort | read_failed | write_failed)) | expires;
     let fails = fails.registered("fails");
-    let failing = (*running & (fails | unexpected) & !*complete).named("failing");
+    let failing = (*running & (fails | unexpected | refuses) & !*complete).named("failing");
     // A job that fails now does not complete in the next cycle.
     let goes_on = (*running & !*complete & !failing).named("goes_on");
     complete.next(*run & packed & dispatched & link_idle_now & goes_on);
@@ -141,8 +146,7 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     given_up.next(is_given_up);
     // The parts are stopped some cycles later.
     let drained = (*draining & stopped & none_inside & (link_idle | *given_up)).named("drained");
-    let takes_job = (accept & !refuses).named("takes_job");
-    running.next(takes_job | goes_on);
+    running.next(accept | goes_on);
     is_busy.drive(accept | (busy & !complete & !drained));
     // A job begins once the delay lines are filled, and runs one cycle later. Each part has a copy of the beginning.
     // While one waits nothing is outstanding, so only a registered cause ends it.
@@ -155,9 +159,9 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let drops = graph.register("drops_requests", 1, 1);
     drops.next(begins | is_given_up);
     let keeps_waiting = (*waits & !failing).named("keeps_waiting");
-    waits.next((takes_job | keeps_waiting) & !filled);
+    waits.next((accept | keeps_waiting) & !filled);
     run.next((*run | *begin) & goes_on);
-    draining.next(refuses | failing | (*draining & !drained));
+    draining.next(failing | (*draining & !drained));
     done.next(!accept & (*done | complete | drained));
     let failed = failing.select(cause, *error).named("failed");
     let mut ended = failed;
@@ -173,12 +177,9 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let ended = gives_up.select(error.same(JobError::Watchdog.code().into()), ended).named("ended");
     // A job is accepted if no running job could end. This condition is last in the expression because it is known
     // last.
-    let too_large = is_too_large.select(error.same(JobError::Table.code().into()), error.same(0));
-    let begun = has_unknown_mode.select(error.same(JobError::Mode.code().into()), too_large);
-    error.next(accept.select(begun, ended));
+    error.next(ended.gate(!accept));
 
     // The counts begin one cycle after the start, and include that cycle, in which nothing waits yet.
-    let first_cycle = accept.registered("first_cycle");
     for (port, counts, first) in [
         (told.cycles_busy, busy, 1),
         (told.cycles_input, (waits_for_input & *run).registered("counts_input"), 0),

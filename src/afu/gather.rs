@@ -51,8 +51,7 @@ pub(super) fn gather<'g>(
 
     // Which lane's record enters which place, a cycle before it does: of the line in hand, or of the next line if its
     // place is behind this one.
-    let first = place.delay(1).named(&name("first_place"));
-    let hot = if per_line == 1 { graph.constant(1, 1) } else { first.one_hot() };
+    let hot = if per_line == 1 { graph.constant(1, 1) } else { place.one_hot().delay(1).named(&name("first_place")) };
     let carried = carries.delay(1).named(&name("carried"));
     let soon: Vec<_> = (0..lanes)
         .map(|lane| {

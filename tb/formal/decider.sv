@@ -21,7 +21,9 @@ module decider (
   (* hierconn *) wire [27:0] \dut.shares_oldest ;
   (* hierconn *) wire        \dut.takes ;
   (* hierconn *) wire        \dut.active ;
-  (* hierconn *) wire  [7:0] \dut.bits_left ;
+  (* hierconn *) wire  [7:0] \dut.walked_bit ;
+  (* hierconn *) wire  [7:0] \dut.rest ;
+  (* hierconn *) wire        \dut.is_last ;
   (* hierconn *) wire [19:0] \dut.about ;
   (* hierconn *) wire [14:0] \dut.place_in_table ;
   (* hierconn *) wire  [3:0] \dut.row_in_hand ;
@@ -115,7 +117,9 @@ module decider (
   end
 
   always @* if (after_reset & ~rst) begin
-    share_in_hand: assert (\dut.active == hand & (!hand | \dut.bits_left == hand_left));
+    share_in_hand: assert (\dut.active == hand & (!hand | \dut.walked_bit == lowest));
+    rest_in_hand: assert (!hand | \dut.rest == (hand_left & ~lowest));
+    last_in_hand: assert (!hand | \dut.is_last == (hand_left == lowest));
     places_in_hand: assert (!hand | \dut.about == hand_about);
     some_are_left: assert (!hand | hand_left != 0);
     first_sphere: assert (!hand | \dut.place_in_table == {hand_about[11:0], number_of(lowest)});
@@ -131,7 +135,7 @@ module decider (
     answers_fit: assert (!(\dut.answer_comes & \dut.answers.waiting == DEPTH));
     answers_in_place: assert (\dut.answers.tail == \dut.answers.head + \dut.answers.waiting [5:0]);
     // A share is in hand for a cycle per candidate.
-    oldest_leaves: assert (!\dut.active | hand_waits + ones(\dut.bits_left ) <= 8);
+    oldest_leaves: assert (!\dut.active | hand_waits + ones(\dut.walked_bit | \dut.rest ) <= 8);
   end
 
   always @* begin

@@ -12,7 +12,7 @@ module entry (
   `include "inputs.svh"
 );
   // From the last sphere of a row to its launch.
-  localparam CYCLES = 8;
+  localparam CYCLES = 9;
   localparam [11:0] KEPT = 16;
 
   `include "dut.svh"

@@ -45,7 +45,9 @@ module joined (
   (* hierconn *) wire [53:0] \dut.hits.hit_queue_oldest ;
   (* hierconn *) wire        \dut.hits.takes ;
   (* hierconn *) wire        \dut.hits.active ;
-  (* hierconn *) wire  [3:0] \dut.hits.bits_left ;
+  (* hierconn *) wire  [3:0] \dut.hits.walked_bit ;
+  (* hierconn *) wire  [3:0] \dut.hits.rest ;
+  (* hierconn *) wire        \dut.hits.is_last ;
   (* hierconn *) wire [49:0] \dut.hits.about ;
   (* hierconn *) wire  [3:0] \dut.hits_carries ;
   (* hierconn *) wire [31:0] \dut.hits_record_0 ;
@@ -180,11 +182,14 @@ module joined (
     put_is_right: assert (!counting[TO_PUT-1]
                           | item_put == {counting_about[TO_PUT-1], ones(hits_now), hits_now, beats_of(ones(hits_now))});
 
-    step_in_hand: assert (\dut.hits.active == hand & (!hand | \dut.hits.bits_left == hand_left));
+    step_in_hand: assert (\dut.hits.active == hand & (!hand | \dut.hits.walked_bit == lowest));
+    rest_in_hand: assert (!hand | \dut.hits.rest == (hand_left & ~lowest));
+    last_in_hand: assert (!hand | \dut.hits.is_last == (hand_left == lowest));
     about_step: assert (!hand | \dut.hits.about == hand_about);
     hits_in_hand: assert (!hand | hand_about[20:16] == ones(hand_about[15:0]));
     takes_at_once: assert (\dut.hits.takes == (\dut.hits.hit_queue_valid & (!hand | step_ends)));
-    hits_leave: assert (!\dut.hits.active | {2'd0, hand_waits} + ones({12'd0, \dut.hits.bits_left }) <= 4);
+    hits_leave: assert (!\dut.hits.active
+                        | {2'd0, hand_waits} + ones({12'd0, \dut.hits.walked_bit | \dut.hits.rest }) <= 4);
     each_hit_once: assert (\dut.hits_carries == right);
     hit_is_in_step: assert (!carried[lane] | record_hits[place_of_hit]);
     hits_in_order: assert (!carried[lane]

@@ -18,7 +18,9 @@ module stage (
 
   `include "dut.svh"
   (* hierconn *) wire        \dut.active ;
-  (* hierconn *) wire [15:0] \dut.bits_left ;
+  (* hierconn *) wire [15:0] \dut.walked_bit ;
+  (* hierconn *) wire [15:0] \dut.rest ;
+  (* hierconn *) wire        \dut.is_last ;
   (* hierconn *) wire [`ABOUT_BITS-1:0] \dut.about ;
 
 `include "ones.svh"
@@ -104,7 +106,9 @@ module stage (
   always @* if (after_reset & ~rst) begin
     in_order: assert (!put | row == tokens_out);
     conserved: assert (tokens_in - tokens_out == tokens_inside);
-    hand_is_right: assert (\dut.active == hand & (!hand | \dut.bits_left == hand_left));
+    hand_is_right: assert (\dut.active == hand & (!hand | \dut.walked_bit == lowest));
+    rest_in_hand: assert (!hand | \dut.rest == (hand_left & ~lowest));
+    last_in_hand: assert (!hand | \dut.is_last == (hand_left == lowest));
     token_in_hand: assert (!hand | \dut.about [0] == hand_last);
     row_in_hand: assert (!hand | \dut.about [`ROW_AT+:12] == hand_row);
     hand_row_is_right: assert (!hand | hand_row == tokens_in - {11'd0, hand_last});
@@ -114,7 +118,7 @@ module stage (
     takes_at_once: assert (!item_valid | takes | (hand & !leaves));
     takes_what_is_there: assert (!takes | item_valid);
     // An item is in hand for as many cycles as it has bits, at most, and one if it has none; those without room apart.
-    oldest_leaves: assert (!\dut.active | hand_waits + ones(\dut.bits_left ) <= 16);
+    oldest_leaves: assert (!\dut.active | hand_waits + ones(\dut.walked_bit | \dut.rest ) <= 16);
 `ifdef NUMBER
     bits_in_order: assert (!put | way_empty[CYCLES-1] | `NUMBER == way_number[CYCLES-1]);
 `endif

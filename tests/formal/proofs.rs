@@ -133,7 +133,7 @@ fn of_search() -> Vec<Proof> {
     let short = ["decider", "shares of any step", "shares of a decider", "join of deciders", "begin of a job"];
     let proofs = [
         of("begin of a job", "begins", Part::Control, Inductive(2)),
-        of("entry of rows", "entry", Part::Entry, Inductive(12)),
+        of("entry of rows", "entry", Part::Entry, Inductive(13)),
         of("rows enter", "entry", Part::Entry, Reached(70)),
         of("groups", "stage", Part::Groups, Inductive(8)),
         of("rows of groups", "stage", Part::GroupRows, Inductive(8)),

@@ -141,7 +141,7 @@ pub(super) fn loader(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, BuildErr
     graph.output("first_invalid", first.value());
     let set_ended = (!any_left & (!has_others | *second)).named("set_ended");
     // The last sphere is still on its way to its box, and then to its row, for a few cycles.
-    let passing = later(start, goes, cycles + 3 + sizes.loaded, "passing");
+    let passing = later(start, goes, cycles + 5, "passing");
     let on_the_way = graph.register("spheres_on_the_way", COUNT_BITS.ilog2() + 1, 0);
     up_down(on_the_way, start, goes, passing);
     let ended = set_ended & !inside.any() & !on_the_way.any() & !goes;

@@ -20,31 +20,23 @@ pub(super) fn rows(sizes: &Sizes) -> Result<Arc<Module>, BuildErrors> {
     let has_others = graph.input("has_others", 1);
     let boxes: Vec<_> = sizes.of_loaded("box").iter().map(|name| graph.input(name, sizes.box_bits())).collect();
     let [valid, searched, to_table] = ["valid", "searched", "to_table"].map(|name| graph.input(name, 1));
-    let of_boxes = [valid, graph.input("column", sizes.loaded_bits()), graph.input("row", ROW_NUMBER_BITS)];
-    // Two boxes are joined a cycle before the row takes them in.
-    let [valid, column, row, searched, to_table, bounds] = match *boxes {
-        [first, second] => {
-            let both = Edges::of(first).around(Edges::of(second), valid.same(0)).delay(1).named("around_two");
-            let [_, column, row] = of_boxes;
-            [
-                later(start, valid, 1, "two_come"),
-                column.delay(1).named("column_of_two"),
-                row.delay(1).named("row_of_two"),
-                searched.delay(1).named("two_are_searched"),
-                to_table.delay(1).named("two_are_of_table"),
-                both,
-            ]
-        }
-        _ => [valid, of_boxes[1], of_boxes[2], searched, to_table, boxes[0]],
+    let column = graph.input("column", sizes.loaded_bits());
+    let row = graph.input("row", ROW_NUMBER_BITS);
+    // A box, or the one around two, is in a register before the row takes it in, and whether the row begins with it.
+    let is_first = (!column.any()).delay(1).named("is_first_column");
+    let bounds = match *boxes {
+        [first, second] => Edges::of(first).around(Edges::of(second), valid.same(0)).delay(1).named("around_two"),
+        _ => boxes[0].delay(1).named("box_in_hand"),
     };
+    let valid = later(start, valid, 1, "box_comes");
+    let column = column.delay(1).named("column_in_hand");
 
     let around = graph.data_register("around", sizes.box_bits());
-    let is_first = (!column.any()).named("is_first_column");
     around.next_if(valid, Edges::of(*around).around(Edges::of(bounds), is_first));
     let complete = (valid & column.all() & !start).registered("row_complete");
-    let row = row.delay(1).named("complete_row");
-    let of_table = (complete & to_table.delay(1).named("is_of_table")).named("row_of_table");
-    let of_search = (complete & searched.delay(1).named("is_searched")).named("row_of_search");
+    let row = row.delay(2).named("complete_row");
+    let of_table = (complete & to_table.delay(2).named("is_of_table")).named("row_of_table");
+    let of_search = (complete & searched.delay(2).named("is_searched")).named("row_of_search");
     graph.output("row_box", around.value());
     graph.output("row_box_row", row);
     graph.output("writes_row_box", of_table);

@@ -31,17 +31,24 @@ pub(super) struct Walk<'g> {
 
 /// A walk over items. `start` forgets the item in hand; steps are made only where `may_step`, a register, is set.
 pub(super) fn walk<'g>(graph: &'g Graph, start: Signal<'g>, item: &Item<'g>, may_step: Signal<'g>) -> Walk<'g> {
+    // The bit of a step, the bits behind it and that there are none are registers. They are found for the item that may
+    // be taken and for the one in hand, and the later choice is made between them.
     let active = graph.register("active", 1, 0);
-    let left = graph.data_register("bits_left", item.mask.width());
+    let bit = graph.data_register("walked_bit", item.mask.width());
+    let rest = graph.data_register("rest", item.mask.width());
+    let last = graph.data_register("is_last", 1);
     let about = graph.data_register("about", item.about.width());
-    let bit = lowest(*left).named("walked_bit");
-    let rest = (*left & !bit).named("rest");
-    let is_last = (!rest.any()).named("is_last");
     let steps = (*active & may_step).named("steps");
-    let ends = (steps & is_last).named("ends");
+    let ends = (steps & *last).named("ends");
     let takes = (item.valid & (!*active | ends)).named("takes");
     active.next(!start & (takes | (*active & !ends)));
-    left.next_if(takes | steps, takes.select(item.mask, rest));
     about.next_if(takes, item.about);
-    Walk { takes, steps, bit, about: about.value(), is_last, is_active: active.value() }
+    let [of_item, of_rest] = [(item.mask, "item"), (*rest, "next")].map(|(mask, name)| {
+        let first = lowest(mask).named(&format!("{name}_bit"));
+        (first, (mask & !first).named(&format!("{name}_rest")))
+    });
+    bit.next_if(takes | steps, takes.select(of_item.0, of_rest.0));
+    rest.next_if(takes | steps, takes.select(of_item.1, of_rest.1));
+    last.next_if(takes | steps, !takes.select(of_item.1.any(), of_rest.1.any()));
+    Walk { takes, steps, bit: *bit, about: *about, is_last: *last, is_active: *active }
 }

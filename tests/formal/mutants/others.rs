@@ -5,7 +5,7 @@ use super::Rows;
 
 const CONTROL: Rows = &[(
     "a job begins with the last one's error",
-    "error <= accept ? (has_unknown_mode ? 4'd5 : 4'd0) : ended;",
+    "error <= accept ? 4'd0 : ended;",
     "error <= ended;",
     13,
     "runs_without_error",

@@ -5,18 +5,20 @@ use super::Rows;
 const DECIDER: Rows = &[
     (
         "a candidate is decided again",
-        "takes ? shares_oldest[7:0] : rest;",
-        "takes ? shares_oldest[7:0] : bits_left;",
+        "takes ? item_bit : next_bit;",
+        "takes ? item_bit : walked_bit;",
         5,
         "share_in_hand",
     ),
     (
-        "a share is decided for ever",
-        "takes ? shares_oldest[7:0] : rest;",
-        "takes ? shares_oldest[7:0] : bits_left;",
+        "the next step's bit is another one's",
+        "takes ? item_rest : next_rest;",
+        "takes ? item_rest : rest;",
         5,
-        "oldest_leaves",
+        "rest_in_hand",
     ),
+    ("there is one step more", "takes ? |item_rest : |next_rest", "takes ? |item_rest : |rest", 5, "last_in_hand"),
+    ("a share is decided for ever", "takes ? item_rest : next_rest;", "takes ? item_rest : rest;", 6, "oldest_leaves"),
     ("the places of the next share", "if (takes) about", "if (shares_valid) about", 5, "places_in_hand"),
     (
         "a decider takes a share that is not there",
@@ -187,20 +189,16 @@ const JOIN: Rows = &[
         4,
         "put_is_right",
     ),
+    ("the same hits leave again", "takes ? item_bit : next_bit;", "takes ? item_bit : walked_bit;", 3, "step_in_hand"),
     (
-        "the same hits leave again",
-        "takes ? hit_queue_oldest[3:0] : rest;",
-        "takes ? hit_queue_oldest[3:0] : bits_left;",
+        "the next step's bit is another one's",
+        "takes ? item_rest : next_rest;",
+        "takes ? item_rest : rest;",
         3,
-        "step_in_hand",
+        "rest_in_hand",
     ),
-    (
-        "hits leave for ever",
-        "takes ? hit_queue_oldest[3:0] : rest;",
-        "takes ? hit_queue_oldest[3:0] : bits_left;",
-        3,
-        "hits_leave",
-    ),
+    ("there is one step more", "takes ? |item_rest : |next_rest", "takes ? |item_rest : |rest", 3, "last_in_hand"),
+    ("hits leave for ever", "takes ? item_rest : next_rest;", "takes ? item_rest : rest;", 4, "hits_leave"),
     (
         "the end of a row is lost behind the join",
         "about <= hit_queue_oldest[53:4]",
@@ -307,7 +305,7 @@ const LOADER: Rows = &[
     ),
     ("an empty set has a row", "counts_spheres      ? |spheres_left", "counts_spheres      ? 1'b1", 5, "some_are_left"),
     ("a line of the job before", "line_waits <= ~start & some_wait;", "line_waits <= some_wait;", 8, "no_line_yet"),
-    ("the end before the last row", "set_ended & ~|rows_inside &", "set_ended &", 29, "all_are_out"),
+    ("the end before the last row", "set_ended & ~|rows_inside &", "set_ended &", 30, "all_are_out"),
 ];
 
 const ROWS: Rows = &[
@@ -315,24 +313,24 @@ const ROWS: Rows = &[
         "a row is launched as the next one",
         "launched_row <= group_row;",
         "launched_row <= complete_row;",
-        26,
+        27,
         "launched_in_order",
     ),
     (
         "a row is launched again and again",
         "{launching[0], row_of_search}",
         "{|launching, row_of_search}",
-        27,
+        28,
         "launched_once",
     ),
     (
         "a row is complete too early",
-        "row_complete <= valid & &column & ~start",
-        "row_complete <= valid & &column[3:1] & ~start",
-        26,
+        "row_complete <= box_comes & &column_in_hand & ~start",
+        "row_complete <= box_comes & &column_in_hand[3:1] & ~start",
+        27,
         "conserved",
     ),
-    ("a row is launched in each cycle", "{launching[0], row_of_search}", "2'd3", 19, "none_ends_early"),
+    ("a row is launched in each cycle", "{launching[0], row_of_search}", "2'd3", 20, "none_ends_early"),
 ];
 
 const CONTROL: Rows = &[
@@ -345,7 +343,13 @@ const CONTROL: Rows = &[
         4,
         "sets_stay",
     ),
-    ("a refused job begins in part", "begin_job <= begins;", "begin_job <= begins & ~refuses;", 3, "begins_as_one"),
+    (
+        "a refused job begins in part",
+        "begin_job <= begins;",
+        "begin_job <= begins & ~has_unknown_mode;",
+        3,
+        "begins_as_one",
+    ),
     ("a copy of busy is none", "busy_copy_1 <= is_busy;", "busy_copy_1 <= running;", 2, "busy_as_one"),
     (
         "idle before the last line has left",
@@ -354,7 +358,13 @@ const CONTROL: Rows = &[
         3,
         "runs_while_busy",
     ),
-    ("a refused job runs", "running <= takes_job | goes_on;", "running <= accept | goes_on;", 2, "runs_or_drains"),
+    (
+        "a job runs on as it ends",
+        "goes_on = running & ~completes & ~failing",
+        "goes_on = running & ~completes",
+        3,
+        "runs_or_drains",
+    ),
     (
         "a job that failed waits to begin",
         "keeps_waiting = waits_to_begin & ~failing",

@@ -41,12 +41,20 @@ const GROUPS: Rows = &[
     ("a token leaves with each step", "is_last & about[0]}", "about[0]}", 9, "conserved"),
     (
         "the same word is looked at again",
-        "takes ? item_mask : rest;",
-        "takes ? item_mask : bits_left;",
+        "takes ? item_bit : next_bit;",
+        "takes ? item_bit : walked_bit;",
         3,
         "hand_is_right",
     ),
-    ("a row never ends", "takes ? item_mask : rest;", "takes ? item_mask : bits_left;", 3, "oldest_leaves"),
+    (
+        "the next step's bit is another one's",
+        "takes ? item_rest : next_rest;",
+        "takes ? item_rest : rest;",
+        3,
+        "rest_in_hand",
+    ),
+    ("there is one step more", "takes ? |item_rest : |next_rest", "takes ? |item_rest : |rest", 3, "last_in_hand"),
+    ("a row never ends", "takes ? item_rest : next_rest;", "takes ? item_rest : rest;", 4, "oldest_leaves"),
     ("a token is dropped", "about <= {item_row, item_last}", "about <= {item_row, 1'b0}", 2, "token_in_hand"),
     (
         "an item changes its row",

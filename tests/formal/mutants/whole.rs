@@ -41,8 +41,8 @@ const CONTROL: Rows = &[
     ),
     (
         "waits for the delay lines after it began",
-        "(takes_job | keeps_waiting) & ~filled_heard;",
-        "takes_job | keeps_waiting;",
+        "(accept | keeps_waiting) & ~filled_heard;",
+        "accept | keeps_waiting;",
         9,
         "waits_or_runs",
     ),
@@ -56,7 +56,7 @@ const CONTROL: Rows = &[
     (
         "is not busy with a job that it refuses",
         "wire is_busy = accept | (busy_copy_0",
-        "wire is_busy = takes_job | (busy_copy_0",
+        "wire is_busy = (accept & ~|mode) | (busy_copy_0",
         2,
         "busy_is_right",
     ),
