@@ -278,7 +278,7 @@ const LOADER: Rows = &[
         "a row that ends as another begins",
         "(row_begins ^ row_ends) ?",
         "(row_begins | row_ends) ?",
-        28,
+        29,
         "inside_is_right",
     ),
     ("every other row", "row_now + 12'd1", "row_now + 12'd2", 19, "row_is_right"),
