@@ -120,7 +120,8 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let has_unknown_mode = has_unknown_mode.delay(1).named("has_unknown_mode");
     let is_too_large = is_too_large.delay(1).named("is_too_large");
     let refuses = (first_cycle & (has_unknown_mode | is_too_large)).named("refuses");
-    // What ends a job early, in order of precedence. The first three are known with their code from a register.
+    // What ends a job early, in order of precedence. A refusal comes before all: it is known as the job begins to run.
+    // The next three are known with their code from a register.
     let code_of = |error: JobError| graph.constant(JobError::BITS, error.code().into());
     let none = code_of(JobError::Aborted).same(0);
     let told_causes = [(write_failed, JobError::Write), (read_failed, JobError::Read), (abort, JobError::Aborted)];

@@ -34,10 +34,9 @@ pub(super) fn line_memory<'g>(
 ) -> Result<Signal<'g>, BuildErrors> {
     let bits = access.line.width();
     let primitive = spec.delays.memory_primitive.filter(|_| depth <= PRIMITIVE_DEPTH);
-    // A deeper memory is as many of the same block memories side by side, each of fewer bits: no word is chosen behind
-    // them.
-    let width_of = |depth: u32| (PRIMITIVE_WIDTH * PRIMITIVE_DEPTH / depth.max(PRIMITIVE_DEPTH)).max(1);
-    let widest = spec.delays.memory_primitive.map_or(bits, |_| width_of(depth));
+    // For a deeper memory a block memory has fewer bits of each word, so no word is chosen behind several of them.
+    let fits = (PRIMITIVE_DEPTH * PRIMITIVE_WIDTH / depth.max(PRIMITIVE_DEPTH)).max(1);
+    let widest = spec.delays.memory_primitive.map_or(bits, |_| fits);
     let mut words = Vec::new();
     for first in (0..bits).step_by(widest as usize) {
         let width = widest.min(bits - first);
