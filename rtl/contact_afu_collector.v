@@ -56,14 +56,16 @@ module contact_afu_collector (
   reg was_answered;
   reg [5:0] response_slot;
   reg [63:0] awaited;
+  reg [7:0] response_place;
   reg [63:0] answers;
   reg [63:0] asked;
   reg [5:0] accepted_slot;
   reg accepted;
   reg rd_req_of_job;
-  reg is_current;
+  reg [7:0] response_row;
   reg is_asked;
   reg [5:0] asked_slot;
+  reg is_current;
   reg [5:0] oldest;
   reg [511:0] response_line;
   reg error_then;
@@ -89,17 +91,26 @@ module contact_afu_collector (
   wire oldest_goes = came[0];
   wire [63:0] marked = came | (answered ? (64'd1 << arrived_age) : 64'd0);
   wire is_awaited = is_response & (was_asked | (|(marked_in_rows & (8'd1 << answered_slot[5:3])) & ~was_answered));
-  wire [7:0] place_in_row = 8'd1 << response_slot[2:0];
-  wire marked_in_7 = |(awaited[63:56] & place_in_row);
-  wire marked_in_6 = |(awaited[55:48] & place_in_row);
-  wire marked_in_5 = |(awaited[47:40] & place_in_row);
-  wire marked_in_4 = |(awaited[39:32] & place_in_row);
-  wire marked_in_3 = |(awaited[31:24] & place_in_row);
-  wire marked_in_2 = |(awaited[23:16] & place_in_row);
-  wire marked_in_1 = |(awaited[15:8] & place_in_row);
-  wire marked_in_0 = |(awaited[7:0] & place_in_row);
+  wire marked_in_7 = |(awaited[63:56] & response_place);
+  wire marked_in_6 = |(awaited[55:48] & response_place);
+  wire marked_in_5 = |(awaited[47:40] & response_place);
+  wire marked_in_4 = |(awaited[39:32] & response_place);
+  wire marked_in_3 = |(awaited[31:24] & response_place);
+  wire marked_in_2 = |(awaited[23:16] & response_place);
+  wire marked_in_1 = |(awaited[15:8] & response_place);
+  wire marked_in_0 = |(awaited[7:0] & response_place);
   wire is_asked_next = accepted & ~start;
-  wire is_response_next = is_current & ~start;
+  wire [63:0] answers_next = {
+    (response_row[7] & ~start) ? response_place : 8'd0,
+    (response_row[6] & ~start) ? response_place : 8'd0,
+    (response_row[5] & ~start) ? response_place : 8'd0,
+    (response_row[4] & ~start) ? response_place : 8'd0,
+    (response_row[3] & ~start) ? response_place : 8'd0,
+    (response_row[2] & ~start) ? response_place : 8'd0,
+    (response_row[1] & ~start) ? response_place : 8'd0,
+    (response_row[0] & ~start) ? response_place : 8'd0
+  };
+  wire is_current_next = rd_rsp_valid & (rd_rsp_tag[9:6] == epoch);
   wire [5:0] next_oldest = oldest + {5'd0, oldest_goes};
 
   // ---- at the clock edge ----
@@ -117,6 +128,7 @@ module contact_afu_collector (
     answered_slot <= response_slot;
     was_answered <= is_response & (answered_slot == response_slot);
     response_slot <= rd_rsp_tag[5:0];
+    response_place <= 8'd1 << rd_rsp_tag[2:0];
     accepted_slot <= rd_req_tag[5:0];
     asked_slot <= accepted_slot;
     response_line <= rd_rsp_data;
@@ -143,8 +155,9 @@ module contact_afu_collector (
       asked <= 64'd0;
       accepted <= 1'b0;
       rd_req_of_job <= 1'b0;
-      is_current <= 1'b0;
+      response_row <= 8'd0;
       is_asked <= 1'b0;
+      is_current <= 1'b0;
       oldest <= 6'd0;
       failed <= 1'b0;
       responded <= 1'b0;
@@ -163,14 +176,15 @@ module contact_afu_collector (
       line_comes <= oldest_goes & ~start;
       came <= start ? 64'd0 : oldest_goes ? {1'b0, marked[63:1]} : marked;
       answered <= is_awaited & ~start;
-      is_response <= is_response_next;
+      is_response <= is_current & ~start;
       awaited <= start ? 64'd0 : ((awaited & ~answers) | asked);
-      answers <= is_response_next ? (64'd1 << response_slot) : 64'd0;
+      answers <= answers_next;
       asked <= is_asked_next ? (64'd1 << accepted_slot) : 64'd0;
       accepted <= rd_req_valid & rd_req_ready & rd_req_of_job & ~start;
       rd_req_of_job <= ~start & (rd_req_moves | rd_req_of_job);
-      is_current <= rd_rsp_valid & (rd_rsp_tag[9:6] == epoch);
+      response_row <= is_current_next ? (8'd1 << rd_rsp_tag[5:3]) : 8'd0;
       is_asked <= is_asked_next;
+      is_current <= is_current_next;
       oldest <= start ? 6'd0 : next_oldest;
       failed <= is_awaited & error_then & ~start;
       responded <= run & is_response & ~start;

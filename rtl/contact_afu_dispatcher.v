@@ -47,15 +47,17 @@ module contact_afu_dispatcher (
   reg was_answered;
   reg [5:0] response_slot;
   reg [63:0] awaited;
+  reg [7:0] response_place;
   reg [63:0] answers;
   reg [63:0] asked;
   reg [5:0] accepted_slot;
   reg accepted;
   reg wr_req_of_job;
   reg [5:0] next_slot;
-  reg is_current;
+  reg [7:0] response_row;
   reg is_asked;
   reg [5:0] asked_slot;
+  reg is_current;
   reg [5:0] oldest;
   reg [57:0] next_address;
   reg [7:0] tail;
@@ -81,17 +83,26 @@ module contact_afu_dispatcher (
   wire some_free = goes ? (some_free_now & (oldest_goes | ~&reserved[5:0])) : some_free_now;
   wire [63:0] marked = came | (answered ? (64'd1 << arrived_age) : 64'd0);
   wire is_awaited = is_response & (was_asked | (|(marked_in_rows & (8'd1 << answered_slot[5:3])) & ~was_answered));
-  wire [7:0] place_in_row = 8'd1 << response_slot[2:0];
-  wire marked_in_7 = |(awaited[63:56] & place_in_row);
-  wire marked_in_6 = |(awaited[55:48] & place_in_row);
-  wire marked_in_5 = |(awaited[47:40] & place_in_row);
-  wire marked_in_4 = |(awaited[39:32] & place_in_row);
-  wire marked_in_3 = |(awaited[31:24] & place_in_row);
-  wire marked_in_2 = |(awaited[23:16] & place_in_row);
-  wire marked_in_1 = |(awaited[15:8] & place_in_row);
-  wire marked_in_0 = |(awaited[7:0] & place_in_row);
+  wire marked_in_7 = |(awaited[63:56] & response_place);
+  wire marked_in_6 = |(awaited[55:48] & response_place);
+  wire marked_in_5 = |(awaited[47:40] & response_place);
+  wire marked_in_4 = |(awaited[39:32] & response_place);
+  wire marked_in_3 = |(awaited[31:24] & response_place);
+  wire marked_in_2 = |(awaited[23:16] & response_place);
+  wire marked_in_1 = |(awaited[15:8] & response_place);
+  wire marked_in_0 = |(awaited[7:0] & response_place);
   wire is_asked_next = accepted & ~start;
-  wire is_response_next = is_current & ~start;
+  wire [63:0] answers_next = {
+    (response_row[7] & ~start) ? response_place : 8'd0,
+    (response_row[6] & ~start) ? response_place : 8'd0,
+    (response_row[5] & ~start) ? response_place : 8'd0,
+    (response_row[4] & ~start) ? response_place : 8'd0,
+    (response_row[3] & ~start) ? response_place : 8'd0,
+    (response_row[2] & ~start) ? response_place : 8'd0,
+    (response_row[1] & ~start) ? response_place : 8'd0,
+    (response_row[0] & ~start) ? response_place : 8'd0
+  };
+  wire is_current_next = wr_rsp_valid & (wr_rsp_tag[9:6] == epoch);
   wire [5:0] next_oldest = oldest + {5'd0, oldest_goes};
 
   // ---- at the clock edge ----
@@ -104,6 +115,7 @@ module contact_afu_dispatcher (
     answered_slot <= response_slot;
     was_answered <= is_response & (answered_slot == response_slot);
     response_slot <= wr_rsp_tag[5:0];
+    response_place <= 8'd1 << wr_rsp_tag[2:0];
     accepted_slot <= wr_req_tag[5:0];
     if (goes) wr_req_tag <= {epoch, next_slot};
     asked_slot <= accepted_slot;
@@ -130,8 +142,9 @@ module contact_afu_dispatcher (
       accepted <= 1'b0;
       wr_req_of_job <= 1'b0;
       next_slot <= 6'd0;
-      is_current <= 1'b0;
+      response_row <= 8'd0;
       is_asked <= 1'b0;
+      is_current <= 1'b0;
       oldest <= 6'd0;
       tail <= 8'd0;
       head <= 8'd0;
@@ -150,15 +163,16 @@ module contact_afu_dispatcher (
       came <= start ? 64'd0 : oldest_goes ? {1'b0, marked[63:1]} : marked;
       reserved <= start ? 7'd0 : (goes ^ oldest_goes) ? (goes ? (reserved + 7'd1) : (reserved - 7'd1)) : reserved;
       answered <= is_awaited & ~start;
-      is_response <= is_response_next;
+      is_response <= is_current & ~start;
       awaited <= start ? 64'd0 : ((awaited & ~answers) | asked);
-      answers <= is_response_next ? (64'd1 << response_slot) : 64'd0;
+      answers <= answers_next;
       asked <= is_asked_next ? (64'd1 << accepted_slot) : 64'd0;
       accepted <= wr_req_valid & wr_req_ready & wr_req_of_job & ~start;
       wr_req_of_job <= ~start & (wr_req_moves | wr_req_of_job);
       next_slot <= start ? 6'd0 : goes ? (next_slot + 6'd1) : next_slot;
-      is_current <= wr_rsp_valid & (wr_rsp_tag[9:6] == epoch);
+      response_row <= is_current_next ? (8'd1 << wr_rsp_tag[5:3]) : 8'd0;
       is_asked <= is_asked_next;
+      is_current <= is_current_next;
       oldest <= start ? 6'd0 : next_oldest;
       tail <= start ? 8'd0 : line_valid ? (tail + 8'd1) : tail;
       head <= start ? 8'd0 : take ? (head + 8'd1) : head;

@@ -3,7 +3,7 @@
 
 use crate::hdl::{Graph, Signal};
 
-use super::in_order::Arrival;
+use super::EPOCH_BITS;
 
 /// Marks among which one is chosen in a first step.
 const ROW: u32 = 8;
@@ -11,6 +11,40 @@ const ROW: u32 = 8;
 /// Cycles from a response of this job, registered, to [`Answers`]: its slot decoded and its mark chosen in each row of
 /// marks, then the row chosen.
 pub(super) const CYCLES_TO_ANSWER: u32 = 2;
+
+/// A response of this job, in the cycle after its arrival.
+pub(super) struct Arrival<'g> {
+    /// True if there is one.
+    pub(super) valid: Signal<'g>,
+    /// The slot of its request.
+    pub(super) slot: Signal<'g>,
+    /// `slot` decoded: its row of marks, if there are several, and its place in a row. The row is zero without a response.
+    row: Option<Signal<'g>>,
+    place: Signal<'g>,
+}
+
+impl<'g> Arrival<'g> {
+    /// Of a response that arrives now with `tag`. It is the job's if its epoch is.
+    pub(super) fn new(slots: u32, [valid, tag, epoch]: [Signal<'g>; 3]) -> Self {
+        let is_current = valid & tag.high(EPOCH_BITS).equals(epoch);
+        let slot = tag.low(slots.ilog2());
+        let row_bits = ROW.min(slots).ilog2();
+        let row = || slot.drop_low(row_bits).one_hot().gate(is_current).registered("response_row");
+        Self {
+            valid: is_current.registered("is_current"),
+            slot: slot.delay(1).named("response_slot"),
+            row: (slots > ROW).then(row),
+            place: slot.low(row_bits).one_hot().delay(1).named("response_place"),
+        }
+    }
+
+    /// The mark of its slot in the next cycle; none if a job starts.
+    fn marks(&self, start: Signal<'g>) -> Signal<'g> {
+        let rows = self.row.unwrap_or(self.valid);
+        let marks = |row: u32| self.place.gate(rows.bit(row) & !start);
+        Signal::join(&(0..rows.width()).rev().map(marks).collect::<Vec<_>>()).registered("answers")
+    }
+}
 
 /// Responses of this job, [two cycles](CYCLES_TO_ANSWER) after they arrived.
 pub(super) struct Answers<'g> {
@@ -36,8 +70,8 @@ pub(super) fn awaited<'g>(
     let registered = |happens: Signal<'g>, name: &str| (happens & !start).registered(name);
     let accepted = registered(accepted, "accepted");
     let accepted_slot = slot.delay(1).named("accepted_slot");
-    let asked = registered_marks(accepted_slot, accepted, start, "asked");
-    let answers = registered_marks(response.slot, response.valid, start, "answers");
+    let asked = accepted_slot.one_hot().gate(accepted & !start).registered("asked");
+    let answers = response.marks(start);
     let awaited = graph.register("awaited", slots, 0);
     awaited.next(start.select(awaited.same(0), (*awaited & !answers) | asked));
     let is_response = registered(response.valid, "is_response");
@@ -49,8 +83,7 @@ pub(super) fn awaited<'g>(
     let asked_here =
         registered(accepted, "is_asked") & accepted_slot.delay(1).named("asked_slot").equals(response.slot);
     let was_asked = asked_here.delay(1).named("was_asked");
-    let place = response.slot.low(row_bits).one_hot().named("place_in_row");
-    let marked = |row: u32| (awaited.slice(row << row_bits, 1 << row_bits) & place).any();
+    let marked = |row: u32| (awaited.slice(row << row_bits, 1 << row_bits) & response.place).any();
     let rows: Vec<_> = (0..slots >> row_bits).rev().map(|row| marked(row).named(&format!("marked_in_{row}"))).collect();
     let rows = Signal::join(&rows).delay(1).named("marked_in_rows");
     let is_marked = if slots > ROW { (rows & here.drop_low(row_bits).one_hot()).any() } else { rows };
@@ -60,9 +93,4 @@ pub(super) fn awaited<'g>(
         responded: registered(run & is_response, "responded"),
         failed: registered(is_awaited & error.delay(1).named("error_then"), "failed"),
     }
-}
-
-/// The mark of `slot`, if `happens`, in the next cycle.
-fn registered_marks<'g>(slot: Signal<'g>, happens: Signal<'g>, start: Signal<'g>, name: &str) -> Signal<'g> {
-    slot.one_hot().gate(happens & !start).registered(name)
 }

@@ -10,9 +10,9 @@ use std::sync::Arc;
 
 use crate::hdl::{BuildErrors, Graph, Module};
 
-use super::awaited::awaited;
+use super::awaited::{Arrival, awaited};
 use super::counter::{Countdown, from_zero, some_free, up_down};
-use super::in_order::{self, Arrival, goes_in_order};
+use super::in_order::{self, goes_in_order};
 use super::lines::{Access, line_memory};
 use super::port::{ReadInputs, ReadOutputs, outputs};
 use super::slice::slice;
@@ -62,21 +62,18 @@ pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
 
     // Responses go into the slot that the tag names. A response that no request waits for overwrites a line there and
     // ends the job.
-    let is_current = link.rd_rsp_tag.high(EPOCH_BITS).equals(epoch);
-    let response = (link.rd_rsp_valid & is_current).registered("is_current");
-    let response_slot = link.rd_rsp_tag.low(slot_bits).delay(1).named("response_slot");
-    let arrival = Arrival { valid: response, slot: response_slot };
+    let arrival = Arrival::new(slots, [link.rd_rsp_valid, link.rd_rsp_tag, epoch]);
     let error = link.rd_rsp_error.delay(1).named("response_error");
     let answers = awaited(&graph, slots, [start, run], [port.accepted, request_tag.low(slot_bits)], &arrival, error);
     let outstanding = graph.register("outstanding", slot_bits + 1, 0);
     up_down(outstanding, start, issue, answers.answered);
 
     // Lines are announced in order.
-    let comes = goes_in_order(&graph, slots, start, response_slot, answers.answered);
+    let comes = goes_in_order(&graph, slots, start, arrival.slot, answers.answered);
     let always = graph.constant(1, 1);
     let access = Access {
-        write: response,
-        write_index: response_slot,
+        write: arrival.valid,
+        write_index: arrival.slot,
         line: link.rd_rsp_data.delay(1).named("response_line"),
         read: always,
         read_index: place,

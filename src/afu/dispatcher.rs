@@ -10,9 +10,9 @@ use std::sync::Arc;
 use crate::config::Results;
 use crate::hdl::{BuildErrors, Graph, Module};
 
-use super::awaited::{self, awaited};
+use super::awaited::{self, Arrival, awaited};
 use super::counter::{Countdown, from_zero, left_after, some_free, up_down};
-use super::in_order::{Arrival, goes_in_order};
+use super::in_order::goes_in_order;
 use super::lines::{Access, line_memory};
 use super::port::{WriteInputs, WriteOutputs, outputs};
 use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, Spec};
@@ -99,10 +99,7 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
     from_zero(next_slot, start, send, next_slot.plus(1));
 
     // Acknowledgements, in any order.
-    let is_current = link.wr_rsp_tag.high(EPOCH_BITS).equals(epoch);
-    let response = (link.wr_rsp_valid & is_current).registered("is_current");
-    let response_slot = link.wr_rsp_tag.low(slot_bits).delay(1).named("response_slot");
-    let arrival = Arrival { valid: response, slot: response_slot };
+    let arrival = Arrival::new(slots, [link.wr_rsp_valid, link.wr_rsp_tag, epoch]);
     let error = link.wr_rsp_error.delay(1).named("response_error");
     let answers = awaited(&graph, slots, [start, run], [accepted, request_tag.low(slot_bits)], &arrival, error);
     let freed = goes_in_order(&graph, slots, start, arrival.slot, answers.answered);

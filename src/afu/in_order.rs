@@ -6,12 +6,6 @@ use crate::hdl::{Graph, Signal};
 /// Cycles from a response to its mark. [`awaited`](super::awaited) registers its arrival.
 pub(super) const CYCLES_TO_COME: u32 = super::awaited::CYCLES_TO_ANSWER + 1;
 
-/// A response to the request in `slot`.
-pub(super) struct Arrival<'g> {
-    pub(super) valid: Signal<'g>,
-    pub(super) slot: Signal<'g>,
-}
-
 /// True if the oldest of `slots` (a power of two) slots is answered; it leaves in that cycle. Slots are used in turn,
 /// from 0 at `start`, and are reused only after they left.
 ///

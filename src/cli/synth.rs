@@ -13,7 +13,7 @@ use contact_afu::query::Fields;
 use contact_afu::report::folder::{check_study, replace_file};
 use contact_afu::report::synth_study::{SCHEMA, SynthStudy};
 use contact_afu::report::{intervals, operators, synth as report};
-use contact_afu::synth::{self, Figures, Request, SynthError, Target, Unit};
+use contact_afu::synth::{self, Figures, Placer, Request, SynthError, Target, Unit};
 
 use super::failure::{Failure, Kind};
 use super::list::List;
@@ -48,6 +48,9 @@ pub struct Synth {
     /// Seeds of the placer: 1,2,3 or 1..8 (includes 8); the clock is the median over them
     #[arg(long, value_name = "LIST", default_value = "1,2,3")]
     seeds: List,
+    /// nextpnr's placer: heap, its own choice, or static, whose wires are shorter in a large design
+    #[arg(long, value_name = "NAME", default_value_t, conflicts_with_all = ["no_route", "fit", "page", "intervals"])]
+    placer: Placer,
     /// Count cells, without place and route
     #[arg(long)]
     no_route: bool,
@@ -87,7 +90,7 @@ pub fn run(options: &Synth) -> Result<(), Failure> {
     }
     let config = options.one.at_full_rate(options.one.machine.config_for_any_target()?, "ideal")?;
     let seeds = if options.no_route { Vec::new() } else { options.seeds.0.clone() };
-    let how = synth::Options { target, seeds };
+    let how = synth::Options { target, seeds, placer: options.placer };
     let units = units(options, &config, target)?;
     let out = options.out.as_deref();
     if let Some(folder) = out {

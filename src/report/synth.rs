@@ -2,7 +2,7 @@
 
 use super::table::{figure, grouped, table};
 use crate::synth::fit::{Fit, Point};
-use crate::synth::{Figures, Hop};
+use crate::synth::{Figures, Hop, Placer};
 
 /// The columns of [`row`].
 pub(super) const HEADING: [&str; 11] =
@@ -22,9 +22,11 @@ pub(super) fn by(figures: &Figures) -> String {
     figures.architecture.map_or_else(String::new, |architecture| format!(" by {}", architecture.name()))
 }
 
-/// A unit and its arithmetic.
+/// A unit, its arithmetic, its target, and its placer if that is not the usual one.
 pub fn title(figures: &Figures) -> String {
-    format!("{} {}{}, {}", figures.unit, figures.profile, by(figures), figures.target)
+    let placer = figures.placer.filter(|placer| *placer != Placer::default());
+    let placed = placer.map_or_else(String::new, |placer| format!(", placer {placer}"));
+    format!("{} {}{}, {}{placed}", figures.unit, figures.profile, by(figures), figures.target)
 }
 
 /// The cells of a unit.

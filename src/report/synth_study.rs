@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::synth::{HEADING, path, row, text, title};
 use super::{folder, manifest, page};
 use crate::study::{State, Worker};
-use crate::synth::Figures;
+use crate::synth::{Figures, Placer};
 
 /// The schema of the folder's `manifest.json`.
 pub const SCHEMA: &str = "contact-afu/synth-study/1";
@@ -36,6 +36,7 @@ struct Line<'a> {
     architecture: &'a str,
     interval: Option<u32>,
     target: String,
+    placer: Option<Placer>,
     asked_mhz: f64,
     modelled_mhz: Option<f64>,
     clock_mhz: Option<f64>,
@@ -105,6 +106,7 @@ fn line(figures: &Figures) -> Line<'_> {
         architecture: figures.architecture.map_or("", |architecture| architecture.name()),
         interval: figures.interval,
         target: figures.target.to_string(),
+        placer: figures.placer,
         asked_mhz: figures.asked_mhz,
         modelled_mhz: figures.modelled_mhz,
         clock_mhz: figures.clock_mhz,

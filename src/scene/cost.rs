@@ -8,7 +8,7 @@ use super::SceneError;
 use crate::afu::{Afu, Spec};
 use crate::config::{Config, Input, Profile};
 use crate::pipeline::KernelReport;
-use crate::synth::{Options, Target, Unit, synthesise};
+use crate::synth::{Options, Placer, Target, Unit, synthesise};
 
 /// Three coordinates and a radius of binary32.
 const BYTES_OF_A_SPHERE: u32 = 16;
@@ -76,7 +76,7 @@ impl Cost {
     /// # Errors
     /// Returns an error if Yosys is missing or fails.
     pub fn count(&mut self, config: &Config) -> Result<(), SceneError> {
-        let options = Options { target: Target::Ecp5, seeds: Vec::new() };
+        let options = Options { target: Target::Ecp5, seeds: Vec::new(), placer: Placer::default() };
         let count = |config: &Config| -> Result<[u64; 2], SceneError> {
             let area = synthesise(&Unit::scpu(config)?, &options, |_| {})?.area;
             Ok([area.luts, area.dsps])

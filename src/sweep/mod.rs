@@ -27,7 +27,7 @@ use crate::link::LinkModel;
 use crate::report::folder;
 use crate::store::StoreError;
 use crate::study::PointError;
-use crate::synth::{Area, Options, SynthError, Target, Unit, synthesise};
+use crate::synth::{Area, Options, Placer, SynthError, Target, Unit, synthesise};
 use crate::verify::{Bench, VerifyError};
 use row::{HostSeconds, Simulated};
 
@@ -51,7 +51,7 @@ fn area(config: &Config, task: &Task) -> Result<Area, SweepError> {
         Job::Pairs(_) => Unit::scpu_for(config, target)?,
         Job::Spheres(_) => Unit::afu(config, target)?,
     };
-    Ok(synthesise(&unit, &Options { target, seeds: Vec::new() }, |_| ())?.area)
+    Ok(synthesise(&unit, &Options { target, seeds: Vec::new(), placer: Placer::default() }, |_| ())?.area)
 }
 
 /// Builds the AFU of `config` from nothing, so that build times can be compared, and runs the task on it.

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Area, Target, Trimmed};
+use super::{Area, Placer, Target, Trimmed};
 use crate::config::Profile;
 use crate::operator::Architecture;
 
@@ -30,6 +30,9 @@ pub struct Figures {
     pub module: String,
     /// The family.
     pub target: Target,
+    /// The placer; `None` if cells were only counted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub placer: Option<Placer>,
     /// The clock that stages were cut for, MHz.
     pub asked_mhz: f64,
     /// The clock that the delay model predicts, MHz; `None` if no stages were cut.

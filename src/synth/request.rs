@@ -35,14 +35,14 @@ impl Request {
     /// # Errors
     /// Returns an error if a program is missing, or if a unit cannot be put into its wrapper.
     pub fn new(units: &[Unit], options: &Options) -> Result<Self, SynthError> {
-        let Options { target, seeds } = options;
+        let Options { target, seeds, placer } = options;
         let router = target.router().filter(|_| !seeds.is_empty());
         let nextpnr = router.map(|(architecture, _)| Program::nextpnr(architecture)).transpose()?;
         let versions = (Program::yosys()?.version().to_owned(), nextpnr.map(|program| program.version().to_owned()));
         let asked = |unit: &Unit| {
             let verilog = sha256_of(&Unit::files(&unit.wrapped()?, *target));
             let named = (&unit.name, &unit.profile, unit.architecture, unit.interval, unit.clock_mhz, unit.latency);
-            let of = (env!("CARGO_PKG_VERSION"), named, &unit.module.name, target, seeds, verilog, &versions);
+            let of = (env!("CARGO_PKG_VERSION"), named, &unit.module.name, target, (seeds, placer), verilog, &versions);
             let by = unit.architecture.map_or_else(String::new, |architecture| format!(" by {}", architecture.name()));
             Ok(Asked {
                 title: format!("{}{by}, {target} at {} MHz", unit.title(), unit.clock_mhz),

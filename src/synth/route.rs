@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::cells::Cells;
 use super::yosys::{Netlist, read, run};
-use super::{SynthError, Target, wrapper};
+use super::{Placer, SynthError, Target, wrapper};
 use crate::store::{Key, Store};
 use crate::tools::Program;
 
@@ -92,6 +92,8 @@ pub(super) struct Run<'a> {
     pub target: Target,
     /// The options of its device.
     pub device: &'a [&'a str],
+    /// The placer.
+    pub placer: Placer,
     /// The placer's seed.
     pub seed: u32,
     /// The name of the design, for messages.
@@ -138,14 +140,15 @@ impl Run<'_> {
     ) -> Result<T, SynthError> {
         let seed = self.seed.to_string();
         let fixed = ["--top", wrapper::TOP, "--freq", GOAL_MHZ, "--timing-allow-fail", "-q"];
-        let words = [self.device, &fixed[..], options].concat();
+        let options = [self.placer.options(), options].concat();
+        let words = [self.device, &fixed[..], &options].concat();
         let of = (self.nextpnr.version(), &self.netlist.key, self.target.name(), self.seed, words);
         store.get_or_make(&Key::new("route/1", &of)?, || {
             let room = store.scratch()?;
             let file = room.path().join("netlist.json");
             fs::copy(&self.netlist.path, &file).map_err(|e| SynthError::io("write into", store.folder(), e))?;
             let mut command = self.nextpnr.command();
-            command.args(self.device).args(fixed).args(options);
+            command.args(self.device).args(fixed).args(&options);
             command.args(["--json", "netlist.json", "--seed", &seed, "--report", "report.json"]);
             run(self.nextpnr, command.current_dir(room.path()), self.unit)?;
             take(read(self.nextpnr, &room.path().join("report.json"), self.unit)?)

@@ -5,7 +5,7 @@ use super::figures::{Figures, SCHEMA, Seed, Tools};
 use super::names::Source;
 use super::route::{Routed, Run};
 use super::yosys::{Design, synthesise as cells};
-use super::{Area, SynthError, Target, Trimmed, Unit, wrapper};
+use super::{Area, Placer, SynthError, Target, Trimmed, Unit, wrapper};
 use crate::store::{Store, sha256};
 use crate::tools::Program;
 
@@ -16,6 +16,8 @@ pub struct Options {
     pub target: Target,
     /// The placer's seeds. Without seeds, cells are counted and nothing is routed.
     pub seeds: Vec<u32>,
+    /// The placer.
+    pub placer: Placer,
 }
 
 /// Measures a unit; `progress` is called at each step.
@@ -47,7 +49,8 @@ pub fn synthesise(unit: &Unit, options: &Options, mut progress: impl FnMut(&str)
     if let (Some(nextpnr), Some((_, device))) = (&nextpnr, router) {
         for &seed in &options.seeds {
             progress(&format!("{name}: nextpnr, seed {seed}"));
-            let run = Run { nextpnr, netlist: &whole, target, device, seed, unit: &name };
+            let placer = options.placer;
+            let run = Run { nextpnr, netlist: &whole, target, device, placer, seed, unit: &name };
             routed.push((seed, run.route(&store)?));
         }
     }
@@ -66,6 +69,7 @@ pub fn synthesise(unit: &Unit, options: &Options, mut progress: impl FnMut(&str)
         interval: unit.interval,
         module: unit.module.name.clone(),
         target,
+        placer: median.map(|_| options.placer),
         asked_mhz: unit.clock_mhz,
         modelled_mhz: unit.modelled_mhz(),
         clock_mhz,

@@ -63,6 +63,7 @@ module collector (
   (* hierconn *) wire        \dut.is_response ;
   (* hierconn *) wire        \dut.is_awaited ;
   (* hierconn *) wire [1:0]  \dut.response_slot ;
+  (* hierconn *) wire [3:0]  \dut.response_place ;
   (* hierconn *) wire        \dut.accepted ;
   (* hierconn *) wire [1:0]  \dut.accepted_slot ;
   (* hierconn *) wire [3:0]  \dut.asked ;
@@ -168,6 +169,7 @@ module collector (
     asks_while_any: assert (~\dut.may_ask | (to_request != 32'd0 & \dut.reserved != 3'd4));
     counted: assert (\dut.outstanding == ones(on_port | waiting | arriving) + {2'd0, \dut.answered });
     leftover_is_right: assert (~rd_req_valid | \dut.rd_req_of_job == ~left);
+    decoded: assert (~\dut.is_current | \dut.response_place == heard);
     awaited_is_right: assert (\dut.awaited == marked & \dut.asked == asks_marked & \dut.answers == answers_marked
       & heard == answers_heard & \dut.is_response == (answers_marked != 4'd0)
       & \dut.is_awaited == ((\dut.awaited & \dut.answers ) != 4'd0)

@@ -5,7 +5,7 @@ use assert_cmd::Command;
 use contact_afu::config::Profile;
 use contact_afu::hdl::DelayModel;
 use contact_afu::operator::{Architecture, Operator, Values};
-use contact_afu::synth::{Figures, Options, Target, Trimmed, Unit, synthesise};
+use contact_afu::synth::{Figures, Options, Placer, Target, Trimmed, Unit, synthesise};
 
 fn afu(arguments: &[&str], environment: &[(&str, &str)]) -> std::process::Output {
     let mut command = Command::cargo_bin("afu").expect("the program is built");
@@ -25,9 +25,14 @@ fn what_is_missing_is_exit_3_with_its_command_and_bad_words_are_exit_2() {
         assert_eq!(output.status.code(), Some(3), "{said}");
         assert!(said.contains(variable) && said.contains("install it with: ./scripts/setup --test"), "{said}");
     }
-    for arguments in
-        [&["--operator", "power"][..], &["--target", "tin"], &["--operator", "add", "--seeds", "x"], &["--scpus", "0"]]
-    {
+    for arguments in [
+        &["--operator", "power"][..],
+        &["--target", "tin"],
+        &["--operator", "add", "--seeds", "x"],
+        &["--scpus", "0"],
+        &["--placer", "sa"],
+        &["--placer", "static", "--no-route"],
+    ] {
         assert_eq!(afu(arguments, &[]).status.code(), Some(2), "{arguments:?}");
     }
 }
@@ -44,14 +49,14 @@ fn an_scpu_is_counted_for_a_family_without_memories_of_look_up_tables() {
 fn an_operator_is_placed_and_routed() {
     let cache = tempfile::tempdir().expect("a temporary folder");
     let folder = cache.path().to_str().expect("UTF-8");
-    let run = || {
+    let run = |placer: &[&str]| {
         let arguments = ["--operator", "add", "--profile", "half", "--clock", "150", "--seeds", "1", "--json", "-"];
-        let output = afu(&arguments, &[("AFU_CACHE", folder)]);
+        let output = afu(&[&arguments[..], placer].concat(), &[("AFU_CACHE", folder)]);
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         assert!(output.status.success(), "{said}");
         (serde_json::from_slice::<Figures>(&output.stdout).expect("figures alone on standard output"), said)
     };
-    let (figures, said) = run();
+    let (figures, said) = run(&[]);
     let clock = figures.clock_mhz.expect("routed");
     assert!(clock > 75.0 && figures.seeds.len() == 1 && figures.seeds[0].clock_mhz == clock, "{figures:?}");
     let cycles = figures.latency_cycles.expect("a pipeline");
@@ -63,7 +68,12 @@ fn an_operator_is_placed_and_routed() {
     assert!((path - 1000.0 / clock).abs() < 0.3, "the path of {path} ns is what limits {clock} MHz");
     assert!(figures.critical.iter().any(|hop| hop.stage.is_some()), "{:?}", figures.critical);
     assert!(said.contains("add half, ecp5: critical path"), "{said}");
-    assert_eq!(run().0, figures, "kept and found again");
+    assert_eq!(figures.placer, Some(Placer::Heap));
+    assert_eq!(run(&["--placer", "heap"]).0, figures, "kept and found again");
+    let (other, said) = run(&["--placer", "static"]);
+    assert!(said.contains("add half, ecp5, placer static: critical path"), "{said}");
+    assert_eq!((other.placer, other.area.ffs), (Some(Placer::Static), figures.area.ffs));
+    assert_ne!(other.critical, figures.critical, "cells stand elsewhere");
 }
 
 /// An operator with two architectures, and one with a single architecture, which is listed once.
@@ -84,7 +94,7 @@ fn architectures_stand_side_by_side() {
 #[test]
 fn every_target_counts_and_trims_nothing() {
     for target in Target::ALL {
-        let options = Options { target, seeds: Vec::new() };
+        let options = Options { target, seeds: Vec::new(), placer: Placer::default() };
         let figures = synthesise(&unit(Operator::AtMost, "half", 200.0), &options, |_| ()).expect("counted");
         assert!(figures.area.luts > 5 && figures.clock_mhz.is_none(), "{figures:?}");
         assert_eq!(figures.trimmed, Trimmed::default(), "{target}");

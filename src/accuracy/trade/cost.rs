@@ -7,7 +7,7 @@ use crate::link::LinkModel;
 use crate::query::PairRecord;
 use crate::report::tally::Tally;
 use crate::store::sha256;
-use crate::synth::{Area, Figures, Options, SynthError, Unit, synthesise};
+use crate::synth::{Area, Figures, Options, Placer, SynthError, Unit, synthesise};
 use crate::verify::{Bench, VerifyError};
 use serde::{Deserialize, Serialize};
 
@@ -93,7 +93,7 @@ pub(super) fn hardware(
     key: String,
     progress: impl FnMut(&str),
 ) -> Result<Hardware, SynthError> {
-    let options = Options { target: plan.target, seeds: seeds.to_vec() };
+    let options = Options { target: plan.target, seeds: seeds.to_vec(), placer: Placer::default() };
     // The same stages, with the target's own blocks.
     let Figures { area, clock_mhz, .. } = synthesise(&Unit::scpu_for(config, plan.target)?, &options, progress)?;
     Ok(Hardware { key, area, routed_mhz: clock_mhz })

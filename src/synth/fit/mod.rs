@@ -14,7 +14,7 @@ use self::graphs::{Sample, port, samples, together};
 use super::route::Run;
 use super::run::kept;
 use super::yosys::{Design, synthesise as cells};
-use super::{SynthError, Target, Unit, wrapper};
+use super::{Placer, SynthError, Target, Unit, wrapper};
 use crate::config::Profile;
 use crate::hdl::{BuildErrors, DelayModel};
 use crate::tools::Program;
@@ -84,7 +84,8 @@ pub fn fit(target: Target, seeds: &[u32], mut progress: impl FnMut(&str)) -> Res
         let mut runs = Vec::new();
         for &seed in seeds {
             progress(&format!("{} graphs: nextpnr, seed {seed}", group.len()));
-            let run = Run { nextpnr: &nextpnr, netlist: &netlist, target, device, seed, unit: &unit.name };
+            let placer = Placer::default();
+            let run = Run { nextpnr: &nextpnr, netlist: &netlist, target, device, placer, seed, unit: &unit.name };
             runs.push(run.arrivals(&store)?);
         }
         for sample in &group {

@@ -43,6 +43,13 @@ const COLLECTOR: Rows = &[
         "asks_while_any",
     ),
     (
+        "responses are decoded wrongly",
+        "response_place <= 4'd1 << rd_rsp_tag[1:0];",
+        "response_place <= 4'd1 << rd_rsp_tag[2:1];",
+        2,
+        "decoded",
+    ),
+    (
         "responses to earlier jobs count",
         "is_current <= rd_rsp_valid & (rd_rsp_tag[5:2] == epoch);",
         "is_current <= rd_rsp_valid;",
@@ -146,6 +153,13 @@ const DISPATCHER: Rows = &[
         "slots_are_right",
     ),
     ("freed when asked for", "answered ? (4'd1 << arrived_age) : 4'd0", "wr_req_valid ? 4'd1 : 4'd0", 7, "come_once"),
+    (
+        "acknowledgements are decoded wrongly",
+        "response_place <= 4'd1 << wr_rsp_tag[1:0];",
+        "response_place <= 4'd1 << wr_rsp_tag[2:1];",
+        2,
+        "decoded",
+    ),
     (
         "acknowledgements to earlier jobs count",
         "is_current <= wr_rsp_valid & (wr_rsp_tag[5:2] == epoch);",
