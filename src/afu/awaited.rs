@@ -18,8 +18,9 @@ pub(super) struct Arrival<'g> {
     pub(super) valid: Signal<'g>,
     /// The slot of its request.
     pub(super) slot: Signal<'g>,
-    /// `slot` decoded: its row of marks, if there are several, and its place in a row. The row is zero without a response.
-    row: Option<Signal<'g>>,
+    /// Its row of marks, one-hot; zero without a response.
+    row: Signal<'g>,
+    /// Its place in a row, one-hot.
     place: Signal<'g>,
 }
 
@@ -29,20 +30,20 @@ impl<'g> Arrival<'g> {
         let is_current = valid & tag.high(EPOCH_BITS).equals(epoch);
         let slot = tag.low(slots.ilog2());
         let row_bits = ROW.min(slots).ilog2();
-        let row = || slot.drop_low(row_bits).one_hot().gate(is_current).registered("response_row");
+        let rows = || slot.drop_low(row_bits).one_hot().gate(is_current).registered("response_row");
+        let valid = is_current.registered("is_current");
         Self {
-            valid: is_current.registered("is_current"),
+            valid,
             slot: slot.delay(1).named("response_slot"),
-            row: (slots > ROW).then(row),
+            row: if slots > ROW { rows() } else { valid },
             place: slot.low(row_bits).one_hot().delay(1).named("response_place"),
         }
     }
 
     /// The mark of its slot in the next cycle; none if a job starts.
     fn marks(&self, start: Signal<'g>) -> Signal<'g> {
-        let rows = self.row.unwrap_or(self.valid);
-        let marks = |row: u32| self.place.gate(rows.bit(row) & !start);
-        Signal::join(&(0..rows.width()).rev().map(marks).collect::<Vec<_>>()).registered("answers")
+        let marks = |row: u32| self.place.gate(self.row.bit(row) & !start);
+        Signal::join(&(0..self.row.width()).rev().map(marks).collect::<Vec<_>>()).registered("answers")
     }
 }
 
