@@ -1,12 +1,12 @@
-//! The two comparisons of a sphere with the 16 columns of a row, for the instruction sets of a processor.
+//! The comparisons of a box with 16 boxes and of a sphere with 16 spheres, for the instruction sets of a processor.
 
-use super::rows::{ROW, Row};
+use super::rows::{Boxes, ROW, Row};
 use super::{Bounds, Sphere};
 
-/// Compares a sphere with the columns of a row, and returns one bit for each.
+/// Compares a box or a sphere with 16 columns, and returns one bit for each.
 pub(super) trait Lanes: Copy {
     /// The columns whose box meets `bounds`.
-    fn meeting(self, row: &Row, bounds: &Bounds) -> u16;
+    fn meeting(self, boxes: &Boxes, bounds: &Bounds) -> u16;
 
     /// The columns whose sphere may touch `sphere`, in binary32 and with a margin: see [`may_touch`].
     fn near(self, row: &Row, sphere: &Sphere) -> u16;
@@ -40,11 +40,12 @@ pub(super) struct Portable;
 
 impl Lanes for Portable {
     #[inline(always)]
-    fn meeting(self, row: &Row, bounds: &Bounds) -> u16 {
+    fn meeting(self, boxes: &Boxes, bounds: &Bounds) -> u16 {
         let mut meets = [true; ROW];
         for axis in 0..3 {
             for (column, meets) in meets.iter_mut().enumerate() {
-                *meets &= (row.low[axis][column] <= bounds.high[axis]) & (bounds.low[axis] <= row.high[axis][column]);
+                *meets &= boxes.low[axis][column] <= bounds.high[axis];
+                *meets &= bounds.low[axis] <= boxes.high[axis][column];
             }
         }
         mask(|column| meets[column])
@@ -58,17 +59,42 @@ impl Lanes for Portable {
 }
 
 #[cfg(target_arch = "x86_64")]
-pub(super) use x86::Avx512;
+pub(super) use x86::{Avx2, Avx512};
 
 #[cfg(target_arch = "x86_64")]
 mod x86 {
     use std::arch::x86_64::*;
 
     use super::{LEAST, Lanes, MARGIN};
-    use crate::spheres::rows::Row;
+    use crate::spheres::rows::{Boxes, Row};
     use crate::spheres::{Bounds, Sphere};
 
-    /// A processor with AVX-512: a row is one register per axis.
+    /// A processor with AVX2: 16 columns are two registers per axis or word.
+    #[derive(Clone, Copy)]
+    pub(crate) struct Avx2(());
+
+    impl Avx2 {
+        /// `None` if the processor lacks it.
+        pub(crate) fn new() -> Option<Self> {
+            is_x86_feature_detected!("avx2").then_some(Self(()))
+        }
+    }
+
+    impl Lanes for Avx2 {
+        #[inline(always)]
+        fn meeting(self, boxes: &Boxes, bounds: &Bounds) -> u16 {
+            // SAFETY: `new` found the instruction set.
+            unsafe { meeting_avx2(boxes, bounds) }
+        }
+
+        #[inline(always)]
+        fn near(self, row: &Row, sphere: &Sphere) -> u16 {
+            // SAFETY: `new` found the instruction set.
+            unsafe { near_avx2(row, sphere) }
+        }
+    }
+
+    /// A processor with AVX-512: 16 columns are one register per axis or word.
     #[derive(Clone, Copy)]
     pub(crate) struct Avx512(());
 
@@ -81,26 +107,64 @@ mod x86 {
 
     impl Lanes for Avx512 {
         #[inline(always)]
-        fn meeting(self, row: &Row, bounds: &Bounds) -> u16 {
+        fn meeting(self, boxes: &Boxes, bounds: &Bounds) -> u16 {
             // SAFETY: `new` found the instruction set.
-            unsafe { meeting(row, bounds) }
+            unsafe { meeting_avx512(boxes, bounds) }
         }
 
         #[inline(always)]
         fn near(self, row: &Row, sphere: &Sphere) -> u16 {
             // SAFETY: `new` found the instruction set.
-            unsafe { near(row, sphere) }
+            unsafe { near_avx512(row, sphere) }
         }
     }
 
     #[inline]
+    #[target_feature(enable = "avx2")]
+    fn meeting_avx2(boxes: &Boxes, bounds: &Bounds) -> u16 {
+        let apart = |half: usize| {
+            let mut apart = _mm256_setzero_si256();
+            for axis in 0..3 {
+                // SAFETY: each array has 16 numbers, of which this loads the lower or the upper 8.
+                let [low, high] = [&boxes.low[axis], &boxes.high[axis]]
+                    .map(|edges| unsafe { _mm256_loadu_si256(edges.as_ptr().add(8 * half).cast()) });
+                let is_above = _mm256_cmpgt_epi32(low, _mm256_set1_epi32(bounds.high[axis]));
+                let is_below = _mm256_cmpgt_epi32(_mm256_set1_epi32(bounds.low[axis]), high);
+                apart = _mm256_or_si256(apart, _mm256_or_si256(is_above, is_below));
+            }
+            _mm256_movemask_ps(_mm256_castsi256_ps(apart)) as u16
+        };
+        !(apart(0) | apart(1) << 8)
+    }
+
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    fn near_avx2(row: &Row, sphere: &Sphere) -> u16 {
+        let values = sphere.values();
+        let apart = |half: usize| {
+            let [x, y, z, r] = row.values.each_ref().map(|column| {
+                // SAFETY: each array has 16 numbers, of which this loads the lower or the upper 8.
+                unsafe { _mm256_loadu_ps(column.as_ptr().add(8 * half)) }
+            });
+            let apart = |column, value| _mm256_sub_ps(column, _mm256_set1_ps(value));
+            let square = |value| _mm256_mul_ps(value, value);
+            let sum = square(_mm256_add_ps(r, _mm256_set1_ps(values[3])));
+            let [x, y, z] = [(x, values[0]), (y, values[1]), (z, values[2])].map(|(c, v)| square(apart(c, v)));
+            let distance = _mm256_add_ps(_mm256_add_ps(x, y), z);
+            let bound = _mm256_add_ps(_mm256_mul_ps(sum, _mm256_set1_ps(MARGIN)), _mm256_set1_ps(LEAST));
+            _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GT_OQ>(distance, bound)) as u16
+        };
+        !(apart(0) | apart(1) << 8)
+    }
+
+    #[inline]
     #[target_feature(enable = "avx512f")]
-    fn meeting(row: &Row, bounds: &Bounds) -> u16 {
+    fn meeting_avx512(boxes: &Boxes, bounds: &Bounds) -> u16 {
         let mut meets = u16::MAX;
         for axis in 0..3 {
             // SAFETY: each array has 16 numbers.
             let [low, high] =
-                [&row.low[axis], &row.high[axis]].map(|edges| unsafe { _mm512_loadu_epi32(edges.as_ptr()) });
+                [&boxes.low[axis], &boxes.high[axis]].map(|edges| unsafe { _mm512_loadu_epi32(edges.as_ptr()) });
             meets &= _mm512_cmple_epi32_mask(low, _mm512_set1_epi32(bounds.high[axis]));
             meets &= _mm512_cmple_epi32_mask(_mm512_set1_epi32(bounds.low[axis]), high);
         }
@@ -109,7 +173,7 @@ mod x86 {
 
     #[inline]
     #[target_feature(enable = "avx512f")]
-    fn near(row: &Row, sphere: &Sphere) -> u16 {
+    fn near_avx512(row: &Row, sphere: &Sphere) -> u16 {
         let values = sphere.values();
         // SAFETY: each array has 16 numbers.
         let [x, y, z, r] = row.values.each_ref().map(|column| unsafe { _mm512_loadu_ps(column.as_ptr()) });
@@ -155,10 +219,15 @@ mod tests {
     #[cfg(target_arch = "x86_64")]
     #[test]
     fn every_instruction_set_compares_alike() {
+        Avx2::new().into_iter().for_each(compares_as_portable);
+        Avx512::new().into_iter().for_each(compares_as_portable);
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    fn compares_as_portable(wide: impl Lanes) {
         use crate::kernel::Arithmetic;
         use crate::spheres::{BoundsRule, Rows};
 
-        let Some(wide) = Avx512::new() else { return };
         let rule = BoundsRule::new(Arithmetic::Rounded(Format::WIDE), 20).expect("a rule");
         let pairs = Set::Random(800).pairs(3);
         let halves = |pair: &crate::query::PairRecord| {
@@ -171,10 +240,11 @@ mod tests {
         for row in &rows.rows {
             for sphere in &spheres {
                 let bounds = rule.bounds(*sphere);
-                assert_eq!(wide.meeting(row, &bounds), Portable.meeting(row, &bounds));
-                assert_eq!(wide.near(row, sphere), Portable.near(row, sphere), "{sphere:?}");
-                bits[0] += wide.meeting(row, &bounds).count_ones();
-                bits[1] += wide.near(row, sphere).count_ones();
+                let [meeting, near] = [wide.meeting(&row.boxes, &bounds), wide.near(row, sphere)];
+                assert_eq!(meeting, Portable.meeting(&row.boxes, &bounds));
+                assert_eq!(near, Portable.near(row, sphere), "{sphere:?}");
+                bits[0] += meeting.count_ones();
+                bits[1] += near.count_ones();
             }
         }
         assert!(bits[0] > 1000 && bits[1] > 1000, "{bits:?}");

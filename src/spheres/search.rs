@@ -1,7 +1,7 @@
 //! The search: boxes of 16 rows, then boxes of rows, then each sphere against a row's box, then box against box.
 
 #[cfg(target_arch = "x86_64")]
-use super::lanes::Avx512;
+use super::lanes::{Avx2, Avx512};
 use super::lanes::{Lanes, Portable};
 use super::rows::{ROW, Row, Rows};
 use super::{BoundsRule, RefusedArithmetic, Sphere, reorder};
@@ -99,11 +99,18 @@ impl Search {
         let first = Rows::new(self.rule, spheres);
         let second = others.map(|others| Rows::new(self.rule, others));
         let only_near = only_near && self.rule.contains_binary32();
+        let second = second.as_ref();
         #[cfg(target_arch = "x86_64")]
         if let Some(lanes) = Avx512::new() {
-            return walk(lanes, &first, second.as_ref(), only_near);
+            // SAFETY: `new` found the instruction set.
+            return unsafe { walk_avx512(lanes, &first, second, only_near) };
         }
-        walk(Portable, &first, second.as_ref(), only_near)
+        #[cfg(target_arch = "x86_64")]
+        if let Some(lanes) = Avx2::new() {
+            // SAFETY: `new` found the instruction set.
+            return unsafe { walk_avx2(lanes, &first, second, only_near) };
+        }
+        walk(Portable, &first, second, only_near)
     }
 
     /// The spheres that touch, of one set or of two. `engine` decides the candidates; it must compute in the arithmetic
@@ -161,23 +168,36 @@ fn decided(
     Ok(touching.map(|(spheres, contact)| Hit { spheres, contact }).collect())
 }
 
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f")]
+fn walk_avx512(lanes: Avx512, first: &Rows, second: Option<&Rows>, only_near: bool) -> Candidates {
+    walk(lanes, first, second, only_near)
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn walk_avx2(lanes: Avx2, first: &Rows, second: Option<&Rows>, only_near: bool) -> Candidates {
+    walk(lanes, first, second, only_near)
+}
+
 /// Compares every row of the second set with the rows of the first; within one set, with those up to itself.
+#[inline(always)]
 fn walk<L: Lanes>(lanes: L, first: &Rows, second: Option<&Rows>, only_near: bool) -> Candidates {
     let mut found = Candidates::default();
     found.counts.invalid = first.invalid + second.map_or(0, |second| second.invalid);
     for (number, row) in second.unwrap_or(first).rows.iter().enumerate() {
         let rows = if second.is_none() { number + 1 } else { first.rows.len() };
-        for (group, (around, members)) in first.groups.iter().zip(first.rows[..rows].chunks(ROW)).enumerate() {
+        for (group, boxes) in first.groups[..rows.div_ceil(ROW)].iter().enumerate() {
             found.counts.group_tests += 1;
-            if !around.meets(&row.around) {
+            if !boxes.around.meets(&row.boxes.around) {
                 continue;
             }
-            found.counts.row_tests += members.len() as u64;
-            for (other, member) in (group * ROW..).zip(members) {
-                if member.around.meets(&row.around) {
-                    let is_same = second.is_none() && other == number;
-                    two_rows(lanes, [other, number], [member, row], [is_same, only_near], &mut found);
-                }
+            let members = ROW.min(rows - group * ROW);
+            found.counts.row_tests += members as u64;
+            for member in places(lanes.meeting(boxes, &row.boxes.around) & below(members)) {
+                let other = group * ROW + member;
+                let is_same = second.is_none() && other == number;
+                two_rows(lanes, [other, number], [&first.rows[other], row], [is_same, only_near], &mut found);
             }
         }
     }
@@ -194,26 +214,38 @@ fn two_rows<L: Lanes>(
     found: &mut Candidates,
 ) {
     found.counts.sphere_tests += ROW as u64;
-    for column in 0..ROW {
-        let bounds = row.column(column);
-        if !bounds.meets(&member.around) {
-            continue;
-        }
-        found.counts.column_tests += 1;
-        let mut meeting = lanes.meeting(member, &bounds);
+    let columns = lanes.meeting(&row.boxes, &member.boxes.around);
+    found.counts.column_tests += u64::from(columns.count_ones());
+    for column in places(columns) {
+        let mut meeting = lanes.meeting(&member.boxes, &row.boxes.column(column));
         if is_same {
-            meeting &= (1 << column) - 1;
+            meeting &= below(column);
         }
         found.counts.candidates += u64::from(meeting.count_ones());
         if only_near && meeting != 0 {
             meeting &= lanes.near(member, &row.sphere(column));
         }
         let sphere = (second * ROW + column) as u32;
-        while meeting != 0 {
-            found.pairs.push([(first * ROW) as u32 + meeting.trailing_zeros(), sphere]);
-            meeting &= meeting - 1;
-        }
+        found.pairs.extend(places(meeting).map(|place| [(first * ROW + place) as u32, sphere]));
     }
+}
+
+/// The columns before this one.
+#[inline(always)]
+fn below(column: usize) -> u16 {
+    ((1_u32 << column) - 1) as u16
+}
+
+/// The columns whose bits are set, in order.
+#[inline(always)]
+fn places(mut columns: u16) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let place = columns.trailing_zeros() as usize;
+        (columns != 0).then(|| {
+            columns &= columns - 1;
+            place
+        })
+    })
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! What a search compares, row by row: what a model of its hardware counts the cycles of.
 
-use super::rows::{ROW, Row, Rows};
+use super::rows::{Boxes, ROW, Row, Rows};
 use super::{Bounds, Search, Sphere};
 
 /// What the search of a row compares.
@@ -39,11 +39,13 @@ impl Search {
             let rows = if second.is_none() { number + 1 } else { table.rows.len() };
             let groups = rows.div_ceil(ROW);
             let own = second.is_none().then_some(number / ROW);
-            let met = (0..groups).filter(|group| own == Some(*group) || table.groups[*group].meets(&row.around));
+            let met =
+                (0..groups).filter(|group| own == Some(*group) || table.groups[*group].around.meets(&row.boxes.around));
             let of_group = |group: usize| {
                 let members = group * ROW..rows.min((group + 1) * ROW);
-                let met = members.filter(|member| table.rows[*member].around.meets(&row.around));
-                let met = met.map(|member| members_of(row, &table.rows[member], member, own.map(|_| number)));
+                let met = members.filter(|member| table.rows[*member].boxes.around.meets(&row.boxes.around));
+                let met =
+                    met.map(|member| members_of(&row.boxes, &table.rows[member].boxes, member, own.map(|_| number)));
                 GroupTrace { number: group, met: met.collect() }
             };
             RowTrace { groups, met: met.map(of_group).collect() }
@@ -53,7 +55,7 @@ impl Search {
 }
 
 /// The comparison of a row with another one. In one set, `own` is the number of the row.
-fn members_of(row: &Row, other: &Row, number: usize, own: Option<usize>) -> MemberTrace {
+fn members_of(row: &Boxes, other: &Boxes, number: usize, own: Option<usize>) -> MemberTrace {
     let near = (0..ROW).filter(|place| row.column(*place).meets(&other.around));
     let near = near.map(|place| {
         let bounds: Bounds = row.column(place);
