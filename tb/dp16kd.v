@@ -123,6 +123,10 @@ module DP16KD #(
     half = (bits != 9) ? word : {9'd0, upper ? word[17:9] : word[8:0]};
   endfunction
 
+  // A word that is read in the cycle in which it is written is unknown: here its bits are the wrong ones.
+  wire is_same_place = address_a[13:5] == address_b[13:5] && (WHOLE || address_a[4] == address_b[4]);
+  wire [17:0] collision = {18{CEA && WEA && CEB && is_same_place}};
+
   reg [17:0] word_a, word_b, register_a, register_b;
   always @(posedge CLKA) begin
     if (CEA && WEA && WHOLE) begin
@@ -134,9 +138,9 @@ module DP16KD #(
   end
   always @(posedge CLKB) begin
     if (CEB && WHOLE) begin
-      word_a <= words[{address_b[13:5], 1'b0}];
-      word_b <= words[{address_b[13:5], 1'b1}];
-    end else if (CEB) word_b <= half(words[address_b[13:4]], DATA_WIDTH_B, address_b[3]);
+      word_a <= words[{address_b[13:5], 1'b0}] ^ collision;
+      word_b <= words[{address_b[13:5], 1'b1}] ^ collision;
+    end else if (CEB) word_b <= half(words[address_b[13:4]] ^ collision, DATA_WIDTH_B, address_b[3]);
     if (OCEB) register_b <= word_b;
     if (OCEB && WHOLE) register_a <= word_a;
   end

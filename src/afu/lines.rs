@@ -7,9 +7,10 @@ use super::Spec;
 
 /// Cycles from an address to its line, if nothing holds the line back.
 pub(super) const CYCLES_TO_WORD: u32 = 2;
-/// Words and bits of a word that one primitive holds.
+/// Words and bits of a word that one primitive holds, and the words if it has half as many bits.
 const PRIMITIVE_DEPTH: u32 = 512;
 const PRIMITIVE_WIDTH: u32 = 36;
+const DEEPEST_PRIMITIVE: u32 = 2 * PRIMITIVE_DEPTH;
 
 /// The inputs of a memory of lines.
 pub(super) struct Access<'g> {
@@ -33,7 +34,7 @@ pub(super) fn line_memory<'g>(
     access: &Access<'g>,
 ) -> Result<Signal<'g>, BuildErrors> {
     let bits = access.line.width();
-    let primitive = spec.delays.memory_primitive.filter(|_| depth <= PRIMITIVE_DEPTH);
+    let primitive = spec.delays.memory_primitive.filter(|_| depth <= DEEPEST_PRIMITIVE);
     // For a deeper memory a block memory has fewer bits of each word, so no word is chosen behind several of them.
     let fits = (PRIMITIVE_DEPTH * PRIMITIVE_WIDTH / depth.max(PRIMITIVE_DEPTH)).max(1);
     let widest = spec.delays.memory_primitive.map_or(bits, |_| fits);

@@ -136,7 +136,7 @@ impl<'g> MemoryHandle<'g> {
     }
 
     /// The word at `address` before the last clock edge: a registered read. A read of the address that is being written
-    /// returns the old word in simulation, which must not be relied on.
+    /// may return anything: the old word in a simulator of the Verilog, and its complement in the evaluator.
     #[track_caller]
     pub fn read(self, address: Signal<'g>) -> Signal<'g> {
         self.read_at(&[address], Location::caller())

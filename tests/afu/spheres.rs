@@ -9,7 +9,10 @@ use contact_afu::cosim::Trace;
 use contact_afu::link::{Description, LinkModel, NAMES};
 use contact_afu::query::Fields;
 use contact_afu::spheres::{Sphere, SphereSet, Spheres, hilbert_order, reorder};
+use contact_afu::synth::Target;
 use contact_afu::verify::{Bench, SpheresVerdict, VerifyError};
+
+use crate::primitives::primitives;
 
 fn config(search: Search) -> Config {
     Config {
@@ -216,17 +219,43 @@ fn found(config: &Config, faults: &[(&str, &str, &str, &str)]) {
     let sets = [sorted(set("gas:500:0.4")), tangents(), set("probes:100:300"), crowd];
     for &(what, file, old, new) in faults {
         let folder = tempfile::tempdir().unwrap();
-        for (name, text) in afu.files() {
-            let path = folder.path().join(&name);
-            fs::create_dir_all(path.parent().unwrap()).unwrap();
-            fs::write(path, text).unwrap();
-        }
+        write(&afu, folder.path());
         plant(&folder.path().join(file), old, new);
         let bench = Bench::of_folder(folder.path(), None, Trace::Off).unwrap();
         let jobs = ["ideal", "hostile"].into_iter().flat_map(|link| sets.iter().map(move |spheres| (spheres, link)));
         let is_found =
             jobs.into_iter().any(|(spheres, link)| run(&bench, spheres, link, 1).map_or(true, |v| !v.is_good()));
         assert!(is_found, "{what}: {file}");
+    }
+}
+
+/// As synthesis for an ECP5 reads it: every block memory is a model that gives wrong bits for a word that is read in the
+/// cycle in which it is written. Spheres of the table are in the memories of 1 024 words.
+#[test]
+fn a_search_in_primitives_finds_every_hit() {
+    let config = config(Search { table: 2048, lanes: 16, deciders: 2, ..Search::default() });
+    let afu = Afu::generate(Spec { delays: Target::Ecp5.delays(), ..Spec::from(config) }).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    write(&afu, folder.path());
+    assert!(folder.path().join("line_memory_1024x18_ecp5.v").exists());
+    fs::write(folder.path().join("primitives.v"), primitives()).unwrap();
+    let list = folder.path().join("contact_afu.f");
+    let files = fs::read_to_string(&list).unwrap();
+    fs::write(&list, format!("primitives.v\n{files}")).unwrap();
+    let bench = Bench::of_folder(folder.path(), None, Trace::Off).unwrap();
+    for link in ["ideal", "hostile"] {
+        for spheres in [sorted(set("diamond:11")), set("probes:500:700")] {
+            let verdict = run(&bench, &spheres, link, 5).unwrap();
+            assert!(verdict.is_good() && !verdict.hits.is_empty(), "{link}: {:?}", verdict.failed_checks);
+        }
+    }
+}
+
+fn write(afu: &Afu, folder: &Path) {
+    for (name, text) in afu.files() {
+        let path = folder.join(&name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
     }
 }
 

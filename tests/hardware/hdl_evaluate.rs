@@ -59,7 +59,7 @@ fn delays_of_every_length_lag_by_it() {
 }
 
 #[test]
-fn a_memory_read_gives_what_stood_there_before_the_edge() {
+fn a_memory_read_gives_what_stood_there_unless_it_is_written() {
     let g = Graph::new("memory");
     let (enable, to, data, from) = (g.input("enable", 1), g.input("to", 3), g.input("data", 70), g.input("from", 3));
     let memory = g.memory("words", 5, 70);
@@ -74,8 +74,9 @@ fn a_memory_read_gives_what_stood_there_before_the_edge() {
         run.step();
         run.get("word")
     };
-    assert_eq!(write(&mut run, 1, 3, 1 << 69 | 7, 3), 0, "the old word");
+    assert_eq!(write(&mut run, 1, 3, 1 << 69 | 7, 3), (1 << 70) - 1, "all bits of the old word are wrong");
     assert_eq!(write(&mut run, 0, 3, 1, 3), 1 << 69 | 7, "written");
+    assert_eq!(write(&mut run, 0, 3, 1, 3), 1 << 69 | 7, "nothing is written now");
     assert_eq!(write(&mut run, 1, 4, 5, 3), 1 << 69 | 7, "not written without enable");
     assert_eq!(write(&mut run, 1, 7, 9, 4), 5);
     assert_eq!(write(&mut run, 0, 0, 0, 7), 0, "nothing stands beyond the end");

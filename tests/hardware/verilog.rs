@@ -97,7 +97,7 @@ fn a_memory_asks_for_what_the_family_has() {
     };
     let small = r#"(* ram_style = "distributed", ramstyle = "MLAB, no_rw_check" *)"#;
     assert_eq!(attributes(Memories::Any), [small, r#"(* ram_style = "block", ramstyle = "no_rw_check" *)"#]);
-    let [small, large] = [r#"(* ram_style = "distributed" *)"#, r#"(* ram_style = "block" *)"#];
+    let [small, large] = [r#"(* ram_style = "distributed" *)"#, r#"(* ram_style = "block", no_rw_check *)"#];
     assert_eq!(attributes(Memories::BlocksAndLuts), [small, large]);
     assert_eq!(attributes(Memories::Blocks), [large]);
 }

@@ -320,6 +320,10 @@ impl Recipe {
                     held[0] = memory.get(read).cloned().unwrap_or(vec![false; width]);
                     let write = small(&resized(operand(1), 3));
                     if let (true, Some(word)) = (operand(0)[0], memory.get_mut(write)) {
+                        // What is read while it is written is wrong in every bit.
+                        if read == write {
+                            held[0].iter_mut().for_each(|bit| *bit = !*bit);
+                        }
                         *word = resized(operand(2), width);
                     }
                 }

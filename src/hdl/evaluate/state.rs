@@ -32,6 +32,8 @@ struct Memory {
     words: Vec<u64>,
     words_each: usize,
     depth: u64,
+    /// The bits of a word's last part.
+    last_part: u64,
     /// Enable, address, and the words of the data.
     write: Option<(u32, u32, Vec<u32>)>,
 }
@@ -134,7 +136,8 @@ impl Elements {
                     (at(enable)[0], at(address)[0], at(data))
                 });
                 let words = vec![0; memory.depth as usize * words_each];
-                memories.push(Memory { words, words_each, depth: u64::from(memory.depth), write });
+                let last_part = u64::MAX >> (memory.width.wrapping_neg() % u64::BITS);
+                memories.push(Memory { words, words_each, depth: u64::from(memory.depth), last_part, write });
                 memories.len() - 1
             });
             let enable = (flat.node(id).operands.len() > 1).then(|| operand(id, 1)[0]);
@@ -194,6 +197,11 @@ impl State {
                 samples.copy_from_slice(&words[present..][..memory.words_each]);
             } else if address < memory.depth {
                 samples.copy_from_slice(&memory.words[address as usize * memory.words_each..][..memory.words_each]);
+                // A block memory that writes this word now may return anything. So whatever uses it shall go wrong.
+                if memory.write.as_ref().is_some_and(|(enable, place, _)| at(*enable) != 0 && at(*place) == address) {
+                    samples.iter_mut().for_each(|part| *part = !*part);
+                    samples[memory.words_each - 1] &= memory.last_part;
+                }
             } else {
                 samples.fill(0);
             }

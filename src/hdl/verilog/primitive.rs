@@ -1,5 +1,7 @@
 //! A vendor's primitive for synthesis, beside the plain logic that simulators read.
 
+use std::ops::Range;
+
 use super::super::module::{Module, Op, Primitive};
 
 /// Bits of a factor of a MULT18X18D.
@@ -90,20 +92,31 @@ const HALF: usize = WORDS * VALUES / 2;
 
 /// A table, or a memory that is written too.
 fn dp16kd(module: &Module) -> String {
-    let (bits, parameters, ports) = if module.memories.is_empty() { table(module) } else { memory(module) };
+    let Block { word, parameters, ports } = if module.memories.is_empty() { table(module) } else { memory(module) };
     let lines: Vec<String> = ports.iter().flat_map(|group| group.chunks(6)).map(|line| line.join(", ")).collect();
     let all = 2 * WORD;
     let mut out = format!("  wire [{}:0] whole;\n", all - 1);
     out += &format!("  DP16KD #(\n{}\n  ) block (\n    {}\n  );\n", parameters.join(",\n"), lines.join(",\n    "));
-    out += &format!("  assign word = whole[{}:0];\n", bits - 1);
-    if bits < all {
-        out += &format!("\n  // Bits that nothing needs.\n  wire unused = &{{1'b0, whole[{}:{bits}]}};\n", all - 1);
+    out += &format!("  assign word = whole[{}:{}];\n", word.end - 1, word.start);
+    let unused: Vec<_> = [word.end..all, 0..word.start]
+        .into_iter()
+        .filter(|bits| !bits.is_empty())
+        .map(|bits| format!("whole[{}:{}]", bits.end - 1, bits.start))
+        .collect();
+    if !unused.is_empty() {
+        out += &format!("\n  // Bits that nothing needs.\n  wire unused = &{{1'b0, {}}};\n", unused.join(", "));
     }
     out
 }
 
-/// Bits of the word, parameters, and the connections of ports A and B.
-type Block = (u32, Vec<String>, [Vec<String>; 2]);
+/// How a block memory is used.
+struct Block {
+    /// Where the word stands among the bits that both ports read.
+    word: Range<u32>,
+    parameters: Vec<String>,
+    /// The connections of ports A and B.
+    ports: [Vec<String>; 2],
+}
 
 fn width(module: &Module, port: &str) -> u32 {
     module.port(port).map_or(0, |(_, port)| port.width)
@@ -165,25 +178,27 @@ fn table(module: &Module) -> Block {
         });
         port(letter, address, |_| "1'b0".to_owned(), ["1'b0", "1'b1", "1'b1"])
     };
-    (width(module, "word"), parameters, [connected("A", 0), connected("B", 1)])
+    Block { word: 0..width(module, "word"), parameters, ports: [connected("A", 0), connected("B", 1)] }
 }
 
-/// Ports `write_index`, `write_word`, `read_index` and `word`, of up to 36 bits, and `write`, `read` and `advance`
-/// if the module has them. Port A writes whole words, port B reads them. Each port has half of the word that was
-/// read, in its own register.
+/// Ports `write_index`, `write_word`, `read_index` and `word`, and `write`, `read` and `advance` if the module has them.
+/// Port A writes whole words, port B reads them. In half of the memory's words are up to 36 bits, and each port has half
+/// of the word that was read, in its own register. Otherwise they are up to 18 bits, and port B has them.
 fn memory(module: &Module) -> Block {
+    let is_deep = module.memories.iter().any(|memory| memory.depth as usize > HALF);
+    // The lowest bits of an address that is written choose the bytes, of which a word of 18 bits has two.
+    let (bytes, lowest, bits, first) = if is_deep { (2, 4, WORD, WORD) } else { (4, 5, 2 * WORD, 0) };
     let address = |index: &str, low: &str| {
         std::array::from_fn(|place| match place {
-            0..4 => low.to_owned(),
-            4 => "1'b0".to_owned(),
-            _ => bit(module, index, place as u32 - 5),
+            _ if place < bytes => low.to_owned(),
+            _ if place < lowest => "1'b0".to_owned(),
+            _ => bit(module, index, (place - lowest) as u32),
         })
     };
     let written = |place: u32| bit(module, "write_word", place);
-    // The lowest bits of the address that is written choose its bytes.
     let given = |port: &str, text: &'static str, otherwise| if module.port(port).is_some() { text } else { otherwise };
     let [write, read, advance] = ["write", "read", "advance"].map(|name| given(name, name, "1'b1"));
     let a = port("A", address("write_index", "1'b1"), written, [write, "1'b1", advance]);
     let b = port("B", address("read_index", "1'b0"), written, ["1'b0", read, advance]);
-    (width(module, "word"), modes(2 * WORD).to_vec(), [a, b])
+    Block { word: first..first + width(module, "word"), parameters: modes(bits).to_vec(), ports: [a, b] }
 }

@@ -19,11 +19,12 @@ const LARGEST_DISTRIBUTED: u32 = 4096;
 /// A memory narrower than this would waste a block RAM.
 const NARROWEST_BLOCK: u32 = 8;
 
-/// The attribute of a block memory.
+/// The attribute of a block memory. No word is used that was read in the cycle in which it was written: without saying
+/// so, synthesis puts a register and a choice behind each bit.
 pub(super) const fn block_style(memories: Memories) -> &'static str {
     match memories {
         Memories::Any => "  (* ram_style = \"block\", ramstyle = \"no_rw_check\" *)\n",
-        Memories::BlocksAndLuts | Memories::Blocks => "  (* ram_style = \"block\" *)\n",
+        Memories::BlocksAndLuts | Memories::Blocks => "  (* ram_style = \"block\", no_rw_check *)\n",
     }
 }
 
