@@ -228,12 +228,14 @@ fn spheres<'g>(
 ) -> (Signal<'g>, Signal<'g>, Signal<'g>) {
     let keeps = mode.is(2).named("mode_keeps_table");
     let has_others = (mode.is(1) | keeps).named("mode_has_others");
-    let lines = |spheres: Signal<'g>| {
-        let rows = spheres.extend(COUNT_BITS + 1).plus(15).drop_low(4);
-        rows.append_zeros(2).extend(COUNT_BITS + 1).low(COUNT_BITS)
+    // A job with more spheres than `most` is refused before it reads a line, so these sums have no more bits.
+    let rows = |spheres: Signal<'g>, most: u32| {
+        let bits = most.ilog2() + 1;
+        spheres.low(bits).extend(bits + 1).plus(15).drop_low(4).extend(MOST_OTHERS.ilog2() - 2)
     };
-    let own = lines(count).gate(!keeps).named("lines_of_table");
-    let of_others = lines(others).gate(has_others).named("lines_of_others");
+    let own = rows(count, spec.config.search.table).gate(!keeps).named("rows_of_table");
+    let of_others = rows(others, MOST_OTHERS).gate(has_others).named("rows_of_others");
+    let lines = (own + of_others).append_zeros(2).extend(COUNT_BITS);
     for (name, value) in
         [("has_others", has_others), ("keeps_table", keeps), ("job_count", count), ("job_others", others)]
     {
@@ -244,5 +246,5 @@ fn spheres<'g>(
     let exceeds = |spheres: Signal<'g>, most: u32| spheres.greater_than(spheres.same(most.into()));
     let is_too_large =
         (!keeps & exceeds(count, spec.config.search.table)) | (has_others & exceeds(others, MOST_OTHERS));
-    (own + of_others, mode.drop_low(2).any() | mode.low(2).all(), is_too_large.named("is_too_large"))
+    (lines, mode.drop_low(2).any() | mode.low(2).all(), is_too_large.named("is_too_large"))
 }

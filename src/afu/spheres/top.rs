@@ -111,7 +111,8 @@ pub(in crate::afu) fn spheres_top(
     inputs.extend(named(&boxes));
     let rows = graph.instance("rows", &rows::rows(&sizes)?, &inputs);
 
-    let one_set = !has_others;
+    // It stays for a job, and the parts stand far from one another and from the control: each has a register of it.
+    let one_set = (!has_others).copies("one_set", 3);
 
     // Groups of rows: one item a row.
     let (_, groups_takes) = wire("groups_take", 1);
@@ -124,7 +125,6 @@ pub(in crate::afu) fn spheres_top(
         groups_takes,
     )?;
     let queries = [
-        ("one_set", one_set),
         ("table_last", rows.output("table_last")),
         ("write_query", rows.output("writes_query")),
         ("write_query_row", rows.output("row_box_row")),
@@ -146,6 +146,7 @@ pub(in crate::afu) fn spheres_top(
     if sizes.top_bits > 0 {
         inputs.push(("write_word", rows.output("group_box_group").drop_low(ROW_BITS)));
     }
+    inputs.push(("one_set", one_set[0]));
     inputs.extend(queries);
     let groups = graph.instance("groups", &level(spec, &sizes, Level::Groups)?, &inputs);
     groups_takes.drive(groups.output("takes"));
@@ -175,6 +176,7 @@ pub(in crate::afu) fn spheres_top(
         ("write_word", rows.output("row_box_row").slice(ROW_BITS, sizes.group_bits)),
         ("write_box", rows.output("row_box")),
     ];
+    inputs.push(("one_set", one_set[1]));
     inputs.extend(queries);
     inputs.extend(item.place.map(|place| ("item_place", place)));
     let group_rows = graph.instance("group_rows", &level(spec, &sizes, Level::Rows)?, &inputs);
@@ -237,7 +239,7 @@ pub(in crate::afu) fn spheres_top(
         ("write_own", write_own),
         ("write_column", column),
         ("write_row", row),
-        ("one_set", one_set),
+        ("one_set", one_set[2]),
     ];
     let table_boxes = each("box", "write_box");
     inputs.extend(named(&table_boxes));
