@@ -229,8 +229,8 @@ fn found(config: &Config, faults: &[(&str, &str, &str, &str)]) {
     }
 }
 
-/// As synthesis for an ECP5 reads it: every block memory is a model that gives wrong bits for a word that is read in the
-/// cycle in which it is written. Spheres of the table are in the memories of 1 024 words.
+/// As synthesis for an ECP5 reads it: every block memory is a model that gives wrong bits for a word that is read in
+/// the cycle in which it is written. Spheres of the table are in the memories of 1 024 words.
 #[test]
 fn a_search_in_primitives_finds_every_hit() {
     let config = config(Search { table: 2048, lanes: 16, deciders: 2, ..Search::default() });

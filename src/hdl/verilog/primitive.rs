@@ -181,9 +181,9 @@ fn table(module: &Module) -> Block {
     Block { word: 0..width(module, "word"), parameters, ports: [connected("A", 0), connected("B", 1)] }
 }
 
-/// Ports `write_index`, `write_word`, `read_index` and `word`, and `write`, `read` and `advance` if the module has them.
-/// Port A writes whole words, port B reads them. In half of the memory's words are up to 36 bits, and each port has half
-/// of the word that was read, in its own register. Otherwise they are up to 18 bits, and port B has them.
+/// Ports `write_index`, `write_word`, `read_index` and `word`; `write`, `read` and `advance` if the module has them.
+/// Port A writes whole words, port B reads them. In half of the memory's words are up to 36 bits, and each port has
+/// half of the word that was read, in its own register. Otherwise they are up to 18 bits, and port B has them.
 fn memory(module: &Module) -> Block {
     let is_deep = module.memories.iter().any(|memory| memory.depth as usize > HALF);
     // The lowest bits of an address that is written choose the bytes, of which a word of 18 bits has two.
