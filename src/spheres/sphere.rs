@@ -31,8 +31,9 @@ impl Sphere {
     }
 
     /// True if all numbers are finite and the radius is not below zero (−0 is valid).
+    #[inline]
     pub fn is_valid(self) -> bool {
-        Self::rules().zip(self.0).all(|(input, word)| input.rule.holds(word))
+        self.with(Self::default()).is_valid(Query::SphereSphere)
     }
 
     /// The name of the first word that breaks its rule.
@@ -41,6 +42,7 @@ impl Sphere {
     }
 
     /// The pair of this sphere and another one.
+    #[inline]
     pub fn with(self, second: Self) -> PairRecord {
         let mut pair = PairRecord::default();
         pair.0[..WORDS].copy_from_slice(&self.0);
