@@ -158,6 +158,19 @@ impl Cells {
         }
     }
 
+    /// Of the spheres from `begin` to `end`, those whose bits are set touch the one with this number.
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    fn push(&self, [begin, end]: [usize; 2], mut touching: u32, number: u32, found: &mut Vec<[u32; 2]>) {
+        if end - begin < 16 {
+            touching &= (1 << (end - begin)) - 1;
+        }
+        while touching != 0 {
+            found.push([self.number[begin + touching.trailing_zeros() as usize], number]);
+            touching &= touching - 1;
+        }
+    }
+
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx512f")]
     fn pairs_avx512(&self, found: &mut Vec<[u32; 2]>) {
@@ -187,14 +200,8 @@ impl Cells {
             ];
             let sum = _mm512_add_ps(load(&self.r), value[3]);
             let squared = _mm512_fmadd_ps(dz, dz, _mm512_fmadd_ps(dy, dy, _mm512_mul_ps(dx, dx)));
-            let mut mask = _mm512_cmp_ps_mask::<_CMP_LE_OQ>(squared, _mm512_mul_ps(sum, sum));
-            if end - at < 16 {
-                mask &= (1 << (end - at)) - 1;
-            }
-            while mask != 0 {
-                found.push([self.number[at + mask.trailing_zeros() as usize], number]);
-                mask &= mask - 1;
-            }
+            let touch = _mm512_cmp_ps_mask::<_CMP_LE_OQ>(squared, _mm512_mul_ps(sum, sum));
+            self.push([at, end], u32::from(touch), number, found);
             at += 16;
         }
     }
@@ -229,14 +236,7 @@ impl Cells {
             let sum = _mm256_add_ps(load(&self.r), value[3]);
             let squared = _mm256_fmadd_ps(dz, dz, _mm256_fmadd_ps(dy, dy, _mm256_mul_ps(dx, dx)));
             let touch = _mm256_cmp_ps::<_CMP_LE_OQ>(squared, _mm256_mul_ps(sum, sum));
-            let mut mask = _mm256_movemask_ps(touch);
-            if end - at < 8 {
-                mask &= (1 << (end - at)) - 1;
-            }
-            while mask != 0 {
-                found.push([self.number[at + mask.trailing_zeros() as usize], number]);
-                mask &= mask - 1;
-            }
+            self.push([at, end], _mm256_movemask_ps(touch) as u32, number, found);
             at += 8;
         }
     }

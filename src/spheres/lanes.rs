@@ -69,54 +69,43 @@ mod x86 {
     use crate::spheres::rows::{Boxes, Row};
     use crate::spheres::{Bounds, Sphere};
 
-    /// A processor with AVX2: 16 columns are two registers per axis or word.
-    #[derive(Clone, Copy)]
-    pub(crate) struct Avx2(());
+    /// A processor with an instruction set, and its comparisons.
+    macro_rules! processor {
+        ($(#[$about:meta])* $name:ident, $set:tt, $meeting:ident, $near:ident) => {
+            $(#[$about])*
+            #[derive(Clone, Copy)]
+            pub(crate) struct $name(());
 
-    impl Avx2 {
-        /// `None` if the processor lacks it.
-        pub(crate) fn new() -> Option<Self> {
-            is_x86_feature_detected!("avx2").then_some(Self(()))
-        }
+            impl $name {
+                /// `None` if the processor lacks the instruction set.
+                pub(crate) fn new() -> Option<Self> {
+                    is_x86_feature_detected!($set).then_some(Self(()))
+                }
+            }
+
+            impl Lanes for $name {
+                #[inline(always)]
+                fn meeting(self, boxes: &Boxes, bounds: &Bounds) -> u16 {
+                    // SAFETY: `new` found the instruction set.
+                    unsafe { $meeting(boxes, bounds) }
+                }
+
+                #[inline(always)]
+                fn near(self, row: &Row, sphere: &Sphere) -> u16 {
+                    // SAFETY: `new` found the instruction set.
+                    unsafe { $near(row, sphere) }
+                }
+            }
+        };
     }
 
-    impl Lanes for Avx2 {
-        #[inline(always)]
-        fn meeting(self, boxes: &Boxes, bounds: &Bounds) -> u16 {
-            // SAFETY: `new` found the instruction set.
-            unsafe { meeting_avx2(boxes, bounds) }
-        }
-
-        #[inline(always)]
-        fn near(self, row: &Row, sphere: &Sphere) -> u16 {
-            // SAFETY: `new` found the instruction set.
-            unsafe { near_avx2(row, sphere) }
-        }
+    processor! {
+        /// A processor with AVX2: 16 columns are two registers per axis or word.
+        Avx2, "avx2", meeting_avx2, near_avx2
     }
-
-    /// A processor with AVX-512: 16 columns are one register per axis or word.
-    #[derive(Clone, Copy)]
-    pub(crate) struct Avx512(());
-
-    impl Avx512 {
-        /// `None` if the processor lacks it.
-        pub(crate) fn new() -> Option<Self> {
-            is_x86_feature_detected!("avx512f").then_some(Self(()))
-        }
-    }
-
-    impl Lanes for Avx512 {
-        #[inline(always)]
-        fn meeting(self, boxes: &Boxes, bounds: &Bounds) -> u16 {
-            // SAFETY: `new` found the instruction set.
-            unsafe { meeting_avx512(boxes, bounds) }
-        }
-
-        #[inline(always)]
-        fn near(self, row: &Row, sphere: &Sphere) -> u16 {
-            // SAFETY: `new` found the instruction set.
-            unsafe { near_avx512(row, sphere) }
-        }
+    processor! {
+        /// A processor with AVX-512: 16 columns are one register per axis or word.
+        Avx512, "avx512f", meeting_avx512, near_avx512
     }
 
     #[inline]

@@ -12,11 +12,12 @@ mod verilated;
 use contact_afu::query::Query;
 use std::sync::Arc;
 
-use contact_afu::config::{Config, Profile, Shell};
-use contact_afu::hdl::{DelayModel, Graph, Module, Signal};
+use contact_afu::afu::{Afu, Spec};
+use contact_afu::config::{Config, Input, Profile, Results, Search, Shell};
+use contact_afu::hdl::{DelayModel, Evaluator, Graph, Module, Signal};
 use contact_afu::operator::{Operator, Values};
 use contact_afu::pairs::{self, Set};
-use contact_afu::query::PairRecord;
+use contact_afu::query::{Fields, PairRecord};
 use contact_afu::record::Layout;
 use contact_afu::synth::{Target, Unit};
 use rand::{RngExt, SeedableRng};
@@ -128,6 +129,47 @@ fn copies_of_a_register_are_kept() {
     };
     assert_eq!(registers(true), 8 + 2);
     assert_eq!(registers(false), 8 + 1);
+}
+
+/// Of a word that is read in the cycle in which it is written, the model of a block memory gives the wrong bits, as the
+/// evaluator does. Elsewhere both give the word.
+#[test]
+fn a_read_that_meets_a_write_is_wrong_in_every_bit() {
+    let search = Search { table: 2048, lanes: 16, deciders: 2, ..Search::default() };
+    let (input, results, contact, shell) = (Input::Spheres, Results::Hits, Fields::HIT, Shell::Line);
+    let config = Config { input, results, contact, shell, search, ..Config::default() };
+    let afu = Afu::generate(Spec { delays: Target::Ecp5.delays(), ..Spec::from(config) }).expect("a search");
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(5);
+    for (name, index_bits, bits) in [("line_memory_1024x18_ecp5", 10, 18), ("line_memory_128x36_ecp5", 7, 36)] {
+        let memory = afu.top().hierarchy().into_iter().find(|module| module.name == name).expect(name);
+        let graph = Graph::new("memory_that_reads_always");
+        let always = graph.constant(1, 1);
+        let widths = [("write", 1), ("write_index", index_bits), ("write_word", bits), ("read_index", index_bits)];
+        let mut inputs = widths.map(|(name, width)| (name, graph.input(name, width))).to_vec();
+        inputs.extend([("read", always), ("advance", always)]);
+        graph.output("word", graph.instance("memory", &memory, &inputs).output("word"));
+        let module = graph.finish().expect("a sound module");
+
+        // Eight places in all of the memory, so that reads and writes meet.
+        let mut place = || (random.random_range(0..8_u128) * 0x91) & ((1 << index_bits) - 1);
+        let places: Vec<[u128; 2]> = (0..4000).map(|_| [place(), place()]).collect();
+        let values = |&[to, from]: &[u128; 2]| {
+            let word = u128::from(random.random::<u64>()) & ((1 << bits) - 1);
+            vec![(u128::from(random.random::<bool>()), 1), (to, index_bits), (word, bits), (from, index_bits)]
+        };
+        let inputs: Vec<Vector> = places.iter().map(values).collect();
+        let meets = |input: &&Vector| input[0].0 == 1 && input[1].0 == input[3].0;
+        assert!((100..400).contains(&inputs.iter().filter(meets).count()));
+        let mut run = Evaluator::new(&module, &[]).expect("it runs");
+        let mut step = |input: &Vector| {
+            widths.iter().zip(input).for_each(|((name, _), (value, _))| run.set(name, *value));
+            run.step();
+            vec![(run.get("word"), bits)]
+        };
+        let mut wanted: Vec<Vector> = inputs.iter().map(&mut step).skip(1).collect();
+        wanted.push(step(&inputs[0]));
+        check(name, &module, &[As::Blocks], 2, &inputs, &wanted);
+    }
 }
 
 /// The comparison can fail: an inverted bit and an undriven one are detected.
