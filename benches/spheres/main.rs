@@ -88,7 +88,7 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
         .iter()
         .map(|&set| Ok((set, measure::in_order(spheres::load(set, SEED)?.0))))
         .collect::<Result<Vec<_>, spheres::LoadError>>()?;
-    let seconds = if options.quick { 0.1 } else { 0.5 };
+    let seconds = if options.quick { 0.1 } else { 1.0 };
     let mut rows = Vec::new();
     // All measured before the first model is built: the compilers that build it take the processor's time.
     for (set, spheres) in &sets {

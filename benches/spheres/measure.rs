@@ -15,6 +15,8 @@ use super::peers;
 
 /// Seconds of a first pass after which there is no second one.
 const SLOW: f64 = 3.0;
+/// How often each column has its turn: what else a machine does slows it for seconds, and then all columns alike.
+const TURNS: u32 = 10;
 
 /// A way to find contacts. A pass returns how many it finds; times are in ns per sphere.
 pub struct Column<'a> {
@@ -38,15 +40,23 @@ impl<'a> Column<'a> {
         seconds
     }
 
-    /// The median of the passes in so many seconds, at least three. The first pass is not counted unless it is slow.
-    fn run(&mut self, spheres: usize, seconds: f64) -> f64 {
+    /// The first pass, which is not counted unless it is slow, and is then the only one.
+    fn begin(&mut self, spheres: usize) {
         if self.pass(spheres) < SLOW {
             self.times.clear();
-            let mut spent = 0.0;
-            while spent < seconds || self.times.len() < 3 {
-                spent += self.pass(spheres);
-            }
         }
+    }
+
+    /// Passes for so many seconds, at least one; none if the first was slow.
+    fn turn(&mut self, spheres: usize, seconds: f64) {
+        let is_slow = self.times.first().is_some_and(|&time| time * spheres as f64 >= SLOW * 1e9);
+        let mut spent = 0.0;
+        while !is_slow && spent < seconds {
+            spent += self.pass(spheres);
+        }
+    }
+
+    fn median(&mut self) -> f64 {
         self.times.sort_by(f64::total_cmp);
         self.times[self.times.len() / 2]
     }
@@ -101,7 +111,7 @@ pub fn touching(spheres: &Spheres) -> Vec<PairRecord> {
     pairs(spheres, &numbers)
 }
 
-/// The number of contacts, and the times of all columns. Engines that find another number are named on standard error.
+/// The number of contacts, and the medians of all columns, which take turns for so many `seconds` each. Engines that find another number are named on standard error.
 pub fn measure(set: &str, spheres: &Spheres, seconds: f64) -> Result<(u64, Measured), Box<dyn Error>> {
     let search = Search::new(Profile::WIDE.arithmetic(), 24)?;
     let Spheres { first, second } = spheres;
@@ -112,7 +122,7 @@ pub fn measure(set: &str, spheres: &Spheres, seconds: f64) -> Result<(u64, Measu
     };
     let for_cells = ForCells::new(spheres);
     let mut numbers = Vec::new();
-    let columns = [
+    let mut columns = [
         Some(Column::new("sorting", || {
             black_box(hilbert_order(black_box(first)));
             second.iter().for_each(|second| drop(black_box(hilbert_order(second))));
@@ -134,15 +144,22 @@ pub fn measure(set: &str, spheres: &Spheres, seconds: f64) -> Result<(u64, Measu
         peers::parry(spheres),
     ];
     let expected = find(Fields::HIT);
+    for column in columns.iter_mut().flatten() {
+        column.begin(count);
+    }
+    for _ in 0..TURNS {
+        for column in columns.iter_mut().flatten() {
+            column.turn(count, seconds / f64::from(TURNS));
+        }
+    }
     let times = columns.map(|column| {
         let mut column = column?;
-        let time = column.run(count, seconds);
         // The others decide in their own arithmetic, and tangent spheres are many here.
         let apart = column.contacts.abs_diff(expected) as f64 > 0.001 * expected as f64;
         if apart && column.name != "sorting" {
             eprintln!("{set}: {} finds {} contacts, not {expected}", column.name, column.contacts);
         }
-        Some(time)
+        Some(column.median())
     });
     let [sorting, search_numbers, search_contacts, cells_numbers, cells_contacts, ode_hash, ode_sweep, parry] = times;
     let measured = Measured {
