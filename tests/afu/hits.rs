@@ -79,10 +79,10 @@ fn deciders_give_the_same_hits_over_every_link() {
 }
 
 /// One pair in eight touches. These pairs take no more time with one decider and an SCPU that takes a pair every seven
-/// or eight cycles than with an SCPU that takes one every cycle. Where all touch, the SCPU sets the pace, and none is
-/// lost.
+/// or eight cycles than with an SCPU that takes one every cycle; nor do they with two deciders and an SCPU that takes one
+/// every four, than with two SCPUs. Where all touch, the SCPU sets the pace, and none is lost.
 #[test]
-fn one_decider_takes_a_pair_every_cycle() {
+fn a_decider_takes_a_pair_every_cycle() {
     let alone = hits(1, "e8f3z", WHOLE);
     let with_decider = Config { decide: 1, interval: 7, ..alone.clone() };
     let pairs = |touching: fn(u16) -> bool| (0..8_000).map(|number| pair(touching(number), number)).collect::<Vec<_>>();
@@ -94,10 +94,14 @@ fn one_decider_takes_a_pair_every_cycle() {
     };
     // One in eight, in bursts of thirty.
     let bursts: fn(u16) -> bool = |number| number % 240 < 30;
-    let (alone, decided) = (cycles(&alone, bursts), cycles(&with_decider, bursts));
-    assert!(decided < alone + 250, "{decided} cycles, {alone} without a decider");
+    let (one, decided) = (cycles(&alone, bursts), cycles(&with_decider, bursts));
+    assert!(decided < one + 250, "{decided} cycles, {one} without a decider");
     let every_eight = cycles(&Config { interval: 8, ..with_decider.clone() }, bursts);
-    assert!(every_eight < alone + 300, "{every_eight} cycles, {alone} without a decider");
+    assert!(every_eight < one + 300, "{every_eight} cycles, {one} without a decider");
+    let two = cycles(&hits(2, "e8f3z", WHOLE), bursts);
+    let two_decided = cycles(&Config { decide: 2, interval: 4, ..alone }, bursts);
+    assert!(two_decided < two + 300, "{two_decided} cycles, {two} without deciders");
+    assert!(two < 4_300, "{two} cycles");
     // All touch: an SCPU at interval 7.
     let all = cycles(&with_decider, |_| true);
     assert!((56_000..56_400).contains(&all), "{all} cycles");
