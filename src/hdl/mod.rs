@@ -32,6 +32,7 @@ pub use delay_model::DelayModel;
 pub use error::{BuildErrors, Error};
 pub use evaluate::{EvaluateError, Evaluator, Pin};
 pub use graph::Graph;
+pub(crate) use module::fits_luts;
 pub use module::{
     Instance, InstanceCount, Memory, Module, Node, NodeId, Op, Parameter, Port, Primitive, Reset, Rounded, Size,
 };

@@ -166,6 +166,21 @@ pub struct Memory {
     pub width: u32,
     /// Write port: enable, address, data.
     pub write: Option<[NodeId; 3]>,
+    /// True if it stands in look-up tables, if the device has such memories; otherwise in block RAM.
+    pub in_luts: bool,
+}
+
+/// Up to this depth a memory goes to look-up tables, above it to block RAM.
+const DEEPEST_DISTRIBUTED: u32 = 64;
+/// A distributed memory has at most this many bits, a quarter of a block RAM.
+const LARGEST_DISTRIBUTED: u32 = 4096;
+/// A memory narrower than this would waste a block RAM.
+const NARROWEST_BLOCK: u32 = 8;
+
+/// True if a memory of this size goes to look-up tables.
+pub(crate) const fn fits_luts(depth: u32, width: u32) -> bool {
+    let is_small = depth <= DEEPEST_DISTRIBUTED && depth.saturating_mul(width) <= LARGEST_DISTRIBUTED;
+    is_small || width < NARROWEST_BLOCK
 }
 
 /// The number of copies that an instance stands for.

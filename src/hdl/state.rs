@@ -5,7 +5,7 @@ use std::panic::Location;
 use std::sync::Arc;
 
 use super::graph::{Graph, is_identifier};
-use super::module::{Instance, InstanceCount, Memory, Module, Op};
+use super::module::{Instance, InstanceCount, Memory, Module, Op, fits_luts};
 use super::signal::Signal;
 
 /// A register under construction. It reads as its present value.
@@ -110,6 +110,13 @@ pub struct MemoryHandle<'g> {
 }
 
 impl<'g> MemoryHandle<'g> {
+    /// This memory in look-up tables, whatever its size: what it gives comes early enough in a cycle to steer something.
+    #[must_use]
+    pub(crate) fn in_luts(self) -> Self {
+        self.graph.inner.borrow_mut().memories[self.index].in_luts = true;
+        self
+    }
+
     /// Writes `data` to `address` at the clock edges at which `enable` is set. A memory can have one write.
     #[track_caller]
     pub fn write(self, enable: Signal<'g>, address: Signal<'g>, data: Signal<'g>) {
@@ -215,7 +222,13 @@ impl Graph {
             self.error(format!("memory `{name}` of {depth} words of {width} bits"), Location::caller());
         }
         let mut inner = self.inner.borrow_mut();
-        inner.memories.push(Memory { name: name.to_owned(), depth, width, write: None });
+        inner.memories.push(Memory {
+            name: name.to_owned(),
+            depth,
+            width,
+            write: None,
+            in_luts: fits_luts(depth, width),
+        });
         MemoryHandle { graph: self, index: inner.memories.len() - 1, width, address_width: address_width(depth) }
     }
 

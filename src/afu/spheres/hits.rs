@@ -9,7 +9,7 @@ use super::walk::{Item, walk};
 use super::{NUMBER_BITS, QUEUE, ROW, ROW_BITS, ROW_NUMBER_BITS, SLACK, Sizes};
 use crate::afu::COUNT_BITS;
 use crate::afu::counter::later;
-use crate::afu::queue::queue;
+use crate::afu::queue::{queue, steering_queue};
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
 /// Numbers of hits that leave in a cycle, at most.
@@ -39,7 +39,8 @@ pub(super) fn hits(sizes: &Sizes, lanes: u32) -> Result<Arc<Module>, BuildErrors
     let asked: Vec<_> = (0..sizes.deciders).rev().map(|decider| graph.input(&format!("asks_{decider}"), 1)).collect();
     let word: Vec<_> = [own_row].into_iter().chain(places).chain([row, last]).chain(asked).collect();
     let word = Signal::join(&word);
-    let steps = queue(sizes.undecided, word.width(), SLACK)?;
+    // Whom a step asked and whether it ends its row decide when it leaves.
+    let steps = steering_queue(sizes.undecided, (word.width(), sizes.deciders + 1), SLACK)?;
     let takes = graph.wire("takes", 1);
     let steps =
         graph.instance("step_queue", &steps, &[("start", start), ("put", put), ("word", word), ("take", takes)]);

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::super::module::{Instance, InstanceCount, Memory, Module, NodeId, Op};
+use super::super::module::{Instance, InstanceCount, Memory, Module, NodeId, Op, fits_luts};
 use super::super::state::address_width;
 use super::cases::Cases;
 use super::delay::DelayKind;
@@ -11,13 +11,6 @@ use super::expression::{Expressions, constant, range};
 use super::lookup::{is_block_memory, lookup};
 use super::print::is_register;
 use super::{Memories, Style};
-
-/// Up to this depth a memory goes to look-up tables, above it to block RAM.
-const DEEPEST_DISTRIBUTED: u32 = 64;
-/// A distributed memory has at most this many bits, a quarter of a block RAM.
-const LARGEST_DISTRIBUTED: u32 = 4096;
-/// A memory narrower than this would waste a block RAM.
-const NARROWEST_BLOCK: u32 = 8;
 
 /// The attribute of a block memory. No word is used that was read in the cycle in which it was written: without saying
 /// so, synthesis puts a register and a choice behind each bit.
@@ -147,7 +140,9 @@ impl<'a> Sections<'a> {
         let Some(name) = &self.text.names.declared[id.index()] else { return String::new() };
         let mut out = String::new();
         match DelayKind::of(node) {
-            Some(DelayKind::Memory(depth)) => out += &self.ram(&format!("{name}_line"), depth, node.width),
+            Some(DelayKind::Memory(depth)) => {
+                out += &self.ram(&format!("{name}_line"), (depth, node.width), fits_luts(depth, node.width))
+            }
             Some(DelayKind::Shift(waiting)) => out += &format!("  reg {}{name}_line;\n", range(waiting * node.width)),
             Some(DelayKind::Register) | None => {}
         }
@@ -272,12 +267,11 @@ impl<'a> Sections<'a> {
     }
 
     fn memory_declaration(&self, memory: &Memory) -> String {
-        self.ram(&memory.name, memory.depth, memory.width)
+        self.ram(&memory.name, (memory.depth, memory.width), memory.in_luts)
     }
 
-    fn ram(&self, name: &str, depth: u32, width: u32) -> String {
-        let is_small = depth <= DEEPEST_DISTRIBUTED && depth.saturating_mul(width) <= LARGEST_DISTRIBUTED;
-        let attributes = match (self.style.memories, is_small || width < NARROWEST_BLOCK) {
+    fn ram(&self, name: &str, (depth, width): (u32, u32), in_luts: bool) -> String {
+        let attributes = match (self.style.memories, in_luts) {
             (Memories::Any, true) => "  (* ram_style = \"distributed\", ramstyle = \"MLAB, no_rw_check\" *)\n",
             (Memories::BlocksAndLuts, true) => "  (* ram_style = \"distributed\" *)\n",
             (Memories::Blocks, true) => "",
