@@ -111,7 +111,8 @@ pub fn touching(spheres: &Spheres) -> Vec<PairRecord> {
     pairs(spheres, &numbers)
 }
 
-/// The number of contacts, and the medians of all columns, which take turns for so many `seconds` each. Engines that find another number are named on standard error.
+/// The number of contacts, and the medians of all columns, which take turns for so many `seconds` each. Engines that
+/// find another number are named on standard error.
 pub fn measure(set: &str, spheres: &Spheres, seconds: f64) -> Result<(u64, Measured), Box<dyn Error>> {
     let search = Search::new(Profile::WIDE.arithmetic(), 24)?;
     let Spheres { first, second } = spheres;

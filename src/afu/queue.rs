@@ -14,8 +14,8 @@ pub(super) fn queue(depth: u32, width: u32, slack: u32) -> Result<Arc<Module>, B
     steering_queue(depth, (width, 0), slack)
 }
 
-/// As [`queue`]; of the oldest word, the lowest bits, so many, decide in the same cycle whether it is taken. A block RAM
-/// would give these too late in the cycle, so they stand in look-up tables.
+/// As [`queue`]; so many of the lowest bits of the oldest word decide in the same cycle whether it is taken. A block
+/// RAM would give these too late in the cycle, so they stand in look-up tables.
 pub(super) fn steering_queue(
     depth: u32,
     (width, steering): (u32, u32),

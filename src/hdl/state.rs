@@ -110,7 +110,7 @@ pub struct MemoryHandle<'g> {
 }
 
 impl<'g> MemoryHandle<'g> {
-    /// This memory in look-up tables, whatever its size: what it gives comes early enough in a cycle to steer something.
+    /// This memory in look-up tables, whatever its size: its words come early enough in a cycle to steer something.
     #[must_use]
     pub(crate) fn in_luts(self) -> Self {
         self.graph.inner.borrow_mut().memories[self.index].in_luts = true;

@@ -79,8 +79,8 @@ fn deciders_give_the_same_hits_over_every_link() {
 }
 
 /// One pair in eight touches. These pairs take no more time with one decider and an SCPU that takes a pair every seven
-/// or eight cycles than with an SCPU that takes one every cycle; nor do they with two deciders and an SCPU that takes one
-/// every four, than with two SCPUs. Where all touch, the SCPU sets the pace, and none is lost.
+/// or eight cycles than with an SCPU that takes one every cycle. Two deciders and an SCPU that takes one every four
+/// cycles are as fast as two such SCPUs. Where all touch, the SCPU sets the pace, and none is lost.
 #[test]
 fn a_decider_takes_a_pair_every_cycle() {
     let alone = hits(1, "e8f3z", WHOLE);

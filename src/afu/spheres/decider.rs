@@ -10,7 +10,7 @@ use super::walk::{Item, walk};
 use super::{SLACK, Sizes};
 use crate::afu::Spec;
 use crate::afu::counter::later;
-use crate::afu::queue::queue;
+use crate::afu::queue::{queue, steering_queue};
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
 use crate::query::Query;
 
@@ -33,9 +33,9 @@ pub(super) fn decider(spec: &Spec, sizes: &Sizes, kernel: &Arc<Module>) -> Resul
     let about = Signal::join(&about);
     let about_bits = about.width();
 
-    // Shares wait here. There are never more than steps that are not joined yet.
+    // Shares wait here. There are never more than steps that are not joined yet. A share's bits decide when it leaves.
     let always = graph.constant(1, 1);
-    let shares = queue(sizes.undecided, share_bits + about_bits, SLACK)?;
+    let shares = steering_queue(sizes.undecided, (share_bits + about_bits, share_bits), SLACK)?;
     let takes = graph.wire("takes", 1);
     let inputs = [("start", start), ("put", put), ("word", about.concat(share)), ("take", takes)];
     let waiting = graph.instance("shares", &shares, &inputs);
