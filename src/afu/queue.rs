@@ -22,9 +22,12 @@ pub(super) fn steering_queue(
     slack: u32,
 ) -> Result<Arc<Module>, BuildErrors> {
     let steering = if fits_luts(depth, width) { 0 } else { steering };
-    let apart = if steering > 0 { format!("_steering_{steering}") } else { String::new() };
+    let (apart, early) = match steering {
+        0 => (String::new(), String::new()),
+        _ => (format!("_steering_{steering}"), format!("; the lowest {steering} bits come early")),
+    };
     let graph = Graph::new(format!("queue_{depth}x{width}{apart}_slack_{slack}"));
-    graph.about(format!("a queue of {depth} words; has_room: {slack} more fit"));
+    graph.about(format!("a queue of {depth} words; has_room: {slack} more fit{early}"));
     let bits = depth.ilog2();
     let start = graph.input("start", 1);
     let put = graph.input("put", 1);

@@ -39,7 +39,7 @@ pub(super) fn hits(sizes: &Sizes, lanes: u32) -> Result<Arc<Module>, BuildErrors
     let asked: Vec<_> = (0..sizes.deciders).rev().map(|decider| graph.input(&format!("asks_{decider}"), 1)).collect();
     let word: Vec<_> = [own_row].into_iter().chain(places).chain([row, last]).chain(asked).collect();
     let word = Signal::join(&word);
-    // Whom a step asked and whether it ends its row decide when it leaves.
+    // Whom a step asked decides when it leaves, and whether it ends its row, if it matters without hits.
     let steps = steering_queue(sizes.undecided, (word.width(), sizes.deciders + 1), SLACK)?;
     let takes = graph.wire("takes", 1);
     let steps =
