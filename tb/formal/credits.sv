@@ -121,8 +121,11 @@ module credits (
   reg begun = 1'b0;
   // The job began one cycle ago; the feeder's flags know its lines one cycle later.
   reg began;
-  // The number of the job's pairs, and whether all of them had come out one cycle ago.
+  // The number of the job's pairs, how many of its lines became ready (counted one cycle later), how many pairs have
+  // entered, and whether all had come out one cycle ago.
   reg [31:0] job_count;
+  reg [31:0] readied;
+  reg [32:0] entered;
   reg all_out;
   // Whether a job ran one cycle ago, two, three.
   reg [2:0] ran = 3'd0;
@@ -133,6 +136,8 @@ module credits (
     begun <= ~rst & (begun | \dut.control.begin_job );
     began <= \dut.control.begin_job ;
     if (start & ~busy) job_count <= count;
+    readied <= \dut.control.begin_job ? 32'd0 : readied + {31'd0, \dut.feeder.lines_left_step };
+    entered <= \dut.control.begin_job ? 33'd0 : entered + {31'd0, \dut.feeder.entered };
     all_out <= ~\dut.control.begin_job & emerged == job_count;
     ran <= rst ? 3'd0 : {ran[1:0], \dut.control.run };
     completed <= \dut.control.completes & ~rst;
@@ -148,15 +153,17 @@ module credits (
   wire [7:0] counted_inside = inside + {6'd0, ranks[2*RANKS +: 2]};
   wire [1:0] leaves = \dut.slots_leaves_out ;
 
-  // Pairs that the feeder has not issued yet.
   wire [ROOM_BITS-1:0] next_room = \dut.credits.room + \dut.credits.room_change ;
-  // A line that became ready is counted one cycle later.
+  wire [31:0] job_lines = {1'b0, job_count[31:1]} + {31'd0, job_count[0]};
+  // Lines that are not ready yet; one that became ready is counted one cycle later.
   wire [31:0] unready = \dut.feeder.lines_left - {31'd0, \dut.feeder.lines_left_step };
-  wire [32:0] lines_left = {1'b0, unready} + {32'd0, \dut.feeder.line_ready } + {32'd0, \dut.feeder.two_lines_ready };
-  wire [33:0] in_lines = lines_left == 33'd0 ? 34'd0
-    : {lines_left, 1'b0} - {33'd0, ~\dut.control.last_place };
-  wire [33:0] to_give = in_lines
-    + (\dut.feeder.in_hand ? 34'd1 + {33'd0, \dut.feeder.last } - {33'd0, \dut.feeder.place } : 34'd0);
+  // Pairs in lines that became ready; the job's last line may hold one pair. It is ready or taken if none is unready.
+  wire [31:0] all_readied = readied + {31'd0, \dut.feeder.lines_left_step };
+  wire last_taken = unready == 32'd0 & ~\dut.feeder.line_ready ;
+  wire [32:0] pairs_readied = {all_readied, 1'b0} - {32'd0, last_taken & ~\dut.control.last_place };
+  // Of them, those that the feeder has not issued yet.
+  wire [1:0] lines_ready = {1'b0, \dut.feeder.line_ready } + {1'b0, \dut.feeder.two_lines_ready };
+  wire [1:0] in_hand = \dut.feeder.in_hand ? 2'd1 + {1'b0, \dut.feeder.last } - {1'b0, \dut.feeder.place } : 2'd0;
 
   always @* assume (after_reset | rst);
   // The collector announces no more lines than it has slots (collector.sv: offered_in_order).
@@ -181,7 +188,7 @@ module credits (
     begins_rested: assert (~\dut.control.begin_job | ~ran[0]);
     begins_empty: assert (~\dut.control.begin_job | (busy & counted_inside == 8'd0 & \dut.feeder.entered == 2'd0));
     idle_is_empty: assert (busy | (counted_inside == 8'd0 & \dut.feeder.entered == 2'd0));
-    lines_are_right: assert (~busy | \dut.control.job_lines == {1'b0, job_count[31:1]} + {31'd0, job_count[0]});
+    lines_are_right: assert (~busy | \dut.control.job_lines == job_lines);
     last_is_right: assert (~(begun | busy) | \dut.control.last_place == ~job_count[0]);
     takes_a_line: assert (\dut.feeder.lines_waiting <= 3'd4
       & \dut.feeder.some_come == (\dut.feeder.lines_waiting != {2'd0, \dut.feeder.lines_left_step })
@@ -201,9 +208,11 @@ module credits (
       & (\dut.feeder.last_line_ready | ~\dut.feeder.line_ready | unready != 32'd0));
     knows_what_it_holds: assert (~\dut.feeder.in_hand | ((\dut.feeder.last | ~\dut.feeder.place )
       & \dut.feeder.holds_1 == (\dut.feeder.last & ~\dut.feeder.place )));
-    only_last_is_short: assert (~\dut.feeder.in_hand | \dut.feeder.last | lines_left == 33'd0);
-    each_once: assert (to_give + {26'd0, inside} + {32'd0, \dut.feeder.entered } + {32'd0, uncounted} + {2'd0, emerged}
-      == {2'd0, job_count});
+    only_last_is_short: assert (~\dut.feeder.in_hand | \dut.feeder.last | last_taken);
+    readies_once: assert (readied <= job_lines & \dut.feeder.lines_left == job_lines - readied);
+    enters_once: assert (entered <= {1'b0, job_count} & pairs_readied == entered + {31'd0, \dut.feeder.entered }
+      + {30'd0, lines_ready, 1'b0} + {31'd0, in_hand});
+    comes_out_once: assert ({24'd0, inside} + {30'd0, uncounted} == entered[31:0] - emerged);
     all_come_out: assert (\dut.credits.all_emerged == all_out);
     room_is_seen: assert (~\dut.credits.may_enter | \dut.credits.room >= 8);
     never_negative: assert (\dut.feeder.entered <= next_room);

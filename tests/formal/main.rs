@@ -11,30 +11,50 @@ mod public;
 mod search;
 mod tools;
 
+use std::iter;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+use std::time::Instant;
+
 use mutants::Mutant;
 use proofs::{Proof, proofs};
 use tools::Verdict;
 
-fn holds(proof: &Proof) {
-    let began = std::time::Instant::now();
+/// An error text if the proof does not hold.
+fn fails(proof: &Proof) -> Option<String> {
+    let began = Instant::now();
     let verdict = tools::check(proof, None, &proof.files());
     println!("{:<40} {verdict:?}, {:.0} s", proof.to_string(), began.elapsed().as_secs_f64());
-    assert_eq!(verdict, Verdict::Proven, "{proof}");
+    (verdict != Verdict::Proven).then(|| format!("{proof}: {verdict:?}"))
 }
 
 /// An error text if the mutant does not break its property.
 fn stands(mutant: &Mutant) -> Option<String> {
     let proof = mutant.proof();
-    let began = std::time::Instant::now();
+    let began = Instant::now();
     let verdict = tools::check(&proof, Some(mutant.breaks), &mutant.files());
     println!("{:<40} {verdict:?}, {:.0} s", format!("mutant: {}", mutant.what), began.elapsed().as_secs_f64());
     let wanted = Verdict::Falsified(vec![mutant.breaks.to_owned()]);
     (verdict != wanted).then(|| format!("`{}` must break {} of {proof}: {verdict:?}", mutant.what, mutant.breaks))
 }
 
-fn all_fall<'a>(mutants: impl Iterator<Item = &'a Mutant>) {
-    let standing: Vec<String> = mutants.filter_map(stands).collect();
-    assert!(standing.is_empty(), "{standing:#?}");
+fn none(errors: impl Iterator<Item = String>) {
+    let errors: Vec<String> = errors.collect();
+    assert!(errors.is_empty(), "{errors:#?}");
+}
+
+/// What `check` says of each item, on as many threads as there are cores.
+fn side_by_side<T: Sync>(items: &[T], check: impl Fn(&T) -> Option<String> + Sync) -> Vec<String> {
+    let next = AtomicUsize::new(0);
+    let work = || -> Vec<String> {
+        let item = || items.get(next.fetch_add(1, Ordering::Relaxed));
+        iter::from_fn(item).filter_map(&check).collect()
+    };
+    let threads = thread::available_parallelism().map_or(1, usize::from);
+    thread::scope(|scope| {
+        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
+        workers.into_iter().flat_map(|worker| worker.join().expect("no check panics")).collect()
+    })
 }
 
 /// True if the long command runs this proof: `PROOFS` is not set or is part of the proof's line, as in "SCPU 3".
@@ -44,12 +64,12 @@ fn is_chosen(proof: &Proof) -> bool {
 
 #[test]
 fn a_share_of_the_proofs_holds() {
-    proofs().iter().filter(|proof| proof.is_short).for_each(holds);
+    none(proofs().iter().filter(|proof| proof.is_short).filter_map(fails));
 }
 
 #[test]
 fn a_share_of_the_mutants_falls() {
-    all_fall(mutants::all().iter().filter(|mutant| mutant.is_short));
+    none(mutants::all().iter().filter(|mutant| mutant.is_short).filter_map(stands));
 }
 
 /// Each mutant's original text occurs exactly once in its file, even if the mutant is not run here.
@@ -73,11 +93,13 @@ fn every_property_has_a_mutant() {
 #[test]
 #[ignore = "minutes: scripts/prove"]
 fn every_proof_holds() {
-    proofs().iter().filter(|proof| is_chosen(proof)).for_each(holds);
+    let chosen: Vec<Proof> = proofs().into_iter().filter(is_chosen).collect();
+    none(side_by_side(&chosen, fails).into_iter());
 }
 
 #[test]
 #[ignore = "minutes: scripts/prove"]
 fn every_mutant_falls() {
-    all_fall(mutants::all().iter().filter(|mutant| is_chosen(&mutant.proof())));
+    let chosen: Vec<Mutant> = mutants::all().into_iter().filter(|mutant| is_chosen(&mutant.proof())).collect();
+    none(side_by_side(&chosen, stands).into_iter());
 }

@@ -95,9 +95,10 @@ const FEEDER: Rows = &[
         16,
         "takes_a_line",
     ),
-    ("takes a line that is not ready", "wire take = line_ready & ", "wire take = ", 16, "each_once"),
+    ("takes a line that is not ready", "wire take = line_ready & ", "wire take = ", 16, "enters_once"),
     ("a turn too many", "(turn >= turns_before_2)", "(turn > turns_before_2)", 21, "turn_is_an_scpu"),
-    ("two pairs count as one", "entered <= go_1 ? 2'd2 : ", "entered <= go_1 ? 2'd1 : ", 20, "each_once"),
+    ("two pairs count as one", "entered <= go_1 ? 2'd2 : ", "entered <= go_1 ? 2'd1 : ", 20, "enters_once"),
+    ("a ready line counts as two", "(lines_left - 32'd1)", "(lines_left - 32'd2)", 19, "readies_once"),
     (
         "counts no line that it takes",
         "if (start | lines_left_step) lines_left",
@@ -111,7 +112,7 @@ const FEEDER: Rows = &[
         "last_line_ready & ~two_lines_ready",
         "last_line_ready & two_lines_ready",
         19,
-        "each_once",
+        "enters_once",
     ),
     (
         "the last line is any line",
@@ -162,13 +163,22 @@ const CREDITS: Rows = &[
     ),
 ];
 
-const PACKER: Rows = &[(
-    "the last line goes out twice",
-    "wire start_or_flushes = start | flushes;",
-    "wire start_or_flushes = start;",
-    29,
-    "last_line_once",
-)];
+const PACKER: Rows = &[
+    (
+        "the last line goes out twice",
+        "wire start_or_flushes = start | flushes;",
+        "wire start_or_flushes = start;",
+        29,
+        "last_line_once",
+    ),
+    (
+        "two pairs come out as one",
+        "emerged + {30'd0, group_here}",
+        "emerged + {31'd0, |group_here}",
+        29,
+        "comes_out_once",
+    ),
+];
 
 const STORE: Rows = &[
     (
