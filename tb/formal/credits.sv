@@ -157,7 +157,7 @@ module credits (
   wire [31:0] job_lines = {1'b0, job_count[31:1]} + {31'd0, job_count[0]};
   // Lines that are not ready yet; one that became ready is counted one cycle later.
   wire [31:0] unready = \dut.feeder.lines_left - {31'd0, \dut.feeder.lines_left_step };
-  // Pairs in lines that became ready; the job's last line may hold one pair. It is ready or taken if none is unready.
+  // Pairs in lines that became ready. The job's last line counts as two pairs until it is taken, even if it holds one.
   wire [31:0] all_readied = readied + {31'd0, \dut.feeder.lines_left_step };
   wire last_taken = unready == 32'd0 & ~\dut.feeder.line_ready ;
   wire [32:0] pairs_readied = {all_readied, 1'b0} - {32'd0, last_taken & ~\dut.control.last_place };
