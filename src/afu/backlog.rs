@@ -7,7 +7,7 @@ use std::sync::Arc;
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
 use super::Spec;
-use super::banks::{Turn, rotate, row};
+use super::banks::{Turn, rotate};
 
 /// Builds the module `contact_afu_backlog` with `places` (a power of two) places and one bank per lane. At most
 /// `leaving` (a power of two) contacts leave in a cycle.
@@ -54,35 +54,52 @@ pub(super) fn keep<'g>(
     (places, leaving): (u32, u32),
 ) -> Kept<'g> {
     let (lanes, entry_bits) = (entries.len() as u32, entries[0].width());
-    let place_bits = places.ilog2();
-    let count_bits = place_bits + 1;
-    let tail = graph.register("tail", place_bits, 0);
-    let head = graph.register("head", place_bits, 0);
+    let count_bits = places.ilog2() + 1;
+    let (bank_bits, rows) = (lanes.ilog2(), places / lanes);
     let stored = graph.register("stored", count_bits, 0);
     // The contents of a bank one cycle ago, which its registered read shows.
     let readable = graph.register("readable", count_bits, 0);
 
-    let many = readable.at_least(readable.same(u128::from(leaving)));
     let leaving_bits = leaving.ilog2() + 1;
+    let many = readable.drop_low(leaving_bits - 1).any();
     let most = graph.constant(leaving_bits, u128::from(leaving));
-    let group = many.select(most, readable.low(leaving_bits)).gate(may_leave).named("leaving");
+    let group = if leaving == 1 { many } else { many.select(most, readable.low(leaving_bits)) };
+    let group = group.gate(may_leave).named("leaving");
     let left = (stored.value() - group.extend(count_bits)).named("left");
     stored.next(start.select(stored.same(0), left + put.extend(count_bits)));
     readable.next(start.select(readable.same(0), left));
-    tail.next(start.select(tail.same(0), tail.value() + put.extend(place_bits)));
-    let next_head = (head.value() + group.extend(place_bits)).named("next_head");
-    head.next(start.select(head.same(0), next_head));
-
     // Contact j goes to bank (tail + j) mod lanes; contact j of those that leave is in bank (head + j) mod lanes.
+    let bank = |name: &str, many: Signal<'g>| {
+        let bank = (bank_bits > 0).then(|| graph.register(name, bank_bits, 0))?;
+        bank.next(start.select(bank.same(0), *bank + many.low(bank_bits)));
+        Some(bank.value())
+    };
+    let leave = group.extend(bank_bits + 1);
+    let (tail, head) = (bank("tail", put), bank("head", leave));
+    let turned = |row, by, turn| match by {
+        Some(by) => rotate(row, by, turn),
+        None => row,
+    };
     let arriving =
         entries.iter().zip(0..).map(|(entry, lane)| put.greater_than(put.same(lane)).concat(*entry)).collect();
-    let arriving = rotate(arriving, tail.value(), Turn::Up);
+    let leaves = (0..lanes).map(|lane| leave.greater_than(leave.same(lane.into()))).collect();
+    let arriving = turned(arriving, tail, Turn::Up);
+    let leaves = turned(leaves, head, Turn::Up);
     let mut read = Vec::new();
-    for (bank, entry) in (0..lanes).zip(arriving) {
-        let store = graph.memory(&format!("bank_{bank}"), places / lanes, entry_bits);
-        store.write(entry.msb(), row(tail.value(), bank, lanes), entry.low(entry_bits));
-        read.push(store.read(row(next_head, bank, lanes)).named(&format!("oldest_{bank}")));
+    for ((bank, entry), leaves) in (0..lanes).zip(arriving).zip(leaves) {
+        // Each bank has its own rows, so nothing is added between what leaves and the address of a memory.
+        let row = |name: &str, first| graph.register(&format!("{name}_{bank}"), rows.ilog2(), first);
+        let [tail_row, head_row, row_after] = [row("tail_row", 0), row("head_row", 0), row("row_after_head", 1)];
+        let leaves = leaves.named(&format!("leaves_bank_{bank}"));
+        let enters = entry.msb().named(&format!("enters_bank_{bank}"));
+        tail_row.next_if(start | enters, start.select(tail_row.same(0), tail_row.plus(1)));
+        row_after.next_if(start | leaves, start.select(row_after.same(1), row_after.plus(1)));
+        let next_row = leaves.select(*row_after, *head_row).named(&format!("next_row_{bank}"));
+        head_row.next(start.select(head_row.same(0), next_row));
+        let store = graph.memory(&format!("bank_{bank}"), rows, entry_bits);
+        store.write(enters, *tail_row, entry.low(entry_bits));
+        read.push(store.read(next_row).named(&format!("oldest_{bank}")));
     }
-    let oldest = rotate(read, head.value(), Turn::Down);
+    let oldest = turned(read, head, Turn::Down);
     Kept { group, oldest, stored: stored.value(), readable: readable.value() }
 }

@@ -85,8 +85,14 @@ module credits (
   (* hierconn *) wire [1:0]                 \dut.sieve.contacts_now ;
   (* hierconn *) wire [ROOM_BITS-1:0]       \dut.backlog.stored ;
   (* hierconn *) wire [ROOM_BITS-1:0]       \dut.backlog.readable ;
-  (* hierconn *) wire [ROOM_BITS-2:0]       \dut.backlog.head ;
-  (* hierconn *) wire [ROOM_BITS-2:0]       \dut.backlog.tail ;
+  (* hierconn *) wire                       \dut.backlog.head ;
+  (* hierconn *) wire                       \dut.backlog.tail ;
+  (* hierconn *) wire [ROOM_BITS-3:0]       \dut.backlog.head_row_0 ;
+  (* hierconn *) wire [ROOM_BITS-3:0]       \dut.backlog.head_row_1 ;
+  (* hierconn *) wire [ROOM_BITS-3:0]       \dut.backlog.row_after_head_0 ;
+  (* hierconn *) wire [ROOM_BITS-3:0]       \dut.backlog.row_after_head_1 ;
+  (* hierconn *) wire [ROOM_BITS-3:0]       \dut.backlog.tail_row_0 ;
+  (* hierconn *) wire [ROOM_BITS-3:0]       \dut.backlog.tail_row_1 ;
   (* hierconn *) wire [`PER_LINE-1:0]       \dut.backlog.group_out ;
   // Pairs that have left the slots and are not counted yet.
   wire [1:0]  uncounted = \dut.sieve.group_here ;
@@ -224,6 +230,11 @@ module credits (
   reg [1:0]  were_here;
   reg [31:0] left;
   wire [2:0] sifted = {1'b0, \dut.sieve.hits_rank_0 } + {1'b0, \dut.sieve.dropped_pairs };
+  // Of the backlog's hits, those in the bank of the oldest, and those in the other bank.
+  wire [ROOM_BITS-1:0] in_oldest_bank = (\dut.backlog.stored + 1'b1) / 2;
+  wire [ROOM_BITS-1:0] in_other_bank = \dut.backlog.stored / 2;
+  wire [ROOM_BITS-3:0] in_bank_0 = \dut.backlog.head ? in_other_bank : in_oldest_bank;
+  wire [ROOM_BITS-3:0] in_bank_1 = \dut.backlog.head ? in_oldest_bank : in_other_bank;
   always @(posedge clk) begin
     were_here <= rst | \dut.control.begin_job ? 2'd0 : \dut.sieve.group_here ;
     left <= \dut.control.begin_job ? 32'd0 : left + \dut.backlog.group_out ;
@@ -235,7 +246,11 @@ module credits (
     no_hit_is_lost: assert (\dut.sieve.contact_count + \dut.sieve.contacts_now == left + \dut.sieve.hits_rank_0
       + \dut.backlog.stored + \dut.backlog.group_out );
     backlog_fits: assert (\dut.backlog.stored <= CAPACITY);
-    backlog_counts: assert (\dut.backlog.tail - \dut.backlog.head == \dut.backlog.stored [ROOM_BITS-2:0]);
+    banks_in_turn: assert ((\dut.backlog.head ^ \dut.backlog.tail ) == \dut.backlog.stored [0]);
+    rows_in_turn: assert (\dut.backlog.row_after_head_0 == \dut.backlog.head_row_0 + 1'b1
+      & \dut.backlog.row_after_head_1 == \dut.backlog.head_row_1 + 1'b1);
+    backlog_counts: assert (\dut.backlog.tail_row_0 - \dut.backlog.head_row_0 == in_bank_0
+      & \dut.backlog.tail_row_1 - \dut.backlog.head_row_1 == in_bank_1);
     reads_what_is_there: assert (\dut.backlog.readable <= \dut.backlog.stored );
   end
 `else

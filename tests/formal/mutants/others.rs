@@ -54,7 +54,9 @@ const HITS_CREDITS: Rows =
 
 const BACKLOG: Rows = &[
     ("a hit counts as nine", "(left + {4'd0, put})", "(left + (|put ? 6'd17 : 6'd0))", 29, "backlog_fits"),
-    ("two hits take one place", "(tail + {3'd0, put})", "(tail + {4'd0, |put})", 28, "backlog_counts"),
+    ("a hit takes two rows", "(tail_row_0 + 4'd1)", "(tail_row_0 + 4'd2)", 28, "backlog_counts"),
+    ("the next hit in the same bank", "(tail + put[0])", "tail", 28, "banks_in_turn"),
+    ("a row too far", "(row_after_head_0 + 4'd1)", "(row_after_head_0 + 4'd2)", 30, "rows_in_turn"),
     (
         "what has left is read again",
         "readable <= start ? 6'd0 : left;",
