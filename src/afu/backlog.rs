@@ -75,7 +75,7 @@ pub(super) fn keep<'g>(
         Some(bank.value())
     };
     let leave = group.extend(bank_bits + 1);
-    let (tail, head) = (bank("tail", put), bank("head", leave));
+    let (tail, head) = (bank("tail_bank", put), bank("head_bank", leave));
     let turned = |row, by, turn| match by {
         Some(by) => rotate(row, by, turn),
         None => row,
@@ -90,6 +90,7 @@ pub(super) fn keep<'g>(
         // Each bank has its own rows, so nothing is added between what leaves and the address of a memory.
         let row = |name: &str, first| graph.register(&format!("{name}_{bank}"), rows.ilog2(), first);
         let [tail_row, head_row, row_after] = [row("tail_row", 0), row("head_row", 0), row("row_after_head", 1)];
+        let entry = entry.named(&format!("entering_bank_{bank}"));
         let leaves = leaves.named(&format!("leaves_bank_{bank}"));
         let enters = entry.msb().named(&format!("enters_bank_{bank}"));
         tail_row.next_if(start | enters, start.select(tail_row.same(0), tail_row.plus(1)));

@@ -85,8 +85,8 @@ module credits (
   (* hierconn *) wire [1:0]                 \dut.sieve.contacts_now ;
   (* hierconn *) wire [ROOM_BITS-1:0]       \dut.backlog.stored ;
   (* hierconn *) wire [ROOM_BITS-1:0]       \dut.backlog.readable ;
-  (* hierconn *) wire                       \dut.backlog.head ;
-  (* hierconn *) wire                       \dut.backlog.tail ;
+  (* hierconn *) wire                       \dut.backlog.head_bank ;
+  (* hierconn *) wire                       \dut.backlog.tail_bank ;
   (* hierconn *) wire [ROOM_BITS-3:0]       \dut.backlog.head_row_0 ;
   (* hierconn *) wire [ROOM_BITS-3:0]       \dut.backlog.head_row_1 ;
   (* hierconn *) wire [ROOM_BITS-3:0]       \dut.backlog.row_after_head_0 ;
@@ -233,8 +233,8 @@ module credits (
   // Of the backlog's hits, those in the bank of the oldest, and those in the other bank.
   wire [ROOM_BITS-1:0] in_oldest_bank = (\dut.backlog.stored + 1'b1) / 2;
   wire [ROOM_BITS-1:0] in_other_bank = \dut.backlog.stored / 2;
-  wire [ROOM_BITS-3:0] in_bank_0 = \dut.backlog.head ? in_other_bank : in_oldest_bank;
-  wire [ROOM_BITS-3:0] in_bank_1 = \dut.backlog.head ? in_oldest_bank : in_other_bank;
+  wire [ROOM_BITS-3:0] in_bank_0 = \dut.backlog.head_bank ? in_other_bank : in_oldest_bank;
+  wire [ROOM_BITS-3:0] in_bank_1 = \dut.backlog.head_bank ? in_oldest_bank : in_other_bank;
   always @(posedge clk) begin
     were_here <= rst | \dut.control.begin_job ? 2'd0 : \dut.sieve.group_here ;
     left <= \dut.control.begin_job ? 32'd0 : left + \dut.backlog.group_out ;
@@ -246,7 +246,7 @@ module credits (
     no_hit_is_lost: assert (\dut.sieve.contact_count + \dut.sieve.contacts_now == left + \dut.sieve.hits_rank_0
       + \dut.backlog.stored + \dut.backlog.group_out );
     backlog_fits: assert (\dut.backlog.stored <= CAPACITY);
-    banks_in_turn: assert ((\dut.backlog.head ^ \dut.backlog.tail ) == \dut.backlog.stored [0]);
+    banks_in_turn: assert ((\dut.backlog.head_bank ^ \dut.backlog.tail_bank ) == \dut.backlog.stored [0]);
     rows_in_turn: assert (\dut.backlog.row_after_head_0 == \dut.backlog.head_row_0 + 1'b1
       & \dut.backlog.row_after_head_1 == \dut.backlog.head_row_1 + 1'b1);
     backlog_counts: assert (\dut.backlog.tail_row_0 - \dut.backlog.head_row_0 == in_bank_0

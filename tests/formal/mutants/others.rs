@@ -55,7 +55,7 @@ const HITS_CREDITS: Rows =
 const BACKLOG: Rows = &[
     ("a hit counts as nine", "(left + {4'd0, put})", "(left + (|put ? 6'd17 : 6'd0))", 29, "backlog_fits"),
     ("a hit takes two rows", "(tail_row_0 + 4'd1)", "(tail_row_0 + 4'd2)", 28, "backlog_counts"),
-    ("the next hit in the same bank", "(tail + put[0])", "tail", 28, "banks_in_turn"),
+    ("the next hit in the same bank", "(tail_bank + put[0])", "tail_bank", 28, "banks_in_turn"),
     ("a row too far", "(row_after_head_0 + 4'd1)", "(row_after_head_0 + 4'd2)", 30, "rows_in_turn"),
     (
         "what has left is read again",
