@@ -48,6 +48,7 @@ module contact_afu_collector (
   reg [9:0] rd_req_spare_tag;
   reg [5:0] next_slot;
   reg [63:0] came;
+  reg clears_marks;
   reg [5:0] arrived_age;
   reg is_response;
   reg was_asked;
@@ -63,9 +64,9 @@ module contact_afu_collector (
   reg accepted;
   reg rd_req_of_job;
   reg [7:0] response_row;
+  reg is_current;
   reg is_asked;
   reg [5:0] asked_slot;
-  reg is_current;
   reg [5:0] oldest;
   reg [511:0] response_line;
   reg error_then;
@@ -88,7 +89,7 @@ module contact_afu_collector (
       ((lines_to_request_step ? any_lines_to_request_after_1 : any_lines_to_request_after_0) & some_free_now);
   wire rd_req_waits = rd_req_next_valid & ~rd_req_moves;
   wire [9:0] rd_req_spare_tag_next = {epoch, next_slot};
-  wire oldest_goes = came[0];
+  wire oldest_goes = came[0] & ~clears_marks;
   wire [63:0] marked = came | (answered ? (64'd1 << arrived_age) : 64'd0);
   wire is_awaited = is_response & (was_asked | (|(marked_in_rows & (8'd1 << answered_slot[5:3])) & ~was_answered));
   wire marked_in_7 = |(awaited[63:56] & response_place);
@@ -99,18 +100,17 @@ module contact_afu_collector (
   wire marked_in_2 = |(awaited[23:16] & response_place);
   wire marked_in_1 = |(awaited[15:8] & response_place);
   wire marked_in_0 = |(awaited[7:0] & response_place);
-  wire is_asked_next = accepted & ~start;
-  wire [63:0] answers_next = {
-    (response_row[7] & ~start) ? response_place : 8'd0,
-    (response_row[6] & ~start) ? response_place : 8'd0,
-    (response_row[5] & ~start) ? response_place : 8'd0,
-    (response_row[4] & ~start) ? response_place : 8'd0,
-    (response_row[3] & ~start) ? response_place : 8'd0,
-    (response_row[2] & ~start) ? response_place : 8'd0,
-    (response_row[1] & ~start) ? response_place : 8'd0,
-    (response_row[0] & ~start) ? response_place : 8'd0
+  wire [7:0] row_if_current = is_current ? response_row : 8'd0;
+  wire [63:0] next_answers = {
+    row_if_current[7] ? response_place : 8'd0,
+    row_if_current[6] ? response_place : 8'd0,
+    row_if_current[5] ? response_place : 8'd0,
+    row_if_current[4] ? response_place : 8'd0,
+    row_if_current[3] ? response_place : 8'd0,
+    row_if_current[2] ? response_place : 8'd0,
+    row_if_current[1] ? response_place : 8'd0,
+    row_if_current[0] ? response_place : 8'd0
   };
-  wire is_current_next = rd_rsp_valid & (rd_rsp_tag[9:6] == epoch);
   wire [5:0] next_oldest = oldest + {5'd0, oldest_goes};
 
   // ---- at the clock edge ----
@@ -120,16 +120,21 @@ module contact_afu_collector (
     if (start | issue) next_address <= start ? source : (next_address + 58'd1);
     if (rd_req_moves) rd_req_tag <= rd_req_spare_valid_copy_1 ? rd_req_spare_tag : rd_req_spare_tag_next;
     if (~rd_req_spare_valid_copy_1) rd_req_spare_tag <= rd_req_spare_tag_next;
+    came <= clears_marks ? 64'd0 : oldest_goes ? {1'b0, marked[63:1]} : marked;
     arrived_age <= answered_slot - next_oldest;
     was_asked <= is_asked & (asked_slot == response_slot);
-    marked_in_rows <= {
-      marked_in_7, marked_in_6, marked_in_5, marked_in_4, marked_in_3, marked_in_2, marked_in_1, marked_in_0
-    };
+    marked_in_rows <=
+        clears_marks ? 8'd0 :
+        {marked_in_7, marked_in_6, marked_in_5, marked_in_4, marked_in_3, marked_in_2, marked_in_1, marked_in_0};
     answered_slot <= response_slot;
     was_answered <= is_response & (answered_slot == response_slot);
     response_slot <= rd_rsp_tag[5:0];
+    awaited <= clears_marks ? 64'd0 : ((awaited & ~answers) | asked);
     response_place <= 8'd1 << rd_rsp_tag[2:0];
+    answers <= next_answers;
+    asked <= accepted ? (64'd1 << accepted_slot) : 64'd0;
     accepted_slot <= rd_req_tag[5:0];
+    response_row <= 8'd1 << rd_rsp_tag[5:3];
     asked_slot <= accepted_slot;
     response_line <= rd_rsp_data;
     error_then <= rd_rsp_error_d1;
@@ -147,17 +152,13 @@ module contact_afu_collector (
       reserved <= 7'd0;
       next_slot <= 6'd0;
       line_comes <= 1'b0;
-      came <= 64'd0;
+      clears_marks <= 1'b1;
       answered <= 1'b0;
       is_response <= 1'b0;
-      awaited <= 64'd0;
-      answers <= 64'd0;
-      asked <= 64'd0;
       accepted <= 1'b0;
       rd_req_of_job <= 1'b0;
-      response_row <= 8'd0;
-      is_asked <= 1'b0;
       is_current <= 1'b0;
+      is_asked <= 1'b0;
       oldest <= 6'd0;
       failed <= 1'b0;
       responded <= 1'b0;
@@ -174,17 +175,13 @@ module contact_afu_collector (
       reserved <= start ? 7'd0 : (issue ^ freed) ? (issue ? (reserved + 7'd1) : (reserved - 7'd1)) : reserved;
       next_slot <= start ? 6'd0 : issue ? (next_slot + 6'd1) : next_slot;
       line_comes <= oldest_goes & ~start;
-      came <= start ? 64'd0 : oldest_goes ? {1'b0, marked[63:1]} : marked;
+      clears_marks <= start;
       answered <= is_awaited & ~start;
       is_response <= is_current & ~start;
-      awaited <= start ? 64'd0 : ((awaited & ~answers) | asked);
-      answers <= answers_next;
-      asked <= is_asked_next ? (64'd1 << accepted_slot) : 64'd0;
       accepted <= rd_req_valid & rd_req_ready & rd_req_of_job & ~start;
       rd_req_of_job <= ~start & (rd_req_moves | rd_req_of_job);
-      response_row <= is_current_next ? (8'd1 << rd_rsp_tag[5:3]) : 8'd0;
-      is_asked <= is_asked_next;
-      is_current <= is_current_next;
+      is_current <= rd_rsp_valid & (rd_rsp_tag[9:6] == epoch);
+      is_asked <= accepted & ~start;
       oldest <= start ? 6'd0 : next_oldest;
       failed <= is_awaited & error_then & ~start;
       responded <= run & is_response & ~start;

@@ -38,6 +38,7 @@ module contact_afu_dispatcher (
   reg ready;
   reg [8:0] stored;
   reg [63:0] came;
+  reg clears_marks;
   reg [6:0] reserved;
   reg [5:0] arrived_age;
   reg is_response;
@@ -55,9 +56,9 @@ module contact_afu_dispatcher (
   reg wr_req_of_job;
   reg [5:0] next_slot;
   reg [7:0] response_row;
+  reg is_current;
   reg is_asked;
   reg [5:0] asked_slot;
-  reg is_current;
   reg [5:0] oldest;
   reg [57:0] next_address;
   reg [7:0] tail;
@@ -78,7 +79,7 @@ module contact_afu_dispatcher (
   wire some_ready =
       take ? ((line_left ? any_stored_after_2 : any_stored_after_1) | line_valid) :
       ((line_left ? any_stored_after_1 : any_stored_after_0) | line_valid);
-  wire oldest_goes = came[0];
+  wire oldest_goes = came[0] & ~clears_marks;
   wire some_free_now = oldest_goes | ~reserved[6];
   wire some_free = goes ? (some_free_now & (oldest_goes | ~&reserved[5:0])) : some_free_now;
   wire [63:0] marked = came | (answered ? (64'd1 << arrived_age) : 64'd0);
@@ -91,33 +92,37 @@ module contact_afu_dispatcher (
   wire marked_in_2 = |(awaited[23:16] & response_place);
   wire marked_in_1 = |(awaited[15:8] & response_place);
   wire marked_in_0 = |(awaited[7:0] & response_place);
-  wire is_asked_next = accepted & ~start;
-  wire [63:0] answers_next = {
-    (response_row[7] & ~start) ? response_place : 8'd0,
-    (response_row[6] & ~start) ? response_place : 8'd0,
-    (response_row[5] & ~start) ? response_place : 8'd0,
-    (response_row[4] & ~start) ? response_place : 8'd0,
-    (response_row[3] & ~start) ? response_place : 8'd0,
-    (response_row[2] & ~start) ? response_place : 8'd0,
-    (response_row[1] & ~start) ? response_place : 8'd0,
-    (response_row[0] & ~start) ? response_place : 8'd0
+  wire [7:0] row_if_current = is_current ? response_row : 8'd0;
+  wire [63:0] next_answers = {
+    row_if_current[7] ? response_place : 8'd0,
+    row_if_current[6] ? response_place : 8'd0,
+    row_if_current[5] ? response_place : 8'd0,
+    row_if_current[4] ? response_place : 8'd0,
+    row_if_current[3] ? response_place : 8'd0,
+    row_if_current[2] ? response_place : 8'd0,
+    row_if_current[1] ? response_place : 8'd0,
+    row_if_current[0] ? response_place : 8'd0
   };
-  wire is_current_next = wr_rsp_valid & (wr_rsp_tag[9:6] == epoch);
   wire [5:0] next_oldest = oldest + {5'd0, oldest_goes};
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
+    came <= clears_marks ? 64'd0 : oldest_goes ? {1'b0, marked[63:1]} : marked;
     arrived_age <= answered_slot - next_oldest;
     was_asked <= is_asked & (asked_slot == response_slot);
-    marked_in_rows <= {
-      marked_in_7, marked_in_6, marked_in_5, marked_in_4, marked_in_3, marked_in_2, marked_in_1, marked_in_0
-    };
+    marked_in_rows <=
+        clears_marks ? 8'd0 :
+        {marked_in_7, marked_in_6, marked_in_5, marked_in_4, marked_in_3, marked_in_2, marked_in_1, marked_in_0};
     answered_slot <= response_slot;
     was_answered <= is_response & (answered_slot == response_slot);
     response_slot <= wr_rsp_tag[5:0];
+    awaited <= clears_marks ? 64'd0 : ((awaited & ~answers) | asked);
     response_place <= 8'd1 << wr_rsp_tag[2:0];
+    answers <= next_answers;
+    asked <= accepted ? (64'd1 << accepted_slot) : 64'd0;
     accepted_slot <= wr_req_tag[5:0];
     if (goes) wr_req_tag <= {epoch, next_slot};
+    response_row <= 8'd1 << wr_rsp_tag[5:3];
     asked_slot <= accepted_slot;
     if (goes) wr_req_address <= next_address;
     if (start | goes) next_address <= start ? destination : (next_address + 58'd1);
@@ -132,19 +137,15 @@ module contact_afu_dispatcher (
       ready <= 1'b0;
       line_left <= 1'b0;
       stored <= 9'd0;
-      came <= 64'd0;
+      clears_marks <= 1'b1;
       reserved <= 7'd0;
       answered <= 1'b0;
       is_response <= 1'b0;
-      awaited <= 64'd0;
-      answers <= 64'd0;
-      asked <= 64'd0;
       accepted <= 1'b0;
       wr_req_of_job <= 1'b0;
       next_slot <= 6'd0;
-      response_row <= 8'd0;
-      is_asked <= 1'b0;
       is_current <= 1'b0;
+      is_asked <= 1'b0;
       oldest <= 6'd0;
       tail <= 8'd0;
       head <= 8'd0;
@@ -160,19 +161,15 @@ module contact_afu_dispatcher (
       ready <= ~start & some_ready;
       line_left <= take & ~start;
       stored <= start ? 9'd0 : (line_valid ^ line_left) ? (line_valid ? (stored + 9'd1) : (stored - 9'd1)) : stored;
-      came <= start ? 64'd0 : oldest_goes ? {1'b0, marked[63:1]} : marked;
+      clears_marks <= start;
       reserved <= start ? 7'd0 : (goes ^ oldest_goes) ? (goes ? (reserved + 7'd1) : (reserved - 7'd1)) : reserved;
       answered <= is_awaited & ~start;
       is_response <= is_current & ~start;
-      awaited <= start ? 64'd0 : ((awaited & ~answers) | asked);
-      answers <= answers_next;
-      asked <= is_asked_next ? (64'd1 << accepted_slot) : 64'd0;
       accepted <= wr_req_valid & wr_req_ready & wr_req_of_job & ~start;
       wr_req_of_job <= ~start & (wr_req_moves | wr_req_of_job);
       next_slot <= start ? 6'd0 : goes ? (next_slot + 6'd1) : next_slot;
-      response_row <= is_current_next ? (8'd1 << wr_rsp_tag[5:3]) : 8'd0;
-      is_asked <= is_asked_next;
-      is_current <= is_current_next;
+      is_current <= wr_rsp_valid & (wr_rsp_tag[9:6] == epoch);
+      is_asked <= accepted & ~start;
       oldest <= start ? 6'd0 : next_oldest;
       tail <= start ? 8'd0 : line_valid ? (tail + 8'd1) : tail;
       head <= start ? 8'd0 : take ? (head + 8'd1) : head;

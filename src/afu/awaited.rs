@@ -18,8 +18,8 @@ pub(super) struct Arrival<'g> {
     pub(super) valid: Signal<'g>,
     /// The slot of its request.
     pub(super) slot: Signal<'g>,
-    /// Its row of marks, one-hot; zero without a response.
-    row: Signal<'g>,
+    /// Its row of marks, one-hot; `None` if there is only one.
+    row: Option<Signal<'g>>,
     /// Its place in a row, one-hot.
     place: Signal<'g>,
 }
@@ -27,23 +27,25 @@ pub(super) struct Arrival<'g> {
 impl<'g> Arrival<'g> {
     /// Of a response that arrives now with `tag`. It is the job's if its epoch is.
     pub(super) fn new(slots: u32, [valid, tag, epoch]: [Signal<'g>; 3]) -> Self {
-        let is_current = valid & tag.high(EPOCH_BITS).equals(epoch);
         let slot = tag.low(slots.ilog2());
         let row_bits = ROW.min(slots).ilog2();
-        let rows = || slot.drop_low(row_bits).one_hot().gate(is_current).registered("response_row");
-        let valid = is_current.registered("is_current");
+        let rows = || slot.drop_low(row_bits).one_hot().delay(1).named("response_row");
         Self {
-            valid,
+            valid: (valid & tag.high(EPOCH_BITS).equals(epoch)).registered("is_current"),
             slot: slot.delay(1).named("response_slot"),
-            row: if slots > ROW { rows() } else { valid },
+            row: (slots > ROW).then(rows),
             place: slot.low(row_bits).one_hot().delay(1).named("response_place"),
         }
     }
 
-    /// The mark of its slot in the next cycle; none if a job starts.
-    fn marks(&self, start: Signal<'g>) -> Signal<'g> {
-        let marks = |row: u32| self.place.gate(self.row.bit(row) & !start);
-        Signal::join(&(0..self.row.width()).rev().map(marks).collect::<Vec<_>>()).registered("answers")
+    /// The mark of its slot in the next cycle.
+    fn marks(&self) -> Signal<'g> {
+        let rows = self.row.map_or(self.valid, |row| row.gate(self.valid).named("row_if_current"));
+        let marks = |row: u32| self.place.gate(rows.bit(row));
+        Signal::join(&(0..rows.width()).rev().map(marks).collect::<Vec<_>>())
+            .named("next_answers")
+            .delay(1)
+            .named("answers")
     }
 }
 
@@ -57,13 +59,21 @@ pub(super) struct Answers<'g> {
     pub(super) failed: Signal<'g>,
 }
 
+/// True in the cycle after `start`, and after a reset: clears what is wide. A register of its own, so that no gate
+/// stands before the resets of marks all over the device.
+pub(super) fn clears<'g>(graph: &'g Graph, start: Signal<'g>) -> Signal<'g> {
+    let clears = graph.register("clears_marks", 1, 1);
+    clears.next(start);
+    clears.value()
+}
+
 /// Marks a slot once its request was `accepted` at the port, and clears the mark when its response arrives. Both are
 /// decoded first and registered, so the mark is there when a response of the cycle after the acceptance is compared
-/// with it. `start` clears all marks.
+/// with it. What an earlier job had marked is gone two cycles after `start`, as [`clears`] says.
 pub(super) fn awaited<'g>(
     graph: &'g Graph,
     slots: u32,
-    [start, run]: [Signal<'g>; 2],
+    [start, clears, run]: [Signal<'g>; 3],
     [accepted, slot]: [Signal<'g>; 2],
     response: &Arrival<'g>,
     error: Signal<'g>,
@@ -71,10 +81,9 @@ pub(super) fn awaited<'g>(
     let registered = |happens: Signal<'g>, name: &str| (happens & !start).registered(name);
     let accepted = registered(accepted, "accepted");
     let accepted_slot = slot.delay(1).named("accepted_slot");
-    let asked = accepted_slot.one_hot().gate(accepted & !start).registered("asked");
-    let answers = response.marks(start);
-    let awaited = graph.register("awaited", slots, 0);
-    awaited.next(start.select(awaited.same(0), (*awaited & !answers) | asked));
+    let asked = accepted_slot.one_hot().gate(accepted).delay(1).named("asked");
+    let awaited = graph.data_register("awaited", slots);
+    awaited.next(((*awaited & !response.marks()) | asked).gate(!clears));
     let is_response = registered(response.valid, "is_response");
 
     // The response's mark as it will be in the next cycle: as it is, unless that slot is answered or asked for now.
@@ -86,7 +95,7 @@ pub(super) fn awaited<'g>(
     let was_asked = asked_here.delay(1).named("was_asked");
     let marked = |row: u32| (awaited.slice(row << row_bits, 1 << row_bits) & response.place).any();
     let rows: Vec<_> = (0..slots >> row_bits).rev().map(|row| marked(row).named(&format!("marked_in_{row}"))).collect();
-    let rows = Signal::join(&rows).delay(1).named("marked_in_rows");
+    let rows = Signal::join(&rows).gate(!clears).delay(1).named("marked_in_rows");
     let is_marked = if slots > ROW { (rows & here.drop_low(row_bits).one_hot()).any() } else { rows };
     let is_awaited = (is_response & (was_asked | (is_marked & !was_answered))).named("is_awaited");
     Answers {

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use crate::hdl::{BuildErrors, Graph, Module};
 
-use super::awaited::{Arrival, awaited};
+use super::awaited::{self, Arrival, awaited};
 use super::counter::{Countdown, from_zero, some_free, up_down};
 use super::in_order::{self, goes_in_order};
 use super::lines::{Access, line_memory};
@@ -62,14 +62,16 @@ pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
 
     // Responses go into the slot that the tag names. A response that no request waits for overwrites a line there and
     // ends the job.
+    let clears = awaited::clears(&graph, start);
     let arrival = Arrival::new(slots, [link.rd_rsp_valid, link.rd_rsp_tag, epoch]);
     let error = link.rd_rsp_error.delay(1).named("response_error");
-    let answers = awaited(&graph, slots, [start, run], [port.accepted, request_tag.low(slot_bits)], &arrival, error);
+    let answers =
+        awaited(&graph, slots, [start, clears, run], [port.accepted, request_tag.low(slot_bits)], &arrival, error);
     let outstanding = graph.register("outstanding", slot_bits + 1, 0);
     up_down(outstanding, start, issue, answers.answered);
 
     // Lines are announced in order.
-    let comes = goes_in_order(&graph, slots, start, arrival.slot, answers.answered);
+    let comes = goes_in_order(&graph, slots, [start, clears], arrival.slot, answers.answered);
     let always = graph.constant(1, 1);
     let access = Access {
         write: arrival.valid,

@@ -7,7 +7,8 @@ use crate::hdl::{Graph, Signal};
 pub(super) const CYCLES_TO_COME: u32 = super::awaited::CYCLES_TO_ANSWER + 1;
 
 /// True if the oldest of `slots` (a power of two) slots is answered; it leaves in that cycle. Slots are used in turn,
-/// from 0 at `start`, and are reused only after they left.
+/// from 0 at `start`, and are reused only after they left. Marks of an earlier job go when it
+/// [`clears`](super::awaited::clears).
 ///
 /// `answered` is set when the response to an outstanding request has been [recognised](super::awaited). `slot` is the
 /// response's slot in the cycle of its arrival. The marks are ordered by age and move up when the oldest leaves, so no
@@ -15,13 +16,13 @@ pub(super) const CYCLES_TO_COME: u32 = super::awaited::CYCLES_TO_ANSWER + 1;
 pub(super) fn goes_in_order<'g>(
     graph: &'g Graph,
     slots: u32,
-    start: Signal<'g>,
+    [start, clears]: [Signal<'g>; 2],
     slot: Signal<'g>,
     answered: Signal<'g>,
 ) -> Signal<'g> {
     let oldest = graph.register("oldest", slot.width(), 0);
-    let came = graph.register("came", slots, 0);
-    let goes = came.bit(0).named("oldest_goes");
+    let came = graph.data_register("came", slots);
+    let goes = (came.bit(0) & !clears).named("oldest_goes");
     let next_oldest = (oldest.value() + goes.extend(oldest.width())).named("next_oldest");
     oldest.next(start.select(oldest.same(0), next_oldest));
 
@@ -31,6 +32,6 @@ pub(super) fn goes_in_order<'g>(
     age.next(slot - next_oldest);
     let marked = (*came | age.one_hot().gate(answered)).named("marked");
     let moved = marked.drop_low(1).extend(slots);
-    came.next(start.select(came.same(0), goes.select(moved, marked)));
+    came.next(goes.select(moved, marked).gate(!clears));
     goes
 }

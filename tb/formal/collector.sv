@@ -55,6 +55,7 @@ module collector (
   (* hierconn *) wire        \dut.rd_req_of_job ;
   (* hierconn *) wire [2:0]  \dut.reserved ;
   (* hierconn *) wire [2:0]  \dut.outstanding ;
+  (* hierconn *) wire        \dut.clears_marks ;
   (* hierconn *) wire [3:0]  \dut.came ;
   (* hierconn *) wire [1:0]  \dut.oldest ;
   (* hierconn *) wire        \dut.answered ;
@@ -151,7 +152,9 @@ module collector (
   // Filled slots: announced, known to be filled, about to be known, and heard in this cycle.
   wire [2:0] offers = announced + {2'd0, line_comes};
   wire [3:0] offered = slots(head, offers);
-  wire [3:0] come = aged(\dut.came , \dut.oldest );
+  // What is being cleared does not count.
+  wire [3:0] cleared = {4{\dut.clears_marks }};
+  wire [3:0] come = aged(\dut.came & ~cleared, \dut.oldest );
   wire [3:0] coming = aged(\dut.answered ? 4'd1 << \dut.arrived_age : 4'd0, \dut.oldest );
   wire [3:0] filled = offered | come | coming;
   wire [3:0] last_offered = 4'd1 << (\dut.oldest - 2'd1);
@@ -170,9 +173,11 @@ module collector (
     counted: assert (\dut.outstanding == ones(on_port | waiting | arriving) + {2'd0, \dut.answered });
     leftover_is_right: assert (~rd_req_valid | \dut.rd_req_of_job == ~left);
     decoded: assert (~\dut.is_current | \dut.response_place == heard);
-    awaited_is_right: assert (\dut.awaited == marked & \dut.asked == asks_marked & \dut.answers == answers_marked
+    clears_in_time: assert (\dut.clears_marks == started);
+    awaited_is_right: assert ((\dut.awaited & ~cleared) == marked & (\dut.asked & ~cleared) == asks_marked
+      & (\dut.answers & ~cleared) == answers_marked
       & heard == answers_heard & \dut.is_response == (answers_marked != 4'd0)
-      & \dut.is_awaited == ((\dut.awaited & \dut.answers ) != 4'd0)
+      & \dut.is_awaited == ((\dut.awaited & \dut.answers & ~cleared) != 4'd0)
       & waited == ((marked & ~answers_marked) | asks_marked) & waiting == ((waited & ~answers_heard) | asks_heard)
       & (\dut.accepted ? 4'd1 << \dut.accepted_slot : 4'd0) == asks_heard);
     surprise_is_told: assert (unexpected == surprised);

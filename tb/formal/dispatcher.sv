@@ -54,6 +54,7 @@ module dispatcher (
   (* hierconn *) wire        \dut.may_send ;
   (* hierconn *) wire        \dut.read_valid ;
   (* hierconn *) wire [2:0]  \dut.reserved ;
+  (* hierconn *) wire        \dut.clears_marks ;
   (* hierconn *) wire [3:0]  \dut.came ;
   (* hierconn *) wire [1:0]  \dut.oldest ;
   (* hierconn *) wire        \dut.answered ;
@@ -138,7 +139,9 @@ module dispatcher (
   // A line that has left the memory is still counted for one cycle.
   wire [$clog2(`LINES):0] stored = \dut.stored - \dut.line_left ;
   `include "slots.svh"
-  wire [3:0] come = aged(\dut.came , \dut.oldest );
+  // What is being cleared does not count.
+  wire [3:0] cleared = {4{\dut.clears_marks }};
+  wire [3:0] come = aged(\dut.came & ~cleared, \dut.oldest );
   wire [3:0] coming = aged(\dut.answered ? 4'd1 << \dut.arrived_age : 4'd0, \dut.oldest );
   wire [3:0] busy = on_port | waiting | arriving | come | coming;
   always @* if (begun & ~start & ~given_up & ~over & ~rst & after_reset) begin
@@ -155,9 +158,11 @@ module dispatcher (
     none_lost: assert (\dut.outstanding == ones(on_port | waiting | arriving) + {2'd0, \dut.answered });
     leftover_is_right: assert (~wr_req_valid | \dut.wr_req_of_job == ~left);
     decoded: assert (~\dut.is_current | \dut.response_place == heard);
-    awaited_is_right: assert (\dut.awaited == marked & \dut.asked == asks_marked & \dut.answers == answers_marked
+    clears_in_time: assert (\dut.clears_marks == started);
+    awaited_is_right: assert ((\dut.awaited & ~cleared) == marked & (\dut.asked & ~cleared) == asks_marked
+      & (\dut.answers & ~cleared) == answers_marked
       & heard == answers_heard & \dut.is_response == (answers_marked != 4'd0)
-      & \dut.is_awaited == ((\dut.awaited & \dut.answers ) != 4'd0)
+      & \dut.is_awaited == ((\dut.awaited & \dut.answers & ~cleared) != 4'd0)
       & waited == ((marked & ~answers_marked) | asks_marked) & waiting == ((waited & ~answers_heard) | asks_heard)
       & (\dut.accepted ? 4'd1 << \dut.accepted_slot : 4'd0) == asks_heard);
     surprise_is_told: assert (unexpected == surprised);

@@ -56,6 +56,7 @@ const COLLECTOR: Rows = &[
         2,
         "awaited_is_right",
     ),
+    ("marks of an earlier job stay", "clears_marks <= start;", "clears_marks <= 1'b0;", 2, "clears_in_time"),
     ("any response counts", "answered <= is_awaited & ~start;", "answered <= is_response & ~start;", 4, "counted"),
     (
         "a response that nobody waits for is no error",
@@ -74,7 +75,7 @@ const COLLECTOR: Rows = &[
     ("idle with responses to come", "idle <= ~|outstanding & ", "idle <= ", 6, "idle_is_right"),
     (
         "lines go out before they came",
-        "wire oldest_goes = came[0];",
+        "wire oldest_goes = came[0] & ~clears_marks;",
         "wire oldest_goes = |outstanding;",
         5,
         "only_filled",
@@ -167,6 +168,7 @@ const DISPATCHER: Rows = &[
         2,
         "awaited_is_right",
     ),
+    ("marks of an earlier job stay", "clears_marks <= start;", "clears_marks <= 1'b0;", 2, "clears_in_time"),
     ("acknowledgements are not counted", "(goes ^ answered)", "goes", 11, "none_lost"),
     (
         "an acknowledgement that nobody waits for is no error",
