@@ -57,6 +57,16 @@ const COLLECTOR: Rows = &[
         "awaited_is_right",
     ),
     ("marks of an earlier job stay", "clears_marks <= start;", "clears_marks <= 1'b0;", 2, "clears_in_time"),
+    ("a request of an earlier job waits", "awaited <= clears_marks ? 4'd0 : ", "awaited <= ", 4, "awaited_is_right"),
+    ("a line of an earlier job stays", "came <= clears_marks ? 4'd0 : ", "came <= ", 5, "none_lost"),
+    ("a line of an earlier job comes", "came[0] & ~clears_marks;", "came[0];", 18, "none_lost"),
+    (
+        "a mark of an earlier job is read",
+        "marked_in_rows <= marked_in_0 & ~clears_marks;",
+        "marked_in_rows <= marked_in_0;",
+        14,
+        "awaited_is_right",
+    ),
     ("any response counts", "answered <= is_awaited & ~start;", "answered <= is_response & ~start;", 4, "counted"),
     (
         "a response that nobody waits for is no error",
@@ -169,6 +179,16 @@ const DISPATCHER: Rows = &[
         "awaited_is_right",
     ),
     ("marks of an earlier job stay", "clears_marks <= start;", "clears_marks <= 1'b0;", 2, "clears_in_time"),
+    ("a request of an earlier job waits", "awaited <= clears_marks ? 4'd0 : ", "awaited <= ", 4, "awaited_is_right"),
+    ("an answer of an earlier job stays", "came <= clears_marks ? 4'd0 : ", "came <= ", 5, "slots_are_right"),
+    ("an answer of an earlier job comes", "came[0] & ~clears_marks;", "came[0];", 18, "never_more"),
+    (
+        "a mark of an earlier job is read",
+        "marked_in_rows <= marked_in_0 & ~clears_marks;",
+        "marked_in_rows <= marked_in_0;",
+        14,
+        "awaited_is_right",
+    ),
     ("acknowledgements are not counted", "(goes ^ answered)", "goes", 11, "none_lost"),
     (
         "an acknowledgement that nobody waits for is no error",
