@@ -40,14 +40,13 @@ module afu_top #(
     end
   endgenerate
 
-  // Resets all that is below.
-  wire rst;
-
   // ---- state ----
   reg [511:0] received;
   reg core_answered;
   reg [9:0] spl_rx_hdr0_9_0_d1;
-  reg in_reset;
+  (* keep = "true", dont_merge *) reg in_reset_acknowledge;
+  (* keep = "true", dont_merge *) reg in_reset_core;
+  (* keep = "true", dont_merge *) reg in_reset_sequencer;
 
   // ---- outputs of instances ----
   wire [5:0] read_epoch;
@@ -105,13 +104,18 @@ module afu_top #(
   // ---- logic ----
   wire power_on = ~reset_n;
   wire core_gave_up = core_error == 4'd4;
+  wire resets = power_on | spl_reset | ~spl_enable;
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
     received <= spl_rx_data;
     core_answered <= spl_rx_rd_valid & (~|spl_rx_hdr0[13:12] & (spl_rx_hdr0[11:6] == read_epoch));
     spl_rx_hdr0_9_0_d1 <= spl_rx_hdr0[9:0];
-    in_reset <= power_on | spl_reset | ~spl_enable;
+  end
+  (* keep = "true" *) always @(posedge clk) begin
+    in_reset_acknowledge <= resets;
+    in_reset_core <= resets;
+    in_reset_sequencer <= resets;
   end
 
   spl2_transmit transmit (
@@ -157,7 +161,7 @@ module afu_top #(
 
   spl2_sequence sequencer (
     .clk                (clk),
-    .rst                (rst),
+    .rst                (in_reset_sequencer),
     .dsm_line           (registers_dsm_line),
     .dsm_valid          (registers_dsm_valid),
     .context_line       (registers_context_line),
@@ -220,7 +224,7 @@ module afu_top #(
     .SCPUS (SCPUS)
   ) core (
     .clk            (clk),
-    .rst            (rst),
+    .rst            (in_reset_core),
     .start          (start_job),
     .source         (sequencer_source),
     .destination    (sequencer_destination),
@@ -259,7 +263,7 @@ module afu_top #(
 
   spl2_acknowledge acknowledge (
     .clk     (clk),
-    .rst     (rst),
+    .rst     (in_reset_acknowledge),
     .start   (start_job),
     .epoch   (write_epoch),
     .valid_0 (spl_rx_wr_valid0),
@@ -270,7 +274,6 @@ module afu_top #(
     .tag     (acknowledge_tag)
   );
 
-  assign rst = in_reset;
   assign afu_tx_intr_valid = 1'b0;
 
   // Bits that nothing needs.

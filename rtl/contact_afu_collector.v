@@ -111,7 +111,7 @@ module contact_afu_collector (
     row_if_current[1] ? response_place : 8'd0,
     row_if_current[0] ? response_place : 8'd0
   };
-  wire [5:0] next_oldest = oldest + {5'd0, oldest_goes};
+  wire [6:0] twice_the_age = {answered_slot, 1'b0} - {oldest, oldest_goes};
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
@@ -121,7 +121,7 @@ module contact_afu_collector (
     if (rd_req_moves) rd_req_tag <= rd_req_spare_valid_copy_1 ? rd_req_spare_tag : rd_req_spare_tag_next;
     if (~rd_req_spare_valid_copy_1) rd_req_spare_tag <= rd_req_spare_tag_next;
     came <= clears_marks ? 64'd0 : oldest_goes ? {1'b0, marked[63:1]} : marked;
-    arrived_age <= answered_slot - next_oldest;
+    arrived_age <= twice_the_age[6:1];
     was_asked <= is_asked & (asked_slot == response_slot);
     marked_in_rows <=
         clears_marks ? 8'd0 :
@@ -182,7 +182,7 @@ module contact_afu_collector (
       rd_req_of_job <= ~start & (rd_req_moves | rd_req_of_job);
       is_current <= rd_rsp_valid & (rd_rsp_tag[9:6] == epoch);
       is_asked <= accepted & ~start;
-      oldest <= start ? 6'd0 : next_oldest;
+      oldest <= start ? 6'd0 : (oldest + {5'd0, oldest_goes});
       failed <= is_awaited & error_then & ~start;
       responded <= run & is_response & ~start;
       idle <= ~|outstanding & (~rd_req_valid & ~rd_req_spare_valid_copy_0) & ~may_ask;
@@ -210,6 +210,9 @@ module contact_afu_collector (
     .advance     (1'b1),
     .word        (line)
   );
+
+  // Bits that nothing needs.
+  wire unused = &{1'b0, twice_the_age[0]};
 
 endmodule
 

@@ -27,6 +27,7 @@ module contact_afu_credits (
   reg [9:0] room_change;
   reg [9:0] pairs_inside;
   reg [1:0] emerged_now;
+  reg counts_emerged;
   reg [7:0] cycles_since_reset;
 
   // ---- logic ----
@@ -37,13 +38,16 @@ module contact_afu_credits (
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
+    emerged_now <= emerged;
+  end
+  always @(posedge clk) begin
     if (rst) begin
       may_enter <= 1'b0;
       room <= 10'd512;
       room_change <= 10'd0;
       none_inside <= 1'b0;
       pairs_inside <= 10'd0;
-      emerged_now <= 2'd0;
+      counts_emerged <= 1'b0;
       filled <= 1'b0;
       cycles_since_reset <= 8'd0;
       all_emerged <= 1'b0;
@@ -52,8 +56,8 @@ module contact_afu_credits (
       room <= start ? 10'd512 : room_now;
       room_change <= start ? 10'd0 : ((line_left ? 10'd2 : 10'd0) - {8'd0, entered});
       none_inside <= is_empty;
-      pairs_inside <= (pairs_inside + {8'd0, entered}) - {8'd0, emerged_now};
-      emerged_now <= filled ? emerged : 2'd0;
+      pairs_inside <= counts_emerged ? ((pairs_inside + {8'd0, entered}) - {8'd0, emerged_now}) : 10'd0;
+      counts_emerged <= filled;
       filled <= filled | (cycles_since_reset == cycles_to_fill);
       if (~filled) cycles_since_reset <= cycles_since_reset + 8'd1;
       all_emerged <= ~start & all_given & is_empty;

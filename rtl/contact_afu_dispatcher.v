@@ -103,12 +103,12 @@ module contact_afu_dispatcher (
     row_if_current[1] ? response_place : 8'd0,
     row_if_current[0] ? response_place : 8'd0
   };
-  wire [5:0] next_oldest = oldest + {5'd0, oldest_goes};
+  wire [6:0] twice_the_age = {answered_slot, 1'b0} - {oldest, oldest_goes};
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
     came <= clears_marks ? 64'd0 : oldest_goes ? {1'b0, marked[63:1]} : marked;
-    arrived_age <= answered_slot - next_oldest;
+    arrived_age <= twice_the_age[6:1];
     was_asked <= is_asked & (asked_slot == response_slot);
     marked_in_rows <=
         clears_marks ? 8'd0 :
@@ -170,7 +170,7 @@ module contact_afu_dispatcher (
       next_slot <= start ? 6'd0 : goes ? (next_slot + 6'd1) : next_slot;
       is_current <= wr_rsp_valid & (wr_rsp_tag[9:6] == epoch);
       is_asked <= accepted & ~start;
-      oldest <= start ? 6'd0 : next_oldest;
+      oldest <= start ? 6'd0 : (oldest + {5'd0, oldest_goes});
       tail <= start ? 8'd0 : line_valid ? (tail + 8'd1) : tail;
       head <= start ? 8'd0 : take ? (head + 8'd1) : head;
       failed <= is_awaited & error_then & ~start;
@@ -197,6 +197,9 @@ module contact_afu_dispatcher (
     .advance     (goes),
     .word        (wr_req_data)
   );
+
+  // Bits that nothing needs.
+  wire unused = &{1'b0, twice_the_age[0]};
 
 endmodule
 

@@ -59,9 +59,9 @@ module contact_afu_packer (
   reg [31:0] first_invalid_pair;
   reg some_invalid;
   reg none_invalid;
-  reg [31:0] emerged_before;
-  reg first_invalid_lane;
   reg [31:0] emerged;
+  reg first_invalid_lane;
+  reg [1:0] group_before;
   reg [1:0] group_here;
 
   // ---- logic ----
@@ -107,7 +107,6 @@ module contact_afu_packer (
     empties_soon <= empties;
     first_place <= 2'd1 << place;
     carried <= leaves_now;
-    emerged_before <= emerged;
     first_invalid_lane <= ~invalid_here_0;
   end
   always @(posedge clk) begin
@@ -127,6 +126,7 @@ module contact_afu_packer (
       some_invalid <= 1'b0;
       none_invalid <= 1'b1;
       emerged <= 32'd0;
+      group_before <= 2'd0;
       group_here <= 2'd0;
     end else begin
       line_valid <= ~start & comes;
@@ -142,11 +142,12 @@ module contact_afu_packer (
       invalid_now <= {1'b0, invalid_here_0} + {1'b0, invalid_here_1};
       first_invalid_pair <=
           start                         ? 32'hffffffff :
-          (some_invalid & none_invalid) ? (emerged_before + {31'd0, first_invalid_lane}) :
+          (some_invalid & none_invalid) ? (emerged + {31'd0, first_invalid_lane}) :
           first_invalid_pair;
       some_invalid <= invalid_here_0 | invalid_here_1;
       none_invalid <= start | (none_invalid & ~some_invalid);
-      emerged <= start ? 32'd0 : (emerged + {30'd0, group_here});
+      emerged <= start ? 32'd0 : (emerged + {30'd0, group_before});
+      group_before <= group_here;
       group_here <= group;
     end
   end

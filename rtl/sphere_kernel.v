@@ -22,7 +22,7 @@
 //     1     66  halve_offset              offset = r2_e10f23z_minus_r1_e10f23z_minus_distance / 2
 //     1     91  mul_unit_0                nx_times_offset = nx * offset
 //     1     86  mul_unit_1                nz = dz * inverse_distance
-//     2      7  add_magnitudes_unit_0     radius_sum = r1_e10f23z + r2_e10f23z
+//     2      7  add_magnitudes_unit_0     radius_sum = r2_e10f23z + r1_e10f23z
 //     2     97  add_unit_0                x1_e10f23z_plus_nx_times_offset = x1_e10f23z + nx_times_offset
 //     2      7  add_unit_1                r2_e10f23z_minus_r1_e10f23z = r2_e10f23z - r1_e10f23z
 //     2     67  convert_unit_0            depth_early = depth_e10f23z in e8f23
@@ -126,10 +126,10 @@ module sphere_kernel (
   reg [33:0] y1_e10f23z_kept_2;
   reg [4:0] place_of_19_in_phase_4;
   reg [3:0] place_of_10_in_phase_2;
-  reg [31:0] convert_unit_3_a;
-  reg [1:0] operand_0123x;
   reg [33:0] add_unit_1_b;
   reg [33:0] ny_times_offset_kept;
+  reg [31:0] convert_unit_2_a;
+  reg [1:0] operand_0123x;
   reg [33:0] add_unit_0_b;
   reg [33:0] nz_times_offset_kept;
   reg [33:0] mul_unit_1_a;
@@ -142,7 +142,7 @@ module sphere_kernel (
   reg [33:0] inverse_distance_kept;
   reg [169:0] offset_kept;
   reg [33:0] mul_unit_0_b;
-  reg [31:0] convert_unit_2_a;
+  reg [31:0] convert_unit_3_a;
   reg [33:0] add_magnitudes_unit_0_b;
   reg [33:0] dz_squared_kept;
   reg [10:0] grazing_early_kept;
@@ -171,12 +171,12 @@ module sphere_kernel (
   wire distance_above_radius_sum;
   wire [33:0] distance;
   wire [33:0] add_magnitudes_unit_0_result;
-  wire [33:0] convert_unit_2_result;
+  wire [33:0] convert_unit_3_result;
   wire [33:0] mul_unit_0_result;
   wire [33:0] mul_unit_1_result;
   wire [33:0] add_unit_0_result;
+  wire [33:0] convert_unit_2_result;
   wire [33:0] add_unit_1_result;
-  wire [33:0] convert_unit_3_result;
   wire [33:0] inverse_distance;
   wire [33:0] offset;
   wire distance_at_most_0;
@@ -193,13 +193,13 @@ module sphere_kernel (
   wire [3:0] place_of_10_in_phase_0_next = (place_of_10_in_phase_0 == 4'd9) ? 4'd0 : (place_of_10_in_phase_0 + 4'd1);
   wire [4:0] place_of_19_in_phase_4_next = (place_of_19_in_phase_4 == 5'd18) ? 5'd0 : (place_of_19_in_phase_4 + 5'd1);
   wire [3:0] place_of_10_in_phase_2_next = (place_of_10_in_phase_2 == 4'd9) ? 4'd0 : (place_of_10_in_phase_2 + 4'd1);
-  wire phase_next_2_or_3 = phase_next[2] | phase_next[3];
-  wire phase_next_1_or_3 = phase_next[1] | phase_next[3];
   wire phase_next_3_or_4 = phase_next[3] | phase_next[4];
   wire [1:0] operand_x0123_next = {phase_next_3_or_4, phase_next[2] | phase_next[4]};
   wire [33:0] minus_convert_unit_3_result = {~convert_unit_3_result[33], convert_unit_3_result[32:0]};
   wire [33:0] minus_convert_unit_2_result = {~convert_unit_2_result[33], convert_unit_2_result[32:0]};
   wire [33:0] minus_distance = {~distance[33], distance[32:0]};
+  wire phase_next_2_or_3 = phase_next[2] | phase_next[3];
+  wire phase_next_1_or_3 = phase_next[1] | phase_next[3];
   wire [3:0] place_of_16_in_phase_4_next = (place_of_16_in_phase_4 == 4'd15) ? 4'd0 : (place_of_16_in_phase_4 + 4'd1);
   wire [3:0] place_of_16_in_phase_3_next = (place_of_16_in_phase_3 == 4'd15) ? 4'd0 : (place_of_16_in_phase_3 + 4'd1);
   assign grazing = grazing_early_kept[10];
@@ -277,10 +277,10 @@ module sphere_kernel (
         add_magnitudes_unit_0_a <= dx_squared_plus_dy_squared_kept;
         add_magnitudes_unit_0_b <= dz_squared_kept;
       end
-      // phase 2: radius_sum = r1_e10f23z + r2_e10f23z
+      // phase 2: radius_sum = r2_e10f23z + r1_e10f23z
       2'd1: begin
-        add_magnitudes_unit_0_a <= convert_unit_2_result;
-        add_magnitudes_unit_0_b <= convert_unit_3_result;
+        add_magnitudes_unit_0_a <= convert_unit_3_result;
+        add_magnitudes_unit_0_b <= convert_unit_2_result;
       end
       // phase 4: dx_squared_plus_dy_squared = dx_squared + dy_squared
       default: begin
@@ -359,14 +359,14 @@ module sphere_kernel (
     endcase
 
     case (operand_0123x)
-      // phase 0: y1_e10f23z = y1 in e10f23z
-      2'd0: convert_unit_3_a <= y1;
-      // phase 1: y2_e10f23z = y2 in e10f23z
-      2'd1: convert_unit_3_a <= y2;
-      // phase 2: z2_e10f23z = z2 in e10f23z
-      2'd2: convert_unit_3_a <= z2;
-      // phase 3: r2_e10f23z = r2 in e10f23z
-      default: convert_unit_3_a <= r2;
+      // phase 0: x1_e10f23z = x1 in e10f23z
+      2'd0: convert_unit_2_a <= x1;
+      // phase 1: x2_e10f23z = x2 in e10f23z
+      2'd1: convert_unit_2_a <= x2;
+      // phase 2: z1_e10f23z = z1 in e10f23z
+      2'd2: convert_unit_2_a <= z1;
+      // phase 3: r1_e10f23z = r1 in e10f23z
+      default: convert_unit_2_a <= r1;
     endcase
 
     case (operand_0123x)
@@ -393,14 +393,14 @@ module sphere_kernel (
     endcase
 
     case (operand_0123x)
-      // phase 0: x1_e10f23z = x1 in e10f23z
-      2'd0: convert_unit_2_a <= x1;
-      // phase 1: x2_e10f23z = x2 in e10f23z
-      2'd1: convert_unit_2_a <= x2;
-      // phase 2: z1_e10f23z = z1 in e10f23z
-      2'd2: convert_unit_2_a <= z1;
-      // phase 3: r1_e10f23z = r1 in e10f23z
-      default: convert_unit_2_a <= r1;
+      // phase 0: y1_e10f23z = y1 in e10f23z
+      2'd0: convert_unit_3_a <= y1;
+      // phase 1: y2_e10f23z = y2 in e10f23z
+      2'd1: convert_unit_3_a <= y2;
+      // phase 2: z2_e10f23z = z2 in e10f23z
+      2'd2: convert_unit_3_a <= z2;
+      // phase 3: r2_e10f23z = r2 in e10f23z
+      default: convert_unit_3_a <= r2;
     endcase
 
     case (operand_x0123)
@@ -480,10 +480,10 @@ module sphere_kernel (
     .result (add_magnitudes_unit_0_result)
   );
 
-  fp_convert_e8f23_finite_to_e10f23z convert_unit_2 (
+  fp_convert_e8f23_finite_to_e10f23z convert_unit_3 (
     .clk    (clk),
-    .a      (convert_unit_2_a),
-    .result (convert_unit_2_result)
+    .a      (convert_unit_3_a),
+    .result (convert_unit_3_result)
   );
 
   fp_mul_e10f23z_normal mul_unit_0 (
@@ -507,17 +507,17 @@ module sphere_kernel (
     .result (add_unit_0_result)
   );
 
+  fp_convert_e8f23_finite_to_e10f23z convert_unit_2 (
+    .clk    (clk),
+    .a      (convert_unit_2_a),
+    .result (convert_unit_2_result)
+  );
+
   fp_add_e10f23z_normal add_unit_1 (
     .clk    (clk),
     .a      (add_unit_1_a),
     .b      (add_unit_1_b),
     .result (add_unit_1_result)
-  );
-
-  fp_convert_e8f23_finite_to_e10f23z convert_unit_3 (
-    .clk    (clk),
-    .a      (convert_unit_3_a),
-    .result (convert_unit_3_result)
   );
 
   fp_recip_e10f23z_normal_every_5 recip_inverse_distance (

@@ -62,8 +62,11 @@ pub(super) fn credits(spec: &Spec, capacity: u32, slot_latency: u32) -> Result<A
     graph.output("may_enter", (run & enough).registered("may_enter"));
 
     let inside = graph.register("pairs_inside", room_bits, 0);
-    let emerged = emerged.gate(*filled).registered("emerged_now");
-    inside.next(inside.value() + entered.extend(room_bits) - emerged.extend(room_bits));
+    // What leaves is counted a cycle later, and so is whether it may be.
+    let emerged = emerged.delay(1).named("emerged_now");
+    let counts = filled.registered("counts_emerged");
+    let left = inside.value() + entered.extend(room_bits) - emerged.extend(room_bits);
+    inside.next(left.gate(counts));
     let is_empty = (!inside.any() & !entered.any()).named("is_empty");
     graph.output("none_inside", is_empty.registered("none_inside"));
     graph.output("all_emerged", (!start & all_given & is_empty).registered("all_emerged"));

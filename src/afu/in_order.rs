@@ -23,13 +23,14 @@ pub(super) fn goes_in_order<'g>(
     let oldest = graph.register("oldest", slot.width(), 0);
     let came = graph.data_register("came", slots);
     let goes = (came.bit(0) & !clears).named("oldest_goes");
-    let next_oldest = (oldest.value() + goes.extend(oldest.width())).named("next_oldest");
-    oldest.next(start.select(oldest.same(0), next_oldest));
+    oldest.next(start.select(oldest.same(0), oldest.value() + goes.extend(oldest.width())));
 
-    // The age of an arrival is computed first, and marked one cycle later.
+    // The age of an arrival is computed first, and marked one cycle later. That the oldest leaves meanwhile is the
+    // borrow of one difference: with one more bit below, 2·slot − (2·oldest + goes).
     let age = graph.data_register("arrived_age", slot.width());
     let slot = slot.delay(super::awaited::CYCLES_TO_ANSWER - 1).named("slot_then");
-    age.next(slot - next_oldest);
+    let twice_the_age = (slot.concat(graph.constant(1, 0)) - oldest.concat(goes)).named("twice_the_age");
+    age.next(twice_the_age.drop_low(1));
     let marked = (*came | age.one_hot().gate(answered)).named("marked");
     let moved = marked.drop_low(1).extend(slots);
     came.next(goes.select(moved, marked).gate(!clears));

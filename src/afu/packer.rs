@@ -55,10 +55,11 @@ fn of_all(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
         contacts.push(results.of(lane, "contact"));
         invalids.push(results.of(lane, "invalid"));
     }
-    let group = results.group.registered("group_here");
-    let emerged = status::emerged(&graph, start, group);
+    // The count is as late as the search for the first invalid lane, so a register stands between it and the slots.
+    let group_before = results.group.registered("group_here").registered("group_before");
+    let emerged_before = status::emerged(&graph, start, group_before);
     fill(&graph, spec, start, results.leaves, records, all_emerged);
-    status::count(&graph, start, emerged, &contacts, &invalids);
+    status::count(&graph, start, emerged_before, &contacts, &invalids);
     graph.finish()
 }
 

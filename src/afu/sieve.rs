@@ -84,7 +84,7 @@ pub(super) fn sieve(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
         graph.output("dropped", (group - hits).gate(!start).registered("dropped_pairs"));
     }
     graph.output("all_out", all_emerged & !on_its_way);
-    status::count(&graph, start, emerged, &contacts, &invalids);
+    status::count(&graph, start, emerged.delay(1).named("emerged_before"), &contacts, &invalids);
     graph.finish()
 }
 

@@ -48,12 +48,12 @@ pub(super) fn emerged<'g>(graph: &'g Graph, start: Signal<'g>, group: Signal<'g>
     emerged.value()
 }
 
-/// Counts contacts and invalid pairs, as the outputs `contacts`, `invalid` and `first_invalid`. `emerged` is the number
-/// of the pair in lane 0. The two lists have one bit per lane.
+/// Counts contacts and invalid pairs, as the outputs `contacts`, `invalid` and `first_invalid`. The two lists have one
+/// bit per lane. `emerged_before` is the number of the pair that was in lane 0 one cycle ago.
 pub(super) fn count<'g>(
     graph: &'g Graph,
     start: Signal<'g>,
-    emerged: Signal<'g>,
+    emerged_before: Signal<'g>,
     contacts: &[Signal<'g>],
     invalids: &[Signal<'g>],
 ) {
@@ -67,7 +67,7 @@ pub(super) fn count<'g>(
     }
     // The first invalid lane is found before its number is added, so all lanes share one sum.
     let none_yet = graph.register("none_invalid", 1, 1);
-    let mut first = emerged.delay(1).named("emerged_before");
+    let mut first = emerged_before;
     if lanes > 1 {
         let of_lane = |lane: u32| graph.constant(lanes.ilog2(), lane.into());
         let lane = (0..lanes - 1)

@@ -10,6 +10,7 @@ use super::share_delays;
 
 pub(super) fn finish(mut inner: Inner) -> Result<Module, BuildErrors> {
     check_connected(&mut inner);
+    add_reset_registers(&mut inner);
     if !inner.errors.is_empty() {
         return Err(BuildErrors(inner.errors));
     }
@@ -52,6 +53,25 @@ fn check_connected(inner: &mut Inner) {
     }
 }
 
+/// Registers for the resets of a module that resets itself: one for the module's own state and one for each instance,
+/// so that each can be placed beside what it resets.
+fn add_reset_registers(inner: &mut Inner) {
+    let Some(active) = inner.reset else { return };
+    let is_reset = inner.nodes.iter().any(Node::is_reset);
+    let mut register = |name: String| {
+        let op = Op::Register { reset: None, is_copy: true };
+        inner.nodes.push(Node { op, width: 1, operands: vec![active], name: Some(name), stage: None });
+        inner.places.push(inner.places[active.index()]);
+        NodeId(inner.nodes.len() as u32 - 1)
+    };
+    let own = is_reset.then(|| register("in_reset".to_owned()));
+    for instance in inner.instances.iter_mut().filter(|instance| instance.module.has_reset_port()) {
+        instance.reset = Some(register(format!("in_reset_{}", instance.name)));
+    }
+    // All are equal, so any of them says when the module is reset.
+    inner.reset = own.or(inner.instances.iter().find_map(|instance| instance.reset)).or(inner.reset);
+}
+
 /// Replaces wires by their drivers. An unnamed driver takes the wire's name. Fails with a wire that drives itself.
 fn resolve_wires(inner: &mut Inner) -> Result<(), NodeId> {
     let mut target: Vec<NodeId> = (0..inner.nodes.len() as u32).map(NodeId).collect();
@@ -84,7 +104,7 @@ impl Inner {
         let operands = self.nodes.iter_mut().flat_map(|node| &mut node.operands);
         let ports = self.ports.iter_mut().filter_map(|port| port.node.as_mut());
         let writes = self.memories.iter_mut().filter_map(|memory| memory.write.as_mut()).flatten();
-        let inputs = self.instances.iter_mut().flat_map(|instance| &mut instance.inputs).flatten();
+        let inputs = self.instances.iter_mut().flat_map(Instance::given_mut);
         for id in operands.chain(ports).chain(writes).chain(inputs).chain(&mut self.reset) {
             *id = to(*id);
         }
@@ -176,6 +196,7 @@ fn dependencies(inner: &Inner, id: NodeId) -> (Vec<NodeId>, Vec<NodeId>) {
                     if through.contains(&index) { now.push(input) } else { later.push(input) }
                 }
             }
+            later.extend(instance.reset);
             (now, later)
         }
         _ => (node.operands.clone(), vec![]),
@@ -226,6 +247,7 @@ fn renumber(inner: Inner, order: &[NodeId]) -> Module {
     for (old, index) in &instance_index {
         let mut instance = inner.instances[*old].clone();
         instance.inputs = instance.inputs.iter().map(|input| input.as_ref().map(at)).collect();
+        instance.reset = instance.reset.as_ref().map(at);
         instances.push((*index, instance));
     }
     instances.sort_by_key(|(index, _)| *index);

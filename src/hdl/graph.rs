@@ -161,8 +161,9 @@ impl Graph {
         self.fresh(Op::Wire, width, vec![], Location::caller()).named(name)
     }
 
-    /// The module is reset, with all below it, by `active` (1 bit, high in reset) and has no reset port of its own: for
-    /// the top of a platform that has its own reset signals. Nothing may instantiate such a module.
+    /// The module is reset, with all below it, a cycle after `active` (1 bit, high in reset), and has no reset port of
+    /// its own: for the top of a platform that has its own reset signals. A register stands between, and one of its own
+    /// for each instance. Nothing may instantiate such a module.
     #[track_caller]
     pub fn reset_by(&self, active: Signal<'_>) {
         let place = Location::caller();

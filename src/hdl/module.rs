@@ -110,6 +110,17 @@ pub struct Node {
     pub stage: Option<u32>,
 }
 
+impl Node {
+    /// True if a reset changes it.
+    pub(super) fn is_reset(&self) -> bool {
+        match self.op {
+            Op::Delay { cycles } => is_memory_delay(cycles, self.width),
+            Op::Register { reset, .. } => reset.is_some(),
+            _ => false,
+        }
+    }
+}
+
 /// A port of a module.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Port {
@@ -211,6 +222,20 @@ pub struct Instance {
     pub count: InstanceCount,
     /// The value of each input port, by port index; `None` for outputs and for `index` of a chain.
     pub inputs: Vec<Option<NodeId>>,
+    /// The value (1 bit, high in reset) that resets the instance; `None` for the reset of the module around it.
+    pub reset: Option<NodeId>,
+}
+
+impl Instance {
+    /// All values that it is given.
+    pub(crate) fn given(&self) -> impl Iterator<Item = NodeId> {
+        self.inputs.iter().flatten().copied().chain(self.reset)
+    }
+
+    /// As [`Instance::given`], to replace them.
+    pub(super) fn given_mut(&mut self) -> impl Iterator<Item = &mut NodeId> {
+        self.inputs.iter_mut().flatten().chain(&mut self.reset)
+    }
 }
 
 /// A vendor's building block.
@@ -280,7 +305,7 @@ pub struct Module {
     pub memories: Vec<Memory>,
     /// Instances.
     pub instances: Vec<Instance>,
-    /// The value (1 bit, high in reset) that resets this module and all below it, in place of a reset port.
+    /// The value (1 bit, high in reset) that resets this module, in place of a reset port. Its instances have their own.
     pub reset: Option<NodeId>,
     /// The name of the clock port, if it is not `clk`.
     pub clock: Option<&'static str>,
@@ -365,11 +390,12 @@ impl Module {
 
     /// True if anything inside is reset.
     pub(crate) fn is_reset(&self) -> bool {
-        self.nodes.iter().any(|n| match n.op {
-            Op::Delay { cycles } => is_memory_delay(cycles, n.width),
-            Op::Register { reset, .. } => reset.is_some(),
-            _ => false,
-        }) || self.instances.iter().any(|i| i.module.is_reset())
+        self.has_reset_state() || self.instances.iter().any(|i| i.module.is_reset())
+    }
+
+    /// True if anything is reset that is in no instance.
+    pub(crate) fn has_reset_state(&self) -> bool {
+        self.nodes.iter().any(Node::is_reset)
     }
 
     /// This module and all modules below it, each once, instantiated ones first.

@@ -343,7 +343,14 @@ impl Graph {
         }
         let mut inner = self.inner.borrow_mut();
         let instance = inner.instances.len();
-        inner.instances.push(Instance { name: name.to_owned(), module: module.clone(), count, inputs: connected });
+        let (name, module) = (name.to_owned(), module.clone());
+        inner.instances.push(Instance {
+            name: name.clone(),
+            module: module.clone(),
+            count,
+            inputs: connected,
+            reset: None,
+        });
         drop(inner);
         let outputs = module.ports.iter().enumerate().filter(|(_, port)| port.output);
         let outputs = outputs.map(|(index, port)| {
@@ -351,7 +358,7 @@ impl Graph {
             let signal = if ids.is_some() { self.fresh(op, port.width, vec![], place) } else { Signal::poison(self) };
             (port.name.clone(), signal)
         });
-        Instantiated { graph: self, name: name.to_owned(), outputs: outputs.collect() }
+        Instantiated { graph: self, name, outputs: outputs.collect() }
     }
 }
 

@@ -46,7 +46,8 @@ pub(super) fn contact<T: Number>(
 
     let apart = named(p1 - p2, ["dx", "dy", "dz"]);
     let q = ((apart.x * apart.x + apart.y * apart.y) + apart.z * apart.z).named("distance_squared");
-    let s = (r1 + r2).named("radius_sum");
+    // In the order of the difference below: hardware compares the two radii once for both.
+    let s = (r2 + r1).named("radius_sum");
 
     if fields == Fields::HIT {
         // The same decision as below without the root: q is 0 exactly if its rounded root is 0.

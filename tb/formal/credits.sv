@@ -115,9 +115,11 @@ module credits (
   (* hierconn *) wire                       \dut.packer.comes ;
   (* hierconn *) wire [31:0]                \dut.packer.emerged ;
   (* hierconn *) wire [1:0]                 \dut.packer.group_here ;
+  (* hierconn *) wire [1:0]                 \dut.packer.group_before ;
   wire [2:0]  gathered = 3'd0;
   wire [1:0]  uncounted = \dut.packer.group_here ;
-  wire [31:0] emerged = \dut.packer.emerged ;
+  // Counted one cycle later.
+  wire [31:0] emerged = \dut.packer.emerged + {30'd0, \dut.packer.group_before };
 `endif
 
   // Expected positions of groups of pairs, which advance by one rank per cycle, and the number of pairs in them.

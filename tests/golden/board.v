@@ -9,24 +9,19 @@ module board (
   output wire [3:0] value
 );
 
-  // Resets all that is below.
-  wire rst;
-
   // ---- state ----
-  reg in_reset;
+  (* keep = "true", dont_merge *) reg in_reset_unit;
 
   // ---- at the clock edge ----
-  always @(posedge clk) begin
-    in_reset <= ~reset_n | soft_reset;
+  (* keep = "true" *) always @(posedge clk) begin
+    in_reset_unit <= ~reset_n | soft_reset;
   end
 
   counter unit (
     .clk   (clk),
-    .rst   (rst),
+    .rst   (in_reset_unit),
     .value (value)
   );
-
-  assign rst = in_reset;
 
 endmodule
 

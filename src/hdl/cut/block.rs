@@ -68,7 +68,7 @@ fn replace(inner: &mut Inner, id: NodeId, module: &Arc<Module>, inputs: &[(&str,
     }
     let value = |port: &str| inputs.iter().find(|(name, _)| *name == port).map(|(_, value)| *value);
     let inputs = module.ports.iter().map(|port| value(&port.name)).collect();
-    inner.instances.push(Instance { name, inputs, count: InstanceCount::One, module: module.clone() });
+    inner.instances.push(Instance { name, inputs, count: InstanceCount::One, module: module.clone(), reset: None });
     let port = module.ports.iter().position(|port| port.output).unwrap_or_default();
     inner.nodes[id.index()].op = Op::InstanceOutput { instance: number, port };
     inner.nodes[id.index()].operands.clear();

@@ -48,7 +48,10 @@ impl Sections<'_> {
             list.push((instance.module.clock().to_owned(), self.module.clock().to_owned()));
         }
         if instance.module.has_reset_port() {
-            list.push((self.style.reset_port().to_owned(), self.style.reset_port().to_owned()));
+            let level = if self.style.reset.active_low { "~" } else { "" };
+            let own = |id: NodeId| format!("{level}{}", self.text.term(id));
+            let reset = instance.reset.map_or_else(|| self.style.reset_port().to_owned(), own);
+            list.push((self.style.reset_port().to_owned(), reset));
         }
         for (index, port) in instance.module.ports.iter().enumerate() {
             let value = if let Some(value) = chain(index) {

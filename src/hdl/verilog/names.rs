@@ -3,7 +3,7 @@
 use std::collections::{BTreeSet, HashMap, HashSet};
 
 use super::super::keywords::keywords;
-use super::super::module::{Module, Node, NodeId, Op};
+use super::super::module::{Instance, Module, Node, NodeId, Op};
 use super::derive::Derivation;
 use super::print::is_register;
 
@@ -108,7 +108,7 @@ impl Uses {
         let mut uses =
             Self { count: vec![0; nodes], taken: vec![0; nodes], sliced: vec![false; nodes], size: vec![0; nodes] };
         let memory_ports = module.memories.iter().filter_map(|m| m.write).flatten();
-        let instance_inputs = module.instances.iter().flat_map(|i| i.inputs.iter().flatten().copied());
+        let instance_inputs = module.instances.iter().flat_map(Instance::given);
         let outputs = module.ports.iter().filter(|p| p.output).filter_map(|p| p.node);
         for id in memory_ports.chain(instance_inputs).chain(outputs).chain(module.reset) {
             uses.count[id.index()] += 1;

@@ -20,8 +20,11 @@ pub(super) fn print(module: &Module, style: &Style) -> String {
     out += &interface(module, style, &names);
     out += &range_checks(module);
     out += &local_parameters(module);
-    if module.reset.is_some() && module.is_reset() {
-        out += &format!("\n  // Resets all that is below.\n  wire {};\n", style.reset_port());
+    if module.reset.is_some() && module.has_reset_state() {
+        out += &format!(
+            "\n  // Resets this module; each instance has a register of its own.\n  wire {};\n",
+            style.reset_port()
+        );
     }
     let mut sections = Sections::new(module, style, &expressions);
     let body = sections.body() + &assignments(module, style, &names, &expressions) + &unused(module, &names);
@@ -125,7 +128,7 @@ fn local_parameters(module: &Module) -> String {
 
 fn assignments(module: &Module, style: &Style, names: &Names, expressions: &Expressions<'_>) -> String {
     let mut out = String::new();
-    if let Some(reset) = module.reset.filter(|_| module.is_reset()) {
+    if let Some(reset) = module.reset.filter(|_| module.has_reset_state()) {
         let level = if style.reset.active_low { "~" } else { "" };
         out += &format!("  assign {} = {level}{};\n", style.reset_port(), expressions.term(reset));
     }

@@ -1,6 +1,6 @@
 //! Gathers unused bits in one wire whose name says so, so that linters accept them.
 
-use super::super::module::{InstanceCount, Module, NodeId, Op};
+use super::super::module::{Instance, InstanceCount, Module, NodeId, Op};
 use super::instances::chained;
 use super::names::Names;
 
@@ -68,7 +68,7 @@ fn used_bits(module: &Module) -> Vec<Vec<bool>> {
     let mut used: Vec<Vec<bool>> = module.nodes.iter().map(|node| vec![false; node.width as usize]).collect();
     let outputs = module.ports.iter().filter(|port| port.output).filter_map(|port| port.node);
     let memories = module.memories.iter().filter_map(|memory| memory.write).flatten();
-    let inputs = module.instances.iter().flat_map(|instance| instance.inputs.iter().flatten().copied());
+    let inputs = module.instances.iter().flat_map(Instance::given);
     let roots: Vec<NodeId> = outputs.chain(memories).chain(inputs).chain(module.reset).collect();
     for root in roots {
         used[root.index()].fill(true);

@@ -127,9 +127,16 @@ const FEEDER: Rows = &[
 
 const CREDITS: Rows = &[
     (
+        "what leaves counts before the delay lines are filled",
+        "counts_emerged <= filled;",
+        "counts_emerged <= 1'b1;",
+        4,
+        "inside_is_right",
+    ),
+    (
         "pairs that came out are still inside",
-        "(pairs_inside + {4'd0, entered}) - {4'd0, emerged_now};",
-        "pairs_inside + {4'd0, entered};",
+        "((pairs_inside + {4'd0, entered}) - {4'd0, emerged_now})",
+        "(pairs_inside + {4'd0, entered})",
         27,
         "inside_is_right",
     ),
@@ -173,8 +180,8 @@ const PACKER: Rows = &[
     ),
     (
         "two pairs come out as one",
-        "emerged + {30'd0, group_here}",
-        "emerged + {31'd0, |group_here}",
+        "emerged + {30'd0, group_before}",
+        "emerged + {31'd0, |group_before}",
         29,
         "comes_out_once",
     ),
@@ -273,7 +280,7 @@ const PORT_PACKER: Rows = &[
         40,
         "done_invalid",
     ),
-    ("the wrong invalid pair", "(emerged_before + {31'd0, first_invalid_lane})", "emerged_before", 40, "done_first"),
+    ("the wrong invalid pair", "(emerged + {31'd0, first_invalid_lane})", "emerged", 40, "done_first"),
 ];
 
 const ANY_COLLECTOR: Rows = &[(

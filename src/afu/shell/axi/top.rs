@@ -24,7 +24,7 @@ pub(super) fn top(spec: &Spec, core: &Arc<Module>) -> Result<Arc<Module>, BuildE
         graph.parameter("SCPUS", spec.config.scpus, 1..=MAX_SCPUS, SCPU_BITS);
     }
     graph.clocked_by(CLOCK);
-    graph.reset_by((!graph.input(RESET, 1)).delay(1).named("in_reset"));
+    graph.reset_by(!graph.input(RESET, 1));
     let host = ControlInputs::of(spec).map(|port| port.input(&graph));
     let memory = MemoryInputs::of(spec).map(|port| port.input(&graph));
     let slot_bits = spec.max_outstanding.ilog2();

@@ -25,7 +25,7 @@ pub(super) fn afu_top(spec: &Spec, core: &Arc<Module>) -> Result<Arc<Module>, Bu
     let (rd_valid, data) = (spl.spl_rx_rd_valid, spl.spl_rx_data);
 
     // Everything except the registers is in reset until SPL is enabled, and restarts when it is enabled again.
-    graph.reset_by((!spl.reset_n | spl.spl_reset | !spl.spl_enable).delay(1).named("in_reset"));
+    graph.reset_by((!spl.reset_n | spl.spl_reset | !spl.spl_enable).named("resets"));
     let power_on = (!spl.reset_n).named("power_on");
     let mdata0 = spl.spl_rx_hdr0.low(MDATA_BITS);
     let mdata1 = spl.spl_rx_hdr1.low(MDATA_BITS);
