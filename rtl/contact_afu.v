@@ -94,6 +94,7 @@ module contact_afu #(
   wire all_given;
   wire [1:0] feeder_carries;
   wire [13:0] feeder_targets;
+  wire [1:0] feeder_names;
   wire [511:0] feeder_pairs;
   wire [5:0] line_place;
   wire line_taken;
@@ -101,6 +102,7 @@ module contact_afu #(
   wire waits_for_output;
   wire [(SCPUS_IN_TURN+1)*2-1:0] slots_carries_chain;
   wire [(SCPUS_IN_TURN+1)*14-1:0] slots_targets_chain;
+  wire [(SCPUS_IN_TURN+1)*2-1:0] slots_names_chain;
   wire [(SCPUS_IN_TURN+1)*512-1:0] slots_pairs_chain;
   wire [(SCPUS_IN_TURN+1)*2-1:0] slots_leaves_chain;
   wire [(SCPUS_IN_TURN+1)*256-1:0] slots_record_0_chain;
@@ -271,6 +273,7 @@ module contact_afu #(
     .all_given        (all_given),
     .carries          (feeder_carries),
     .targets          (feeder_targets),
+    .names            (feeder_names),
     .pairs            (feeder_pairs),
     .head             (line_place),
     .taken            (line_taken),
@@ -281,6 +284,7 @@ module contact_afu #(
   // A chain of SCPUS_IN_TURN copies of scpu_slot: each passes on what it gets, a register a copy.
   assign slots_carries_chain[1:0] = feeder_carries;
   assign slots_targets_chain[13:0] = feeder_targets;
+  assign slots_names_chain[1:0] = feeder_names;
   assign slots_pairs_chain[511:0] = feeder_pairs;
   assign slots_leaves_chain[1:0] = 2'd0;
   assign slots_record_0_chain[255:0] = 256'd0;
@@ -307,9 +311,11 @@ module contact_afu #(
         .scpus         (SCPUS_IN_TURN[6:0]),
         .carries_in    (slots_carries_chain[slots_number*2 +: 2]),
         .targets_in    (slots_targets_chain[slots_number*14 +: 14]),
+        .names_in      (slots_names_chain[slots_number*2 +: 2]),
         .pairs_in      (slots_pairs_chain[slots_number*512 +: 512]),
         .carries_out   (slots_carries_chain[(slots_number+1)*2 +: 2]),
         .targets_out   (slots_targets_chain[(slots_number+1)*14 +: 14]),
+        .names_out     (slots_names_chain[(slots_number+1)*2 +: 2]),
         .pairs_out     (slots_pairs_chain[(slots_number+1)*512 +: 512]),
         .leaves_in     (slots_leaves_chain[slots_number*2 +: 2]),
         .leaves_out    (slots_leaves_chain[(slots_number+1)*2 +: 2]),
@@ -331,7 +337,8 @@ module contact_afu #(
 
   // Bits that nothing needs.
   wire unused = &{1'b0, slots_carries_chain[SCPUS_IN_TURN*2 +: 2],
-    slots_targets_chain[SCPUS_IN_TURN*14 +: 14], slots_pairs_chain[SCPUS_IN_TURN*512 +: 512]};
+    slots_targets_chain[SCPUS_IN_TURN*14 +: 14], slots_names_chain[SCPUS_IN_TURN*2 +: 2],
+    slots_pairs_chain[SCPUS_IN_TURN*512 +: 512]};
 
 endmodule
 

@@ -37,9 +37,10 @@ module contact_afu_dispatcher (
   reg read_valid;
   reg ready;
   reg [8:0] stored;
+  reg freed;
+  reg [6:0] reserved;
   reg [63:0] came;
   reg clears_marks;
-  reg [6:0] reserved;
   reg [5:0] arrived_age;
   reg is_response;
   reg was_asked;
@@ -79,9 +80,9 @@ module contact_afu_dispatcher (
   wire some_ready =
       take ? ((line_left ? any_stored_after_2 : any_stored_after_1) | line_valid) :
       ((line_left ? any_stored_after_1 : any_stored_after_0) | line_valid);
+  wire some_free_now = freed | ~reserved[6];
+  wire some_free = goes ? (some_free_now & (freed | ~&reserved[5:0])) : some_free_now;
   wire oldest_goes = came[0] & ~clears_marks;
-  wire some_free_now = oldest_goes | ~reserved[6];
-  wire some_free = goes ? (some_free_now & (oldest_goes | ~&reserved[5:0])) : some_free_now;
   wire [63:0] marked = came | (answered ? (64'd1 << arrived_age) : 64'd0);
   wire is_awaited = is_response & (was_asked | (|(marked_in_rows & (8'd1 << answered_slot[5:3])) & ~was_answered));
   wire marked_in_7 = |(awaited[63:56] & response_place);
@@ -137,8 +138,9 @@ module contact_afu_dispatcher (
       ready <= 1'b0;
       line_left <= 1'b0;
       stored <= 9'd0;
-      clears_marks <= 1'b1;
+      freed <= 1'b0;
       reserved <= 7'd0;
+      clears_marks <= 1'b1;
       answered <= 1'b0;
       is_response <= 1'b0;
       accepted <= 1'b0;
@@ -161,8 +163,9 @@ module contact_afu_dispatcher (
       ready <= ~start & some_ready;
       line_left <= take & ~start;
       stored <= start ? 9'd0 : (line_valid ^ line_left) ? (line_valid ? (stored + 9'd1) : (stored - 9'd1)) : stored;
+      freed <= oldest_goes & ~start;
+      reserved <= start ? 7'd0 : (goes ^ freed) ? (goes ? (reserved + 7'd1) : (reserved - 7'd1)) : reserved;
       clears_marks <= start;
-      reserved <= start ? 7'd0 : (goes ^ oldest_goes) ? (goes ? (reserved + 7'd1) : (reserved - 7'd1)) : reserved;
       answered <= is_awaited & ~start;
       is_response <= is_current & ~start;
       accepted <= wr_req_valid & wr_req_ready & wr_req_of_job & ~start;

@@ -21,6 +21,7 @@ module contact_afu_feeder (
   output reg          all_given,
   output reg  [1:0]   carries,
   output reg  [13:0]  targets,
+  output reg  [1:0]   names,
   output reg  [511:0] pairs,
   output reg  [5:0]   head,
   output reg          taken,
@@ -142,6 +143,7 @@ module contact_afu_feeder (
   always @(posedge clk) begin
     if (take) last <= next_last;
     targets <= {turn_after_1, turn};
+    names <= {turn == turns_before_1, turn == 7'd0};
     pairs <= aligned_by_1;
     if (takes_line_copy_3) held_3 <= line[511:384];
     if (takes_line_copy_2) held_2 <= line[383:256];

@@ -13,9 +13,11 @@ module scpu_slot (
   input  wire [6:0]   scpus,
   input  wire [1:0]   carries_in,
   input  wire [13:0]  targets_in,
+  input  wire [1:0]   names_in,
   input  wire [511:0] pairs_in,
   output wire [1:0]   carries_out,
   output wire [13:0]  targets_out,
+  output wire [1:0]   names_out,
   output wire [511:0] pairs_out,
   input  wire [1:0]   leaves_in,
   output wire [1:0]   leaves_out,
@@ -36,6 +38,7 @@ module scpu_slot (
   // ---- state ----
   reg [1:0] carries;
   reg [13:0] targets;
+  reg [1:0] names;
   reg [511:0] pairs;
   reg [1:0] leaves;
   reg [31:0] answers_soon_line;
@@ -75,15 +78,18 @@ module scpu_slot (
   wire unit_invalid_pair;
 
   // ---- logic ----
+  wire [6:0] next_index = index + 7'd1;
   wire [1:0] takes_lanes = {takes_lane_1, takes_lane_0};
-  wire names_this_in_0 = carries_in[0] & (targets_in[6:0] == index);
+  wire takes_lane_0_next = carries_in[0] & names_in[0];
   wire uses_lane_1 = 7'd1 < scpus;
-  wire names_this_in_1 = carries_in[1] & (targets_in[13:7] == index) & uses_lane_1;
+  wire takes_lane_1_next = carries_in[1] & names_in[1] & uses_lane_1;
+  wire chooses_lane_1_copy_0_next = names_in[1] & uses_lane_1;
   wire answers_lane_1_copy_0_next = answers_soon[1] & uses_lane_1;
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
     targets <= targets_in;
+    names <= {targets_in[13:7] == next_index, targets_in[6:0] == next_index};
     pairs <= pairs_in;
     answers_soon_line <= {answers_soon_line[29:0], takes_lanes_d96};
     answers_soon <= answers_soon_line[31:30];
@@ -126,16 +132,16 @@ module scpu_slot (
     end else begin
       carries <= carries_in;
       leaves <= leaves_in | answers_soon;
-      takes_lane_1 <= names_this_in_1;
-      takes_lane_0 <= names_this_in_0;
-      takes <= names_this_in_0 | names_this_in_1;
+      takes_lane_1 <= takes_lane_1_next;
+      takes_lane_0 <= takes_lane_0_next;
+      takes <= takes_lane_0_next | takes_lane_1_next;
     end
   end
   (* keep = "true" *) always @(posedge clk) begin
     answers_lane_0_copy_1 <= answers_soon[0];
     answers_lane_0_copy_0 <= answers_soon[0];
-    chooses_lane_1_copy_1 <= names_this_in_1;
-    chooses_lane_1_copy_0 <= names_this_in_1;
+    chooses_lane_1_copy_1 <= chooses_lane_1_copy_0_next;
+    chooses_lane_1_copy_0 <= chooses_lane_1_copy_0_next;
     answers_lane_1_copy_1 <= answers_lane_1_copy_0_next;
     answers_lane_1_copy_0 <= answers_lane_1_copy_0_next;
   end
@@ -152,6 +158,7 @@ module scpu_slot (
 
   assign carries_out = carries;
   assign targets_out = targets;
+  assign names_out = names;
   assign pairs_out = pairs;
   assign leaves_out = leaves;
   assign record_0_out = record_0;

@@ -21,7 +21,7 @@ use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, Spec};
 /// Cycles from the first cycle in which it runs to its first request.
 pub(super) const CYCLES_TO_REQUEST: u32 = 2;
 /// Cycles from a response to the announcement of its line, if it is the next in order.
-pub(super) const CYCLES_TO_LINE: u32 = 1 + in_order::CYCLES_TO_COME + 1;
+pub(super) const CYCLES_TO_LINE: u32 = 1 + in_order::CYCLES_TO_GO;
 
 /// Builds the module `contact_afu_collector`.
 pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
@@ -71,7 +71,7 @@ pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     up_down(outstanding, start, issue, answers.answered);
 
     // Lines are announced in order.
-    let comes = goes_in_order(&graph, slots, [start, clears], arrival.slot, answers.answered);
+    let comes = goes_in_order(&graph, "line_comes", slots, [start, clears], arrival.slot, answers.answered);
     let always = graph.constant(1, 1);
     let access = Access {
         write: arrival.valid,
@@ -85,7 +85,7 @@ pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
 
     let requests = ReadOutputs { rd_req_valid: port.valid, rd_req_address: request_address, rd_req_tag: request_tag };
     outputs(&graph, requests.named());
-    graph.output("line_comes", (comes & !start).registered("line_comes"));
+    graph.output("line_comes", comes);
     graph.output("line", line);
     graph.output("answered", answers.answered);
     graph.output("failed", answers.failed);

@@ -103,7 +103,7 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
     let arrival = Arrival::new(slots, [link.wr_rsp_valid, link.wr_rsp_tag, epoch]);
     let error = link.wr_rsp_error.delay(1).named("response_error");
     let answers = awaited(&graph, slots, [start, clears, run], [accepted, request_tag.low(slot_bits)], &arrival, error);
-    let freed = goes_in_order(&graph, slots, [start, clears], arrival.slot, answers.answered);
+    let freed = goes_in_order(&graph, "freed", slots, [start, clears], arrival.slot, answers.answered);
     up_down(reserved, start, send, freed);
     may_send.next(run & some_free(reserved, freed).at(send).named("some_free"));
     let outstanding = graph.register("outstanding", slot_bits + 1, 0);

@@ -139,7 +139,7 @@ pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
         let is_last = rank + 1 == RANKS_TO_GROUP;
         before.registered(&if is_last { "carries".to_owned() } else { format!("carries_rank_{rank}") })
     });
-    let targets = targets(&graph, start, scpus, group, lanes);
+    let [targets, names_first] = targets(&graph, start, scpus, group, lanes);
     // No pair of the job is left to give. This is known many cycles before the last pair leaves the slots, except for a
     // job without lines, which is known as it begins. In the cycle after that, the flags do not know the lines yet.
     let some_left = (*in_hand | line_ready | coming.some_left).named("some_left");
@@ -150,6 +150,7 @@ pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     graph.output("all_given", all_given.value());
     graph.output("carries", carries);
     graph.output("targets", targets.delay(RANKS_TO_GROUP - 1).named("targets"));
+    graph.output("names", names_first.delay(RANKS_TO_GROUP - 1).named("names"));
     graph.output("pairs", aligned.delay(1).named("pairs"));
     graph.output("head", head.value());
     graph.output("taken", taken);
@@ -192,19 +193,31 @@ impl<'g> Coming<'g> {
     }
 }
 
-/// The SCPUs that the lanes of a group are for, lane 0 in the lowest bits. `group` is the number of its pairs.
-fn targets<'g>(graph: &'g Graph, start: Signal<'g>, scpus: Signal<'g>, group: Signal<'g>, lanes: u32) -> Signal<'g> {
+/// The SCPUs that the lanes of a group are for, and whether that is SCPU 0; lane 0 in the lowest bits. `group` is the
+/// number of its pairs.
+fn targets<'g>(
+    graph: &'g Graph,
+    start: Signal<'g>,
+    scpus: Signal<'g>,
+    group: Signal<'g>,
+    lanes: u32,
+) -> [Signal<'g>; 2] {
     let turn = graph.register("turn", SCPU_BITS, 0);
+    // The first turn that wraps. There are never more pairs in a group than SCPUs.
+    let last = |pairs: u32| scpus.minus(pairs.into()).named(&format!("turns_before_{pairs}"));
     let behind = |pairs: u32| {
-        // The first turn that wraps. There are never more pairs in a group than SCPUs.
-        let last = scpus.minus(pairs.into()).named(&format!("turns_before_{pairs}"));
+        let last = last(pairs);
         let wrapped = turn.at_least(last).select(turn.value() - last, turn.plus(pairs.into()));
         wrapped.named(&format!("turn_after_{pairs}"))
     };
     let next = (1..=lanes).fold(turn.value(), |fewer, pairs| group.is(u128::from(pairs)).select(behind(pairs), fewer));
     turn.next(start.select(turn.same(0), next.named("next_turn")));
-    let lanes: Vec<_> = (0..lanes).rev().map(|lane| if lane == 0 { turn.value() } else { behind(lane) }).collect();
-    Signal::join(&lanes)
+    let of_lane = |lane: u32| match lane {
+        0 => [turn.value(), turn.is(0)],
+        _ => [behind(lane), turn.equals(last(lane))],
+    };
+    let [targets, names_first]: [Vec<_>; 2] = [0, 1].map(|of| (0..lanes).rev().map(|lane| of_lane(lane)[of]).collect());
+    [Signal::join(&targets), Signal::join(&names_first)]
 }
 
 /// `of` applied to the number of pairs that enter. Its value is computed for each possible number; the number itself

@@ -3,11 +3,12 @@
 
 use crate::hdl::{Graph, Signal};
 
-/// Cycles from a response to its mark. [`awaited`](super::awaited) registers its arrival.
-pub(super) const CYCLES_TO_COME: u32 = super::awaited::CYCLES_TO_ANSWER + 1;
+/// Cycles from a response to its slot that goes, if it is the oldest: [`awaited`](super::awaited) registers its arrival,
+/// and it is marked.
+pub(super) const CYCLES_TO_GO: u32 = super::awaited::CYCLES_TO_ANSWER + 2;
 
-/// True if the oldest of `slots` (a power of two) slots is answered; it leaves in that cycle. Slots are used in turn,
-/// from 0 at `start`, and are reused only after they left. Marks of an earlier job go when it
+/// A register of this name, true if the oldest of `slots` (a power of two) slots was answered and left. Slots are used
+/// in turn, from 0 at `start`, and are reused only after they left. Marks of an earlier job go when it
 /// [`clears`](super::awaited::clears).
 ///
 /// `answered` is set when the response to an outstanding request has been [recognised](super::awaited). `slot` is the
@@ -15,6 +16,7 @@ pub(super) const CYCLES_TO_COME: u32 = super::awaited::CYCLES_TO_ANSWER + 1;
 /// search for the oldest is needed.
 pub(super) fn goes_in_order<'g>(
     graph: &'g Graph,
+    name: &str,
     slots: u32,
     [start, clears]: [Signal<'g>; 2],
     slot: Signal<'g>,
@@ -34,5 +36,5 @@ pub(super) fn goes_in_order<'g>(
     let marked = (*came | age.one_hot().gate(answered)).named("marked");
     let moved = marked.drop_low(1).extend(slots);
     came.next(goes.select(moved, marked).gate(!clears));
-    goes
+    (goes & !start).registered(name)
 }

@@ -140,9 +140,11 @@ pub(super) fn resolve<'g>(
         let alone = Spec { line_bits: spec.layout().pair_bits(), ..spec.clone() };
         let slot = slot(&alone, "scpu_slot", scpu)?;
         let zero = |bits: u32| graph.constant(bits, 0);
+        let phase = counter("phase", 0);
         let passing = vec![
             ("carries".to_owned(), comes),
-            ("targets".to_owned(), counter("phase", 0)),
+            ("targets".to_owned(), phase),
+            ("names".to_owned(), phase.is(0)),
             ("pairs".to_owned(), pair),
             ("leaves".to_owned(), zero(1)),
             ("record_0".to_owned(), zero(spec.layout().result_bits())),

@@ -28,9 +28,11 @@ pub(super) fn slot(spec: &Spec, name: &str, scpu: &Arc<Module>) -> Result<Arc<Mo
 
     let index = graph.input("index", SCPU_BITS);
     let scpus = graph.input("scpus", SCPU_BITS);
-    // Which lanes carry a pair, and for which SCPU, arrives one cycle before the pairs.
+    // Which lanes carry a pair, and for which SCPU, arrives one cycle before the pairs. The slot before has compared
+    // whether that is this one.
     let carries = graph.input("carries_in", lanes);
     let targets = graph.input("targets_in", lanes * SCPU_BITS);
+    let names = graph.input("names_in", lanes);
     let pairs = graph.input("pairs_in", lanes * pair_bits);
 
     // No lane is as many as there are SCPUs or above, and the parameter says so, so that synthesis leaves out the lanes
@@ -39,14 +41,12 @@ pub(super) fn slot(spec: &Spec, name: &str, scpu: &Arc<Module>) -> Result<Arc<Mo
         0 => graph.constant(1, 1),
         _ => scpus.greater_than(scpus.same(lane.into())).named(&format!("uses_lane_{lane}")),
     };
-    let named = |lane: u32| targets.slice(lane * SCPU_BITS, SCPU_BITS).equals(index);
-    let mine: Vec<_> = (0..lanes)
-        .map(|lane| (carries.bit(lane) & named(lane) & is_used(lane)).named(&format!("names_this_in_{lane}")))
-        .collect();
+    let mine: Vec<_> = (0..lanes).map(|lane| carries.bit(lane) & names.bit(lane) & is_used(lane)).collect();
     let taken: Vec<_> =
         mine.iter().zip(0..).map(|(mine, lane)| mine.registered(&format!("takes_lane_{lane}"))).collect();
+    // At most one lane names this SCPU. Whether it carries a pair need not be known to choose it.
     let chosen = (1..lanes).fold(pairs.low(pair_bits), |chosen, lane| {
-        let takes = wide::steering(mine[lane as usize], &format!("chooses_lane_{lane}"), pair_bits);
+        let takes = wide::steering(names.bit(lane) & is_used(lane), &format!("chooses_lane_{lane}"), pair_bits);
         wide::select(&takes, pairs.slice(lane * pair_bits, pair_bits), chosen)
     });
     let unit = if spec.config.interval > 1 {
@@ -60,6 +60,9 @@ pub(super) fn slot(spec: &Spec, name: &str, scpu: &Arc<Module>) -> Result<Arc<Mo
     };
     graph.output("carries_out", carries.registered("carries"));
     graph.output("targets_out", targets.delay(1).named("targets"));
+    let next = index.plus(1).named("next_index");
+    let names_next = (0..lanes).rev().map(|lane| targets.slice(lane * SCPU_BITS, SCPU_BITS).equals(next));
+    graph.output("names_out", Signal::join(&names_next.collect::<Vec<_>>()).delay(1).named("names"));
     graph.output("pairs_out", pairs.delay(1).named("pairs"));
 
     // The lanes that this SCPU answers are delayed beside it. Which lanes carry a result is known one cycle ahead of

@@ -131,8 +131,11 @@ pub(super) fn line_top(
         (name, graph.constant(width, 0))
     });
     let (carries, pairs) = (feeder.output("carries"), feeder.output("pairs"));
-    let first = [("carries", carries), ("targets", feeder.output("targets")), ("pairs", pairs)];
-    let first = first.into_iter().chain([("leaves", graph.constant(lanes, 0))]);
+    let passed_on = ["targets", "names"].map(|name| (name, feeder.output(name)));
+    let first = [("carries", carries), ("pairs", pairs)]
+        .into_iter()
+        .chain(passed_on)
+        .chain([("leaves", graph.constant(lanes, 0))]);
     let passing: Vec<_> = first.map(|(name, signal)| (name.to_owned(), signal)).chain(passing).collect();
     let passed = match &deciding {
         Some(deciding) => slot::row(&graph, "decider", &slot, deciding.config.scpus, passing),

@@ -54,6 +54,7 @@ module dispatcher (
   (* hierconn *) wire        \dut.may_send ;
   (* hierconn *) wire        \dut.read_valid ;
   (* hierconn *) wire [2:0]  \dut.reserved ;
+  (* hierconn *) wire        \dut.freed ;
   (* hierconn *) wire        \dut.clears_marks ;
   (* hierconn *) wire [3:0]  \dut.came ;
   (* hierconn *) wire [1:0]  \dut.oldest ;
@@ -143,6 +144,8 @@ module dispatcher (
   wire [3:0] cleared = {4{\dut.clears_marks }};
   wire [3:0] come = aged(\dut.came & ~cleared, \dut.oldest );
   wire [3:0] coming = aged(\dut.answered ? 4'd1 << \dut.arrived_age : 4'd0, \dut.oldest );
+  // A slot that left is reserved for one more cycle.
+  wire [2:0] in_use = \dut.reserved - {2'd0, \dut.freed };
   wire [3:0] busy = on_port | waiting | arriving | come | coming;
   always @* if (begun & ~start & ~given_up & ~over & ~rst & after_reset) begin
     fifo_fits: assert (\dut.stored <= LINES & (~\dut.line_left | \dut.stored != 0));
@@ -152,8 +155,8 @@ module dispatcher (
       & (~asked | wr_req_tag[5:2] == job_epoch));
     tags_in_order: assert (~asked | wr_req_tag == {job_epoch, \dut.next_slot - 2'd1});
     never_more: assert (\dut.reserved <= 3'd4);
-    slots_in_order: assert (\dut.next_slot - \dut.oldest == \dut.reserved [1:0]);
-    slots_are_right: assert (busy == slots(\dut.oldest , \dut.reserved ));
+    slots_in_order: assert (\dut.next_slot - \dut.oldest == in_use[1:0]);
+    slots_are_right: assert (busy == slots(\dut.oldest , in_use) & (~\dut.freed | \dut.reserved != 3'd0));
     come_once: assert (((on_port | waiting | arriving) & (come | coming)) == 4'd0 & (come & coming) == 4'd0);
     none_lost: assert (\dut.outstanding == ones(on_port | waiting | arriving) + {2'd0, \dut.answered });
     leftover_is_right: assert (~wr_req_valid | \dut.wr_req_of_job == ~left);

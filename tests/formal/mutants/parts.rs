@@ -141,12 +141,12 @@ const DISPATCHER: Rows = &[
     ("ready for a line that has left", "take ? ((line_left", "1'b0 ? ((line_left", 4, "ready_is_right"),
     (
         "requests without a free slot",
-        "wire some_free_now = oldest_goes | ~reserved[2];",
+        "wire some_free_now = freed | ~reserved[2];",
         "wire some_free_now = 1'b1;",
         10,
         "never_more",
     ),
-    ("sends as the last slot is taken", "(oldest_goes | ~&reserved[1:0])", "1'b1", 8, "sends_a_free_slot"),
+    ("sends as the last slot is taken", "(freed | ~&reserved[1:0])", "1'b1", 8, "sends_a_free_slot"),
     ("a tag waits twice", "wr_req_tag <= {epoch, next_slot};", "wr_req_tag <= {epoch, 2'd0};", 7, "tag_free"),
     (
         "tags change places",

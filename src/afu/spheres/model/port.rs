@@ -12,7 +12,7 @@ const CYCLES_TO_REQUEST: u64 = 6;
 /// Cycles from the cycle in which a line is taken to the next request for its place, and from an acknowledgement to
 /// the next request with its tag.
 const CYCLES_TO_FREE: u64 = 3;
-const CYCLES_TO_REUSE: u64 = in_order::CYCLES_TO_COME as u64 + 4;
+const CYCLES_TO_REUSE: u64 = in_order::CYCLES_TO_GO as u64 + 4;
 
 /// Responses in the order of their requests, whose tags are used in turn.
 #[derive(Debug, Default)]
