@@ -3,8 +3,8 @@
 
 use crate::hdl::{Graph, Signal};
 
-/// Cycles from a response to its slot that goes, if it is the oldest: [`awaited`](super::awaited) registers its arrival,
-/// and it is marked.
+/// Cycles from a response to its slot that goes, if it is the oldest: [`awaited`](super::awaited) registers its
+/// arrival, and it is marked.
 pub(super) const CYCLES_TO_GO: u32 = super::awaited::CYCLES_TO_ANSWER + 2;
 
 /// A register of this name, true if the oldest of `slots` (a power of two) slots was answered and left. Slots are used

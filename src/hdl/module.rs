@@ -305,7 +305,7 @@ pub struct Module {
     pub memories: Vec<Memory>,
     /// Instances.
     pub instances: Vec<Instance>,
-    /// The value (1 bit, high in reset) that resets this module, in place of a reset port. Its instances have their own.
+    /// The value (1 bit, high in reset) that resets this module, in place of a reset port. Each instance has its own.
     pub reset: Option<NodeId>,
     /// The name of the clock port, if it is not `clk`.
     pub clock: Option<&'static str>,
