@@ -62,11 +62,11 @@ pub(super) fn credits(spec: &Spec, capacity: u32, slot_latency: u32) -> Result<A
     graph.output("may_enter", (run & enough).registered("may_enter"));
 
     let inside = graph.register("pairs_inside", room_bits, 0);
-    // What leaves is counted a cycle later, and so is whether it may be.
+    // What leaves is counted a cycle late, so it counts from a cycle after the lines are filled.
     let emerged = emerged.delay(1).named("emerged_now");
     let counts = filled.registered("counts_emerged");
-    let left = inside.value() + entered.extend(room_bits) - emerged.extend(room_bits);
-    inside.next(left.gate(counts));
+    let next_inside = inside.value() + entered.extend(room_bits) - emerged.extend(room_bits);
+    inside.next(next_inside.gate(counts));
     let is_empty = (!inside.any() & !entered.any()).named("is_empty");
     graph.output("none_inside", is_empty.registered("none_inside"));
     graph.output("all_emerged", (!start & all_given & is_empty).registered("all_emerged"));

@@ -213,10 +213,10 @@ fn targets<'g>(
     let next = (1..=lanes).fold(turn.value(), |fewer, pairs| group.is(u128::from(pairs)).select(behind(pairs), fewer));
     turn.next(start.select(turn.same(0), next.named("next_turn")));
     let of_lane = |lane: u32| match lane {
-        0 => [turn.value(), turn.is(0)],
-        _ => [behind(lane), turn.equals(last(lane))],
+        0 => (turn.value(), turn.is(0)),
+        _ => (behind(lane), turn.equals(last(lane))),
     };
-    let [targets, names_first]: [Vec<_>; 2] = [0, 1].map(|of| (0..lanes).rev().map(|lane| of_lane(lane)[of]).collect());
+    let (targets, names_first): (Vec<_>, Vec<_>) = (0..lanes).rev().map(of_lane).unzip();
     [Signal::join(&targets), Signal::join(&names_first)]
 }
 

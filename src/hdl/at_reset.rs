@@ -1,6 +1,7 @@
 //! Which levels a module's outputs have in reset: what documentation says of them, read off the module itself.
 
-use super::module::{InstanceCount, Module, NodeId, Op};
+use super::instance::InstanceCount;
+use super::module::{Module, NodeId, Op};
 
 /// A register that is only reset through its next value can follow another such; in this many steps, no more.
 const LONGEST: u32 = 32;

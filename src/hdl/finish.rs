@@ -5,7 +5,8 @@ use std::collections::{BTreeSet, HashMap};
 
 use super::error::{BuildErrors, Error};
 use super::graph::{Inner, Paths};
-use super::module::{Instance, Memory, Module, Node, NodeId, Op};
+use super::instance::Instance;
+use super::module::{Memory, Module, Node, NodeId, Op};
 use super::share_delays;
 
 pub(super) fn finish(mut inner: Inner) -> Result<Module, BuildErrors> {

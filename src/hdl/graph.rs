@@ -6,7 +6,8 @@ use std::panic::Location;
 use std::sync::Arc;
 
 use super::error::{BuildErrors, Error};
-use super::module::{Instance, Memory, Module, Node, NodeId, Op, Parameter, Port, Rounded};
+use super::instance::Instance;
+use super::module::{Memory, Module, Node, NodeId, Op, Parameter, Port, Rounded};
 use super::signal::Signal;
 
 pub(super) struct Inner {

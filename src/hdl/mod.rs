@@ -15,6 +15,7 @@ mod evaluate;
 mod finish;
 mod fold;
 mod graph;
+mod instance;
 mod keywords;
 mod loads;
 mod lookup;
@@ -32,9 +33,8 @@ pub use delay_model::DelayModel;
 pub use error::{BuildErrors, Error};
 pub use evaluate::{EvaluateError, Evaluator, Pin};
 pub use graph::Graph;
+pub use instance::{Instance, InstanceCount};
 pub(crate) use module::fits_luts;
-pub use module::{
-    Instance, InstanceCount, Memory, Module, Node, NodeId, Op, Parameter, Port, Primitive, Reset, Rounded, Size,
-};
+pub use module::{Memory, Module, Node, NodeId, Op, Parameter, Port, Primitive, Reset, Rounded, Size};
 pub use signal::Signal;
 pub use state::{Instantiated, MemoryHandle, Register};

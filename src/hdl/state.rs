@@ -5,7 +5,8 @@ use std::panic::Location;
 use std::sync::Arc;
 
 use super::graph::{Graph, is_identifier};
-use super::module::{Instance, InstanceCount, Memory, Module, Op, fits_luts};
+use super::instance::{Instance, InstanceCount};
+use super::module::{Memory, Module, Op, fits_luts};
 use super::signal::Signal;
 
 /// A register under construction. It reads as its present value.
@@ -274,7 +275,7 @@ impl Graph {
         let place = Location::caller();
         self.refuse_top(name, module, place);
         for (index, port) in module.ports.iter().enumerate().filter(|(_, port)| port.output) {
-            let next = super::module::next_in_chain(module, index).map(|next| &module.ports[next]);
+            let next = super::instance::next_in_chain(module, index).map(|next| &module.ports[next]);
             if next.is_none_or(|next| next.width != port.width) {
                 let message =
                     format!("chain `{name}`: output `{}` of `{}` has no input to go into", port.name, module.name);
@@ -343,9 +344,8 @@ impl Graph {
         }
         let mut inner = self.inner.borrow_mut();
         let instance = inner.instances.len();
-        let (name, module) = (name.to_owned(), module.clone());
         inner.instances.push(Instance {
-            name: name.clone(),
+            name: name.to_owned(),
             module: module.clone(),
             count,
             inputs: connected,
@@ -358,7 +358,7 @@ impl Graph {
             let signal = if ids.is_some() { self.fresh(op, port.width, vec![], place) } else { Signal::poison(self) };
             (port.name.clone(), signal)
         });
-        Instantiated { graph: self, name, outputs: outputs.collect() }
+        Instantiated { graph: self, name: name.to_owned(), outputs: outputs.collect() }
     }
 }
 

@@ -6,15 +6,32 @@ module board (
   input  wire       clk,
   input  wire       reset_n,
   input  wire       soft_reset,
-  output wire [3:0] value
+  output wire [3:0] value,
+  output wire [3:0] own_value
 );
+
+  // Resets this module; each instance has a register of its own.
+  wire rst;
 
   // ---- state ----
   (* keep = "true", dont_merge *) reg in_reset_unit;
+  reg [3:0] own;
+  (* keep = "true", dont_merge *) reg in_reset;
+
+  // ---- logic ----
+  wire in_reset_next = ~reset_n | soft_reset;
 
   // ---- at the clock edge ----
+  always @(posedge clk) begin
+    if (rst) begin
+      own <= 4'd9;
+    end else begin
+      own <= own + 4'd1;
+    end
+  end
   (* keep = "true" *) always @(posedge clk) begin
-    in_reset_unit <= ~reset_n | soft_reset;
+    in_reset_unit <= in_reset_next;
+    in_reset <= in_reset_next;
   end
 
   counter unit (
@@ -22,6 +39,9 @@ module board (
     .rst   (in_reset_unit),
     .value (value)
   );
+
+  assign rst = in_reset;
+  assign own_value = own;
 
 endmodule
 

@@ -113,16 +113,21 @@ fn a_top_that_resets_itself_has_no_reset_port() {
     graph.reset_by(!reset_n | soft_reset);
     let unit = graph.instance("unit", &counter.finish().unwrap(), &[]);
     graph.output("value", unit.output("value"));
+    // State of its own, which another register resets.
+    let own = graph.register("own", 4, 9);
+    own.next(own.plus(1));
+    graph.output("own_value", *own);
     let board = graph.finish().unwrap();
     expect_file!["../golden/board.v"].assert_eq(&emit(&board, &Style::default()));
     let low = emit(&board, &Style { reset: Reset { asynchronous: false, active_low: true }, ..Style::default() });
-    assert!(low.contains(".rst_n (~in_reset_unit)"), "{low}");
+    assert!(low.contains(".rst_n (~in_reset_unit)") && low.contains("assign rst_n = ~in_reset;"), "{low}");
     let mut run = Evaluator::new(&board, &[]).unwrap();
     run.set("reset_n", 1);
     let mut seen = Vec::new();
     for cycle in 0..6 {
         run.set("soft_reset", u128::from(cycle == 2));
         run.step();
+        assert_eq!(run.get("own_value"), run.get("value"), "both are reset in one cycle");
         seen.push(run.get("value"));
     }
     assert_eq!(seen, [10, 11, 12, 9, 10, 11], "a cycle after the signal, the register's");

@@ -7,7 +7,8 @@ use std::sync::Arc;
 use crate::hdl::delay_model::DelayModel;
 use crate::hdl::error::BuildErrors;
 use crate::hdl::graph::{Graph, Inner};
-use crate::hdl::module::{Instance, InstanceCount, Module, NodeId, Op, Primitive};
+use crate::hdl::instance::{Instance, InstanceCount};
+use crate::hdl::module::{Module, NodeId, Op, Primitive};
 
 /// Puts an instance of a multiplier block in the place of the product `id`, whose operands are those of the block's
 /// first rank.

@@ -4,7 +4,8 @@
 use std::sync::Arc;
 
 use super::EvaluateError;
-use crate::hdl::module::{InstanceCount, Module, Node, NodeId, Op, next_in_chain};
+use crate::hdl::instance::{InstanceCount, next_in_chain};
+use crate::hdl::module::{Module, Node, NodeId, Op};
 
 /// A node of one instance: its scope's `base` plus its index in the module.
 pub(super) type FlatId = usize;

@@ -1,6 +1,7 @@
 //! Instances in the body of a module: one, or a chain of as many as a parameter gives.
 
-use super::super::module::{Instance, InstanceCount, NodeId, Op, Size, next_in_chain};
+use super::super::instance::{Instance, InstanceCount, next_in_chain};
+use super::super::module::{NodeId, Op, Size};
 use super::expression::range;
 use super::sections::Sections;
 use super::unused::unconnected;

@@ -2,8 +2,9 @@
 
 use std::collections::{BTreeSet, HashMap, HashSet};
 
+use super::super::instance::Instance;
 use super::super::keywords::keywords;
-use super::super::module::{Instance, Module, Node, NodeId, Op};
+use super::super::module::{Module, Node, NodeId, Op};
 use super::derive::Derivation;
 use super::print::is_register;
 

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use super::super::module::{Instance, InstanceCount, Memory, Module, NodeId, Op, fits_luts};
+use super::super::instance::{Instance, InstanceCount};
+use super::super::module::{Memory, Module, NodeId, Op, fits_luts};
 use super::super::state::address_width;
 use super::cases::Cases;
 use super::delay::DelayKind;

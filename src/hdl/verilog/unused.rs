@@ -1,6 +1,7 @@
 //! Gathers unused bits in one wire whose name says so, so that linters accept them.
 
-use super::super::module::{Instance, InstanceCount, Module, NodeId, Op};
+use super::super::instance::{Instance, InstanceCount};
+use super::super::module::{Module, NodeId, Op};
 use super::instances::chained;
 use super::names::Names;
 
