@@ -54,7 +54,7 @@ module contact_afu_control (
   // ---- state ----
   reg [31:0] cycles_busy_high;
   reg [31:0] cycles_busy_low;
-  reg first_cycle;
+  (* keep = "true", dont_merge *) reg first_cycle_copy_1;
   (* keep = "true", dont_merge *) reg busy_copy_0;
   reg completes;
   reg draining;
@@ -75,16 +75,19 @@ module contact_afu_control (
   reg fails;
   reg unexpected_heard;
   reg begin_job;
+  (* keep = "true", dont_merge *) reg first_cycle_copy_0;
   reg has_unknown_mode;
   reg waits_to_begin;
   reg filled_heard;
   reg cycles_busy_low_is_full;
   reg [31:0] cycles_input_high;
   reg [31:0] cycles_input_low;
+  (* keep = "true", dont_merge *) reg first_cycle_copy_2;
   reg counts_input;
   reg cycles_input_low_is_full;
   reg [31:0] cycles_output_high;
   reg [31:0] cycles_output_low;
+  (* keep = "true", dont_merge *) reg first_cycle_copy_3;
   reg counts_output;
   reg cycles_output_low_is_full;
   reg [3:0] told_cause;
@@ -110,17 +113,14 @@ module contact_afu_control (
   wire silence_restarts = link_is_alive | ~busy_copy_0 | begins_to_drain;
   wire link_idle = read_idle & write_idle;
   wire is_unexpected = unexpected_heard & ~begin_job;
-  wire refuses = first_cycle & has_unknown_mode;
+  wire refuses = first_cycle_copy_0 & has_unknown_mode;
   wire failing = running & (fails | is_unexpected | refuses) & ~completes;
   wire still_waits = waits_to_begin & ~fails;
   wire begins = (accept | still_waits) & filled_heard;
   wire keeps_waiting = waits_to_begin & ~failing;
   wire goes_on = running & ~completes & ~failing;
-  wire cycles_busy_moves = first_cycle | busy_copy_0;
   assign cycles_input = {cycles_input_high, cycles_input_low};
-  wire cycles_input_moves = first_cycle | counts_input;
   assign cycles_output = {cycles_output_high, cycles_output_low};
-  wire cycles_output_moves = first_cycle | counts_output;
   wire [3:0] cause =
       refuses       ? 4'd5 :
       |told_cause   ? told_cause :
@@ -143,7 +143,6 @@ module contact_afu_control (
     if (rst) begin
       cycles_busy_high <= 32'd0;
       cycles_busy_low <= 32'd0;
-      first_cycle <= 1'b0;
       completes <= 1'b0;
       draining <= 1'b0;
       cycles_draining <= 3'd0;
@@ -181,10 +180,9 @@ module contact_afu_control (
       job_epoch <= 4'd0;
       job_lines <= 32'd0;
     end else begin
-      if (first_cycle | (busy_copy_0 & cycles_busy_low_is_full)) cycles_busy_high <=
-          first_cycle ? 32'd0 : (cycles_busy_high + 32'd1);
-      if (cycles_busy_moves) cycles_busy_low <= first_cycle ? 32'd1 : (cycles_busy_low + 32'd1);
-      first_cycle <= accept;
+      if (busy_copy_0 & (first_cycle_copy_1 | cycles_busy_low_is_full))
+        cycles_busy_high <= first_cycle_copy_1 ? 32'd0 : (cycles_busy_high + 32'd1);
+      if (busy_copy_0) cycles_busy_low <= first_cycle_copy_1 ? 32'd1 : (cycles_busy_low + 32'd1);
       completes <= run & packer_done & dispatched & link_idle & goes_on;
       draining <= failing | (draining & ~drained);
       cycles_draining <= draining ? (stopped ? cycles_draining : (cycles_draining + 3'd1)) : 3'd0;
@@ -206,19 +204,19 @@ module contact_afu_control (
       waits_to_begin <= (accept | keeps_waiting) & ~filled_heard;
       filled_heard <= filled;
       run <= (run | begin_job) & goes_on;
-      if (cycles_busy_moves) cycles_busy_low_is_full <= ~first_cycle & (&cycles_busy_low[31:1] & ~cycles_busy_low[0]);
-      if (first_cycle | (counts_input & cycles_input_low_is_full))
-        cycles_input_high <= first_cycle ? 32'd0 : (cycles_input_high + 32'd1);
-      if (cycles_input_moves) cycles_input_low <= first_cycle ? 32'd0 : (cycles_input_low + 32'd1);
-      counts_input <= waits_for_input & run;
-      if (cycles_input_moves) cycles_input_low_is_full <=
-          ~first_cycle & (&cycles_input_low[31:1] & ~cycles_input_low[0]);
-      if (first_cycle | (counts_output & cycles_output_low_is_full))
-        cycles_output_high <= first_cycle ? 32'd0 : (cycles_output_high + 32'd1);
-      if (cycles_output_moves) cycles_output_low <= first_cycle ? 32'd0 : (cycles_output_low + 32'd1);
-      counts_output <= waits_for_output & run;
-      if (cycles_output_moves) cycles_output_low_is_full <=
-          ~first_cycle & (&cycles_output_low[31:1] & ~cycles_output_low[0]);
+      if (busy_copy_0) cycles_busy_low_is_full <= ~first_cycle_copy_1 & (&cycles_busy_low[31:1] & ~cycles_busy_low[0]);
+      if (counts_input & (first_cycle_copy_2 | cycles_input_low_is_full))
+        cycles_input_high <= first_cycle_copy_2 ? 32'd0 : (cycles_input_high + 32'd1);
+      if (counts_input) cycles_input_low <= first_cycle_copy_2 ? 32'd0 : (cycles_input_low + 32'd1);
+      counts_input <= accept | (waits_for_input & run);
+      if (counts_input) cycles_input_low_is_full <=
+          ~first_cycle_copy_2 & (&cycles_input_low[31:1] & ~cycles_input_low[0]);
+      if (counts_output & (first_cycle_copy_3 | cycles_output_low_is_full))
+        cycles_output_high <= first_cycle_copy_3 ? 32'd0 : (cycles_output_high + 32'd1);
+      if (counts_output) cycles_output_low <= first_cycle_copy_3 ? 32'd0 : (cycles_output_low + 32'd1);
+      counts_output <= accept | (waits_for_output & run);
+      if (counts_output) cycles_output_low_is_full <=
+          ~first_cycle_copy_3 & (&cycles_output_low[31:1] & ~cycles_output_low[0]);
       done <= ~accept & (done | completes | drained);
       error <= accept ? 4'd0 : ended;
       told_cause <= running ? (abort_job ? 4'd1 : read_failed ? 4'd2 : write_failed ? 4'd3 : 4'd0) : 4'd0;
@@ -229,8 +227,12 @@ module contact_afu_control (
   end
   (* keep = "true" *) always @(posedge clk) begin
     if (rst) begin
+      first_cycle_copy_1 <= 1'b0;
       busy_copy_0 <= 1'b0;
       busy_copy_1 <= 1'b0;
+      first_cycle_copy_0 <= 1'b0;
+      first_cycle_copy_2 <= 1'b0;
+      first_cycle_copy_3 <= 1'b0;
       begin_job_copy_0 <= 1'b0;
       begin_job_copy_1 <= 1'b0;
       begin_job_copy_2 <= 1'b0;
@@ -238,8 +240,12 @@ module contact_afu_control (
       begin_job_copy_4 <= 1'b0;
       busy_copy_2 <= 1'b0;
     end else begin
+      first_cycle_copy_1 <= accept;
       busy_copy_0 <= is_busy;
       busy_copy_1 <= is_busy;
+      first_cycle_copy_0 <= accept;
+      first_cycle_copy_2 <= accept;
+      first_cycle_copy_3 <= accept;
       begin_job_copy_0 <= begins;
       begin_job_copy_1 <= begins;
       begin_job_copy_2 <= begins;

@@ -56,6 +56,7 @@ module contact_afu_dispatcher (
   reg accepted;
   reg wr_req_of_job;
   reg [5:0] next_slot;
+  reg line_sent;
   reg [7:0] response_row;
   reg is_current;
   reg is_asked;
@@ -93,6 +94,7 @@ module contact_afu_dispatcher (
   wire marked_in_2 = |(awaited[23:16] & response_place);
   wire marked_in_1 = |(awaited[15:8] & response_place);
   wire marked_in_0 = |(awaited[7:0] & response_place);
+  wire [5:0] slot = next_slot + {5'd0, line_sent};
   wire [7:0] row_if_current = is_current ? response_row : 8'd0;
   wire [63:0] next_answers = {
     row_if_current[7] ? response_place : 8'd0,
@@ -105,6 +107,7 @@ module contact_afu_dispatcher (
     row_if_current[0] ? response_place : 8'd0
   };
   wire [6:0] twice_the_age = {answered_slot, 1'b0} - {oldest, oldest_goes};
+  wire [57:0] address = next_address + {57'd0, line_sent};
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
@@ -122,11 +125,11 @@ module contact_afu_dispatcher (
     answers <= next_answers;
     asked <= accepted ? (64'd1 << accepted_slot) : 64'd0;
     accepted_slot <= wr_req_tag[5:0];
-    if (goes) wr_req_tag <= {epoch, next_slot};
+    if (wr_req_moves) wr_req_tag <= {epoch, slot};
     response_row <= 8'd1 << wr_rsp_tag[5:3];
     asked_slot <= accepted_slot;
-    if (goes) wr_req_address <= next_address;
-    if (start | goes) next_address <= start ? destination : (next_address + 58'd1);
+    if (wr_req_moves) wr_req_address <= address;
+    next_address <= start ? destination : address;
     error_then <= wr_rsp_error_d1;
     wr_rsp_error_d1 <= wr_rsp_error;
   end
@@ -146,6 +149,7 @@ module contact_afu_dispatcher (
       accepted <= 1'b0;
       wr_req_of_job <= 1'b0;
       next_slot <= 6'd0;
+      line_sent <= 1'b0;
       is_current <= 1'b0;
       is_asked <= 1'b0;
       oldest <= 6'd0;
@@ -170,7 +174,8 @@ module contact_afu_dispatcher (
       is_response <= is_current & ~start;
       accepted <= wr_req_valid & wr_req_ready & wr_req_of_job & ~start;
       wr_req_of_job <= ~start & (wr_req_moves | wr_req_of_job);
-      next_slot <= start ? 6'd0 : goes ? (next_slot + 6'd1) : next_slot;
+      next_slot <= start ? 6'd0 : slot;
+      line_sent <= goes & ~start;
       is_current <= wr_rsp_valid & (wr_rsp_tag[9:6] == epoch);
       is_asked <= accepted & ~start;
       oldest <= start ? 6'd0 : (oldest + {5'd0, oldest_goes});
@@ -197,7 +202,7 @@ module contact_afu_dispatcher (
     .write_word  (line),
     .read_index  (head),
     .read        (read),
-    .advance     (goes),
+    .advance     (wr_req_moves),
     .word        (wr_req_data)
   );
 

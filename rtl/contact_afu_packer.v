@@ -78,7 +78,7 @@ module contact_afu_packer (
   wire empties = start_or_flushes | fills;
   wire [3:0] enters_1_soon = carried[1] ? {1'b0, first_place, 1'b0} : 4'd0;
   wire [3:0] enters_0_soon = carried[0] ? {2'd0, first_place} : 4'd0;
-  wire stores_0_copy_1_next = enters_1_soon[2] | empties_soon | enters_0_soon[0];
+  wire stores_0_next = enters_1_soon[2] | empties_soon | enters_0_soon[0];
   wire done_next = ~start & (all_emerged & ~place & ~went & ~comes) & ~line_valid;
   wire contact_here_0 = contact_0 & leaves_here[0];
   wire contact_here_1 = contact_1 & leaves_here[1];
@@ -160,10 +160,10 @@ module contact_afu_packer (
     enters_0_place_0_copy_0 <= enters_0_soon[0];
     enters_1_place_2_copy_0 <= enters_1_soon[2];
     empties_0_copy_0 <= empties_soon;
-    stores_0_copy_0 <= stores_0_copy_1_next;
+    stores_0_copy_0 <= stores_0_next;
     enters_1_place_2_copy_1 <= enters_1_soon[2];
     empties_0_copy_1 <= empties_soon;
-    stores_0_copy_1 <= stores_0_copy_1_next;
+    stores_0_copy_1 <= stores_0_next;
   end
 
   assign contacts = contact_count;

@@ -83,8 +83,8 @@ module scpu_slot (
   wire takes_lane_0_next = carries_in[0] & names_in[0];
   wire uses_lane_1 = 7'd1 < scpus;
   wire takes_lane_1_next = carries_in[1] & names_in[1] & uses_lane_1;
-  wire chooses_lane_1_copy_0_next = names_in[1] & uses_lane_1;
-  wire answers_lane_1_copy_0_next = answers_soon[1] & uses_lane_1;
+  wire chooses_lane_1_next = names_in[1] & uses_lane_1;
+  wire answers_lane_1_next = answers_soon[1] & uses_lane_1;
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
@@ -140,10 +140,10 @@ module scpu_slot (
   (* keep = "true" *) always @(posedge clk) begin
     answers_lane_0_copy_1 <= answers_soon[0];
     answers_lane_0_copy_0 <= answers_soon[0];
-    chooses_lane_1_copy_1 <= chooses_lane_1_copy_0_next;
-    chooses_lane_1_copy_0 <= chooses_lane_1_copy_0_next;
-    answers_lane_1_copy_1 <= answers_lane_1_copy_0_next;
-    answers_lane_1_copy_0 <= answers_lane_1_copy_0_next;
+    chooses_lane_1_copy_1 <= chooses_lane_1_next;
+    chooses_lane_1_copy_0 <= chooses_lane_1_next;
+    answers_lane_1_copy_1 <= answers_lane_1_next;
+    answers_lane_1_copy_0 <= answers_lane_1_next;
   end
 
   scpu unit (

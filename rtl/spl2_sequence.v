@@ -170,7 +170,7 @@ module spl2_sequence (
     7'd0,
     shows_status_copy_0
   };
-  wire shows_busy_copy_0_next = to_performance & ran;
+  wire shows_busy_next = to_performance & ran;
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
@@ -288,9 +288,9 @@ module spl2_sequence (
     shows_dsm_copy_0 <= to_latency | to_performance;
     shows_latency_copy_0 <= to_latency;
     shows_sequence_copy_0 <= to_performance;
-    shows_output_copy_0 <= shows_busy_copy_0_next;
-    shows_input_copy_0 <= shows_busy_copy_0_next;
-    shows_busy_copy_0 <= shows_busy_copy_0_next;
+    shows_output_copy_0 <= shows_busy_next;
+    shows_input_copy_0 <= shows_busy_next;
+    shows_busy_copy_0 <= shows_busy_next;
     shows_identity_copy_0 <= to_status;
     shows_status_copy_0 <= to_status;
     shows_results_copy_0 <= to_status & ran;

@@ -71,7 +71,9 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let copies = is_busy.copies("busy", 3);
     let (busy, keeps_values, keeps_addresses) = (copies[0], copies[1], copies[2]);
     let accept = (start & !busy).named("accept");
-    let first_cycle = accept.registered("first_cycle");
+    // One copy for control, and one for each count of cycles.
+    let first_cycles = accept.copies("first_cycle", 4);
+    let first_cycle = first_cycles[0];
     let takes_values = (start & !keeps_values).named("takes_values");
 
     // The job is held from its start; everything downstream begins one cycle later. The addresses are wide, so they
@@ -181,12 +183,12 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     error.next(ended.gate(!accept));
 
     // The counts begin one cycle after the start, and include that cycle, in which nothing waits yet.
-    for (port, counts, first) in [
-        (told.cycles_busy, busy, 1),
-        (told.cycles_input, (waits_for_input & *run).registered("counts_input"), 0),
-        (told.cycles_output, (waits_for_output & *run).registered("counts_output"), 0),
-    ] {
-        graph.output(port.name, cycles(&graph, port.name, port.bits, [first_cycle, counts], first));
+    let [counts_input, counts_output] = [("counts_input", waits_for_input), ("counts_output", waits_for_output)]
+        .map(|(name, waits)| (accept | (waits & *run)).registered(name));
+    let counts =
+        [(told.cycles_busy, busy, 1), (told.cycles_input, counts_input, 0), (told.cycles_output, counts_output, 0)];
+    for ((port, counts, first), restart) in counts.into_iter().zip(&first_cycles[1..]) {
+        graph.output(port.name, cycles(&graph, port.name, port.bits, [*restart, counts], first));
     }
     graph.output("busy", busy);
     graph.output("done", done.value());

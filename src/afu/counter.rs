@@ -172,8 +172,8 @@ pub(super) fn oldest_place<'g>(graph: &'g Graph, name: &str, width: u32, moves: 
     next
 }
 
-/// A count of the cycles in which `counts` is set, from `first` at `restart`. Its upper half counts when the lower half
-/// is about to wrap, which is known a cycle ahead, so no carry passes the whole width.
+/// A count of the cycles in which `counts` is set, from `first` at `restart`, where `counts` is set too. Its upper half
+/// counts when the lower half is about to wrap, which is known a cycle ahead, so no carry passes the whole width.
 pub(super) fn cycles<'g>(
     graph: &'g Graph,
     name: &str,
@@ -185,11 +185,10 @@ pub(super) fn cycles<'g>(
     let low = graph.register(&format!("{name}_low"), half, 0);
     let high = graph.register(&format!("{name}_high"), width - half, 0);
     let is_full = graph.register(&format!("{name}_low_is_full"), 1, 0);
-    let moves = (restart | counts).named(&format!("{name}_moves"));
-    low.next_if(moves, restart.select(low.same(first.into()), low.plus(1)));
+    low.next_if(counts, restart.select(low.same(first.into()), low.plus(1)));
     let last_but_one = low.drop_low(1).all() & !low.bit(0);
-    is_full.next_if(moves, !restart & last_but_one);
-    high.next_if(restart | (counts & *is_full), restart.select(high.same(0), high.plus(1)));
+    is_full.next_if(counts, !restart & last_but_one);
+    high.next_if(counts & (restart | *is_full), restart.select(high.same(0), high.plus(1)));
     high.concat(low.value()).named(name)
 }
 

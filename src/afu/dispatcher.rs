@@ -3,7 +3,7 @@
 //! A tag is the job's epoch and a slot. Slots are used in turn, and each is reused only after its acknowledgement.
 //!
 //! With `--results hits`, the number of lines is not known in advance. The host says how many it has room for; the rest
-//! are dropped, and the job ends with an error.
+//! are dropped as they come, and the job ends with an error.
 
 use std::sync::Arc;
 
@@ -35,10 +35,25 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
     let drops = graph.input("drops_requests", 1);
     let destination = graph.input("destination", ADDRESS_BITS);
     let epoch = graph.input("epoch", EPOCH_BITS);
-    let line_valid = graph.input("line_valid", 1);
+    let finished = graph.input("line_valid", 1);
     let line = graph.input("line", spec.line_bits);
     let link = WriteInputs::of(spec).map(|port| port.input(&graph));
     let bounded = spec.config.results == Results::Hits;
+
+    // A line that the host has no room for is not stored.
+    let comes = if bounded {
+        let lines = graph.input("lines", COUNT_BITS);
+        let room = Countdown::new(&graph, "lines_of_room", COUNT_BITS);
+        let fits = room.any;
+        let comes = (finished & fits).named("comes");
+        room.connect(start, lines, comes);
+        let overflowed = graph.register("overflowed", 1, 0);
+        overflowed.next(!start & (*overflowed | finished & !fits));
+        graph.output("overflowed", overflowed.value());
+        comes
+    } else {
+        finished
+    };
 
     // Finished lines wait in a memory; the oldest one has been read already. It cannot overflow: a pair enters an SCPU
     // only when its result has a place here. A line that was read is counted as stored for one more cycle.
@@ -52,51 +67,44 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
     let read = (!*read_valid | may_go).named("read");
     let take = (read & *ready).named("take");
     let left = (take & !start).registered("line_left");
-    from_zero(tail, start, line_valid, tail.plus(1));
+    from_zero(tail, start, comes, tail.plus(1));
     from_zero(head, start, take, head.plus(1));
-    up_down(stored, start, line_valid, left);
-    let is_ready = left_after(*stored, left, "any_stored").or(line_valid).at(take).named("some_ready");
+    up_down(stored, start, comes, left);
+    let is_ready = left_after(*stored, left, "any_stored").or(comes).at(take).named("some_ready");
     ready.next(!start & is_ready);
     read_valid.next(!start & (take | (*read_valid & !goes)));
 
     // Write requests. Whether one may be sent is decided one cycle ahead. The line at the port is in the memory's own
-    // register, and its address and tag are in registers beside it.
+    // register, and its address and tag are in registers beside it. All of them take what comes next whenever the port
+    // is free. The address and the slot are counted one cycle late.
+    let sent = (goes & !start).registered("line_sent");
     let next_address = graph.data_register("next_address", ADDRESS_BITS);
+    let address = (*next_address + sent.extend(ADDRESS_BITS)).named("address");
+    next_address.next(start.select(destination, address));
     let next_slot = graph.register("next_slot", slot_bits, 0);
+    let slot = (*next_slot + sent.extend(slot_bits)).named("slot");
+    next_slot.next(slot.gate(!start));
     let reserved = graph.register("reserved", slot_bits + 1, 0);
     let may_send = graph.register("may_send", 1, 0);
     let valid = graph.register("wr_req_valid", 1, 0);
     let moves = (!*valid | link.wr_req_ready).named("wr_req_moves");
     may_go.drive(*may_send & moves);
-    let send = if bounded {
-        let lines = graph.input("lines", COUNT_BITS);
-        let room = Countdown::new(&graph, "lines_of_room", COUNT_BITS);
-        let fits = room.any;
-        let send = (goes & fits).named("send");
-        room.connect(start, lines, send);
-        let overflowed = graph.register("overflowed", 1, 0);
-        overflowed.next(!start & (*overflowed | goes & !fits));
-        graph.output("overflowed", overflowed.value());
+    if bounded {
         // The packer is stopped a few cycles before the memory is full, because lines are still in flight.
         graph.output("accepts", (!stored.high(2).any()).registered("accepts"));
-        send
-    } else {
-        goes
-    };
+    }
     // A request that is at the port when its job is given up stays until it is taken, even during the next job.
-    valid.next((send & !drops) | !moves);
+    valid.next((goes & !drops) | !moves);
     let of_job = graph.register("wr_req_of_job", 1, 0);
     of_job.next(!start & (moves | *of_job));
     let accepted = *valid & link.wr_req_ready & *of_job;
     let access =
-        Access { write: line_valid, write_index: tail.value(), line, read, read_index: head.value(), advance: send };
+        Access { write: comes, write_index: tail.value(), line, read, read_index: head.value(), advance: moves };
     let request_data = line_memory(&graph, spec, "finished", depth, &access)?;
     let request_address = graph.data_register("wr_req_address", ADDRESS_BITS);
-    request_address.next_if(send, next_address.value());
+    request_address.next_if(moves, address);
     let request_tag = graph.data_register("wr_req_tag", spec.tag_bits());
-    request_tag.next_if(send, epoch.concat(next_slot.value()));
-    next_address.next_if(start | send, start.select(destination, next_address.plus(1)));
-    from_zero(next_slot, start, send, next_slot.plus(1));
+    request_tag.next_if(moves, epoch.concat(slot));
 
     // Acknowledgements, in any order.
     let clears = awaited::clears(&graph, start);
@@ -104,10 +112,10 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
     let error = link.wr_rsp_error.delay(1).named("response_error");
     let answers = awaited(&graph, slots, [start, clears, run], [accepted, request_tag.low(slot_bits)], &arrival, error);
     let freed = goes_in_order(&graph, "freed", slots, [start, clears], arrival.slot, answers.answered);
-    up_down(reserved, start, send, freed);
-    may_send.next(run & some_free(reserved, freed).at(send).named("some_free"));
+    up_down(reserved, start, goes, freed);
+    may_send.next(run & some_free(reserved, freed).at(goes).named("some_free"));
     let outstanding = graph.register("outstanding", slot_bits + 1, 0);
-    up_down(outstanding, start, send, answers.answered);
+    up_down(outstanding, start, goes, answers.answered);
 
     let requests = WriteOutputs {
         wr_req_valid: valid.value(),
@@ -123,7 +131,7 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
     graph.output("failed", answers.failed);
     graph.output("responded", answers.responded);
     // It is busy in the cycle in which a request reaches the port.
-    graph.output("idle", (!outstanding.any() & !*valid & !send).registered("idle"));
+    graph.output("idle", (!outstanding.any() & !*valid & !goes).registered("idle"));
     graph.output("empty", (!start & !stored.any() & !*read_valid).registered("empty"));
     graph.finish()
 }

@@ -51,6 +51,7 @@ module dispatcher (
   (* hierconn *) wire        \dut.ready ;
   (* hierconn *) wire        \dut.line_left ;
   (* hierconn *) wire        \dut.goes ;
+  (* hierconn *) wire        \dut.line_sent ;
   (* hierconn *) wire        \dut.may_send ;
   (* hierconn *) wire        \dut.read_valid ;
   (* hierconn *) wire [2:0]  \dut.reserved ;
@@ -144,6 +145,9 @@ module dispatcher (
   wire [3:0] cleared = {4{\dut.clears_marks }};
   wire [3:0] come = aged(\dut.came & ~cleared, \dut.oldest );
   wire [3:0] coming = aged(\dut.answered ? 4'd1 << \dut.arrived_age : 4'd0, \dut.oldest );
+  // The address and the slot are counted one cycle late.
+  wire [57:0] next_address = \dut.next_address + {57'd0, \dut.line_sent };
+  wire [1:0] next_slot = \dut.next_slot + {1'b0, \dut.line_sent };
   // A slot that left is reserved for one more cycle.
   wire [2:0] in_use = \dut.reserved - {2'd0, \dut.freed };
   wire [3:0] busy = on_port | waiting | arriving | come | coming;
@@ -153,9 +157,9 @@ module dispatcher (
     ready_is_right: assert (\dut.ready == (stored != 0));
     tag_free: assert ((on_port & (waiting | arriving)) == 4'd0 & (waiting & arriving) == 4'd0
       & (~asked | wr_req_tag[5:2] == job_epoch));
-    tags_in_order: assert (~asked | wr_req_tag == {job_epoch, \dut.next_slot - 2'd1});
+    tags_in_order: assert (~asked | wr_req_tag == {job_epoch, next_slot - 2'd1});
     never_more: assert (\dut.reserved <= 3'd4);
-    slots_in_order: assert (\dut.next_slot - \dut.oldest == in_use[1:0]);
+    slots_in_order: assert (next_slot - \dut.oldest == in_use[1:0]);
     slots_are_right: assert (busy == slots(\dut.oldest , in_use) & (~\dut.freed | \dut.reserved != 3'd0));
     come_once: assert (((on_port | waiting | arriving) & (come | coming)) == 4'd0 & (come & coming) == 4'd0);
     none_lost: assert (\dut.outstanding == ones(on_port | waiting | arriving) + {2'd0, \dut.answered });
@@ -171,7 +175,7 @@ module dispatcher (
     surprise_is_told: assert (unexpected == surprised);
     idle_is_right: assert (started | idle == was_nothing);
     sends_a_free_slot: assert (~\dut.may_send | \dut.reserved != 3'd4);
-    in_order: assert (\dut.next_address == job_destination + accepted + {57'd0, asked});
+    in_order: assert (next_address == job_destination + accepted + {57'd0, asked});
     address: assert (~asked | wr_req_address == job_destination + accepted);
   end
 

@@ -29,36 +29,42 @@ module top #(
   // SCPUS up to 4, and the whole 4s of it above that.
   localparam [31:0] SCPUS_IN_FOURS = (SCPUS > 32'd4) ? (SCPUS / 32'd4) * 32'd4 : SCPUS;
 
-  // Place of the newest word in the delay lines of 6 cycles.
+  // Places of the newest and of the oldest word in the delay lines of 6 cycles.
   reg [2:0] delay_6;
-  wire [2:0] delay_6_next = (delay_6 == 3'd5) ? 3'd0 : (delay_6 + 3'd1);
+  reg [2:0] delay_6_next;
   always @(posedge clk) begin
     if (rst) begin
       delay_6 <= 3'd0;
+      delay_6_next <= 3'd1;
     end else begin
       delay_6 <= delay_6_next;
+      delay_6_next <= (delay_6_next == 3'd5) ? 3'd0 : (delay_6_next + 3'd1);
     end
   end
 
-  // Place of the newest word in the delay lines of 9 cycles.
+  // Places of the newest and of the oldest word in the delay lines of 9 cycles.
   reg [3:0] delay_9;
-  wire [3:0] delay_9_next = (delay_9 == 4'd8) ? 4'd0 : (delay_9 + 4'd1);
+  reg [3:0] delay_9_next;
   always @(posedge clk) begin
     if (rst) begin
       delay_9 <= 4'd0;
+      delay_9_next <= 4'd1;
     end else begin
       delay_9 <= delay_9_next;
+      delay_9_next <= (delay_9_next == 4'd8) ? 4'd0 : (delay_9_next + 4'd1);
     end
   end
 
-  // Place of the newest word in the delay lines of 16 cycles.
+  // Places of the newest and of the oldest word in the delay lines of 16 cycles.
   reg [3:0] delay_16;
-  wire [3:0] delay_16_next = (delay_16 == 4'd15) ? 4'd0 : (delay_16 + 4'd1);
+  reg [3:0] delay_16_next;
   always @(posedge clk) begin
     if (rst) begin
       delay_16 <= 4'd0;
+      delay_16_next <= 4'd1;
     end else begin
       delay_16 <= delay_16_next;
+      delay_16_next <= (delay_16_next == 4'd15) ? 4'd0 : (delay_16_next + 4'd1);
     end
   end
 

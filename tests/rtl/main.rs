@@ -350,7 +350,7 @@ fn icarus_gives_the_reference_bits_behind_axi() {
 fn a_spoilt_axi_shell_is_found_out() {
     let pairs = pairs::load(Query::SphereSphere, "random:300", 7).unwrap();
     for (file, old, new, fault) in [
-        ("contact_afu_axi.v", "in_reset <= ~ap_rst_n;", "in_reset <= 1'b0;", "a valid is unknown"),
+        ("contact_afu_axi.v", "in_reset_reader <= ~ap_rst_n;", "in_reset_reader <= 1'b0;", "a valid is unknown"),
         ("axi_write.v", "wlast <= beat_number & leaving_is_last;", "wlast <= beat_number;", "WLAST at another beat"),
         ("axi_read.v", " & |rd_address[5:0];", ";", "a read across 4 KB"),
         (

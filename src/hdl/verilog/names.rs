@@ -63,10 +63,14 @@ impl Names {
     }
 }
 
-/// Values that only a named register uses.
+/// Values that only a named register uses, or its copies.
 fn next_values(module: &Module) -> HashMap<NodeId, &str> {
-    let registers = module.nodes.iter().filter(|node| matches!(node.op, Op::Register { .. }));
-    registers.filter_map(|node| Some((node.operands[0], node.name.as_deref()?))).collect()
+    let registers = module.nodes.iter().filter_map(|node| {
+        let Node { op: Op::Register { is_copy, .. }, name: Some(name), .. } = node else { return None };
+        let of = name.rsplit_once("_copy_").filter(|_| *is_copy).map_or(name.as_str(), |(of, _)| of);
+        Some((node.operands[0], of))
+    });
+    registers.collect()
 }
 
 /// Two values of one name are distinguished by a number: the only counter in a name.

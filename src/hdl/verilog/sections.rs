@@ -251,7 +251,8 @@ impl<'a> Sections<'a> {
         )
     }
 
-    /// One pointer for all delay lines of a depth: the oldest word is read one place ahead of where the newest goes.
+    /// Two places for all delay lines of a depth: where the newest word goes, and one ahead of it, where the oldest is
+    /// read. Both are registers, so that no sum stands before a memory.
     fn delay_pointers(&self) -> String {
         let depths: BTreeSet<u32> = self.module.nodes.iter().filter_map(DelayKind::memory_depth).collect();
         let mut out = String::new();
@@ -259,10 +260,15 @@ impl<'a> Sections<'a> {
             let width = address_width(depth);
             let (name, last) = (format!("delay_{depth}"), constant(width, u128::from(depth - 1)));
             let (zero, one) = (constant(width, 0), constant(width, 1));
-            out += &format!("\n  // Place of the newest word in the delay lines of {depth} cycles.\n");
-            out += &format!("  reg {}{name};\n", range(width));
-            out += &format!("  wire {}{name}_next = ({name} == {last}) ? {zero} : ({name} + {one});\n", range(width));
-            out += &self.reset_block(&format!("      {name} <= {zero};\n"), &format!("      {name} <= {name}_next;\n"));
+            out +=
+                &format!("\n  // Places of the newest and of the oldest word in the delay lines of {depth} cycles.\n");
+            out += &format!("  reg {}{name};\n  reg {}{name}_next;\n", range(width), range(width));
+            let begins = format!("      {name} <= {zero};\n      {name}_next <= {one};\n");
+            let moves = format!(
+                "      {name} <= {name}_next;\n      \
+                 {name}_next <= ({name}_next == {last}) ? {zero} : ({name}_next + {one});\n"
+            );
+            out += &self.reset_block(&begins, &moves);
         }
         out
     }

@@ -66,12 +66,23 @@ const BACKLOG: Rows = &[
     ),
 ];
 
-const STORE: Rows =
-    &[("a line counts as nine", "line_valid ? (stored + 5'd1)", "line_valid ? (stored + 5'd9)", 36, "lines_fit")];
+const STORE: Rows = &[("a line counts as nine", "comes ? (stored + 5'd1)", "comes ? (stored + 5'd9)", 36, "lines_fit")];
 
 const JOB_DISPATCHER: Rows = &[
-    ("every other line is written", "(next_address + 58'd1)", "(next_address + 58'd2)", 39, "in_order"),
-    ("lines without room are written", "wire send = goes & any_lines_of_room;", "wire send = goes;", 37, "has_room"),
+    (
+        "every other line is written",
+        "next_address + {57'd0, line_sent}",
+        "next_address + {56'd0, line_sent, 1'b0}",
+        39,
+        "in_order",
+    ),
+    (
+        "lines without room are written",
+        "wire comes = line_valid & any_lines_of_room;",
+        "wire comes = line_valid;",
+        37,
+        "has_room",
+    ),
 ];
 
 const JOB_PACKER: Rows = &[

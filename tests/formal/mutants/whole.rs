@@ -246,8 +246,14 @@ const PORT_COLLECTOR: Rows = &[
 ];
 
 const PORT_DISPATCHER: Rows = &[
-    ("every other line is written", "(next_address + 58'd1)", "(next_address + 58'd2)", 35, "wr_in_order"),
-    ("all writes have one tag", "wr_req_tag <= {epoch, next_slot};", "wr_req_tag <= {epoch, 2'd0};", 35, "wr_tag_free"),
+    (
+        "every other line is written",
+        "next_address + {57'd0, line_sent}",
+        "next_address + {56'd0, line_sent, 1'b0}",
+        35,
+        "wr_in_order",
+    ),
+    ("all writes have one tag", "wr_req_tag <= {epoch, slot};", "wr_req_tag <= {epoch, 2'd0};", 35, "wr_tag_free"),
     (
         "write requests do not wait",
         "wr_req_valid <= (goes & ~drops_requests) | ~wr_req_moves;",
