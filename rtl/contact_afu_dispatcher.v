@@ -22,7 +22,7 @@ module contact_afu_dispatcher (
   input  wire         wr_rsp_error,
   output reg          wr_req_valid,
   output reg  [57:0]  wr_req_address,
-  output reg  [9:0]   wr_req_tag,
+  output wire [9:0]   wr_req_tag,
   output wire [511:0] wr_req_data,
   output reg          line_left,
   output reg          answered,
@@ -55,14 +55,13 @@ module contact_afu_dispatcher (
   reg [5:0] accepted_slot;
   reg accepted;
   reg wr_req_of_job;
-  reg [5:0] next_slot;
-  reg line_sent;
+  reg [5:0] wr_req_slot;
   reg [7:0] response_row;
   reg is_current;
   reg is_asked;
   reg [5:0] asked_slot;
   reg [5:0] oldest;
-  reg [57:0] next_address;
+  reg [3:0] wr_req_epoch;
   reg [7:0] tail;
   reg [7:0] head;
   reg error_then;
@@ -94,7 +93,7 @@ module contact_afu_dispatcher (
   wire marked_in_2 = |(awaited[23:16] & response_place);
   wire marked_in_1 = |(awaited[15:8] & response_place);
   wire marked_in_0 = |(awaited[7:0] & response_place);
-  wire [5:0] slot = next_slot + {5'd0, line_sent};
+  wire counts_request = wr_req_moves & (wr_req_valid | ~wr_req_of_job);
   wire [7:0] row_if_current = is_current ? response_row : 8'd0;
   wire [63:0] next_answers = {
     row_if_current[7] ? response_place : 8'd0,
@@ -107,7 +106,7 @@ module contact_afu_dispatcher (
     row_if_current[0] ? response_place : 8'd0
   };
   wire [6:0] twice_the_age = {answered_slot, 1'b0} - {oldest, oldest_goes};
-  wire [57:0] address = next_address + {57'd0, line_sent};
+  assign wr_req_tag = {wr_req_epoch, wr_req_slot};
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
@@ -124,12 +123,12 @@ module contact_afu_dispatcher (
     response_place <= 8'd1 << wr_rsp_tag[2:0];
     answers <= next_answers;
     asked <= accepted ? (64'd1 << accepted_slot) : 64'd0;
-    accepted_slot <= wr_req_tag[5:0];
-    if (wr_req_moves) wr_req_tag <= {epoch, slot};
+    accepted_slot <= wr_req_slot;
+    if (counts_request) wr_req_slot <= wr_req_of_job ? (wr_req_slot + 6'd1) : 6'd0;
     response_row <= 8'd1 << wr_rsp_tag[5:3];
     asked_slot <= accepted_slot;
-    if (wr_req_moves) wr_req_address <= address;
-    next_address <= start ? destination : address;
+    if (counts_request) wr_req_address <= wr_req_of_job ? (wr_req_address + 58'd1) : destination;
+    if (counts_request) wr_req_epoch <= epoch;
     error_then <= wr_rsp_error_d1;
     wr_rsp_error_d1 <= wr_rsp_error;
   end
@@ -148,8 +147,6 @@ module contact_afu_dispatcher (
       is_response <= 1'b0;
       accepted <= 1'b0;
       wr_req_of_job <= 1'b0;
-      next_slot <= 6'd0;
-      line_sent <= 1'b0;
       is_current <= 1'b0;
       is_asked <= 1'b0;
       oldest <= 6'd0;
@@ -174,8 +171,6 @@ module contact_afu_dispatcher (
       is_response <= is_current & ~start;
       accepted <= wr_req_valid & wr_req_ready & wr_req_of_job & ~start;
       wr_req_of_job <= ~start & (wr_req_moves | wr_req_of_job);
-      next_slot <= start ? 6'd0 : slot;
-      line_sent <= goes & ~start;
       is_current <= wr_rsp_valid & (wr_rsp_tag[9:6] == epoch);
       is_asked <= accepted & ~start;
       oldest <= start ? 6'd0 : (oldest + {5'd0, oldest_goes});

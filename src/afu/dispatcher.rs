@@ -75,15 +75,7 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
     read_valid.next(!start & (take | (*read_valid & !goes)));
 
     // Write requests. Whether one may be sent is decided one cycle ahead. The line at the port is in the memory's own
-    // register, and its address and tag are in registers beside it. All of them take what comes next whenever the port
-    // is free. The address and the slot are counted one cycle late.
-    let sent = (goes & !start).registered("line_sent");
-    let next_address = graph.data_register("next_address", ADDRESS_BITS);
-    let address = (*next_address + sent.extend(ADDRESS_BITS)).named("address");
-    next_address.next(start.select(destination, address));
-    let next_slot = graph.register("next_slot", slot_bits, 0);
-    let slot = (*next_slot + sent.extend(slot_bits)).named("slot");
-    next_slot.next(slot.gate(!start));
+    // register, which takes what comes next whenever the port is free.
     let reserved = graph.register("reserved", slot_bits + 1, 0);
     let may_send = graph.register("may_send", 1, 0);
     let valid = graph.register("wr_req_valid", 1, 0);
@@ -101,16 +93,22 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
     let access =
         Access { write: comes, write_index: tail.value(), line, read, read_index: head.value(), advance: moves };
     let request_data = line_memory(&graph, spec, "finished", depth, &access)?;
+    // Address and tag are counted at the port, as requests leave. A job's first are there before its first line, once
+    // no request of an earlier job is.
+    let counts = (moves & (*valid | !*of_job)).named("counts_request");
     let request_address = graph.data_register("wr_req_address", ADDRESS_BITS);
-    request_address.next_if(moves, address);
-    let request_tag = graph.data_register("wr_req_tag", spec.tag_bits());
-    request_tag.next_if(moves, epoch.concat(slot));
+    request_address.next_if(counts, of_job.select(request_address.plus(1), destination));
+    let slot = graph.data_register("wr_req_slot", slot_bits);
+    slot.next_if(counts, slot.plus(1).gate(*of_job));
+    let request_epoch = graph.data_register("wr_req_epoch", EPOCH_BITS);
+    request_epoch.next_if(counts, epoch);
+    let request_tag = request_epoch.concat(*slot);
 
     // Acknowledgements, in any order.
     let clears = awaited::clears(&graph, start);
     let arrival = Arrival::new(slots, [link.wr_rsp_valid, link.wr_rsp_tag, epoch]);
     let error = link.wr_rsp_error.delay(1).named("response_error");
-    let answers = awaited(&graph, slots, [start, clears, run], [accepted, request_tag.low(slot_bits)], &arrival, error);
+    let answers = awaited(&graph, slots, [start, clears, run], [accepted, slot.value()], &arrival, error);
     let freed = goes_in_order(&graph, "freed", slots, [start, clears], arrival.slot, answers.answered);
     up_down(reserved, start, goes, freed);
     may_send.next(run & some_free(reserved, freed).at(goes).named("some_free"));
@@ -120,7 +118,7 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
     let requests = WriteOutputs {
         wr_req_valid: valid.value(),
         wr_req_address: request_address.value(),
-        wr_req_tag: request_tag.value(),
+        wr_req_tag: request_tag,
         wr_req_data: request_data,
     };
     outputs(&graph, requests.named());

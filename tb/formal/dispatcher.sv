@@ -51,7 +51,6 @@ module dispatcher (
   (* hierconn *) wire        \dut.ready ;
   (* hierconn *) wire        \dut.line_left ;
   (* hierconn *) wire        \dut.goes ;
-  (* hierconn *) wire        \dut.line_sent ;
   (* hierconn *) wire        \dut.may_send ;
   (* hierconn *) wire        \dut.read_valid ;
   (* hierconn *) wire [2:0]  \dut.reserved ;
@@ -72,9 +71,8 @@ module dispatcher (
   (* hierconn *) wire [3:0]  \dut.asked ;
   (* hierconn *) wire        \dut.wr_req_of_job ;
   (* hierconn *) wire [1:0]  \dut.arrived_age ;
-  (* hierconn *) wire [1:0]  \dut.next_slot ;
+  (* hierconn *) wire [1:0]  \dut.wr_req_slot ;
   (* hierconn *) wire [2:0]  \dut.outstanding ;
-  (* hierconn *) wire [57:0] \dut.next_address ;
 
   // A job has begun since the last reset; its destination and epoch.
   reg        begun = 1'b0;
@@ -134,7 +132,7 @@ module dispatcher (
     assume (~run | (begun & ~start & ~given_up & ~over));
     assume (~start | ~given_up);
     assume (~start | ~ran);
-    if (begun & ~start) assume (epoch == job_epoch);
+    if (begun & ~start) assume (epoch == job_epoch & destination == job_destination);
     assume (~line_valid | (begun & ~start & (\dut.stored != LINES | \dut.line_left )));
   end
 
@@ -145,9 +143,8 @@ module dispatcher (
   wire [3:0] cleared = {4{\dut.clears_marks }};
   wire [3:0] come = aged(\dut.came & ~cleared, \dut.oldest );
   wire [3:0] coming = aged(\dut.answered ? 4'd1 << \dut.arrived_age : 4'd0, \dut.oldest );
-  // The address and the slot are counted one cycle late.
-  wire [57:0] next_address = \dut.next_address + {57'd0, \dut.line_sent };
-  wire [1:0] next_slot = \dut.next_slot + {1'b0, \dut.line_sent };
+  // The slot of the next line. The port has the job's first slot, address and epoch once no earlier request is there.
+  wire [1:0] next_slot = \dut.wr_req_of_job ? \dut.wr_req_slot + {1'b0, asked} : 2'd0;
   // A slot that left is reserved for one more cycle.
   wire [2:0] in_use = \dut.reserved - {2'd0, \dut.freed };
   wire [3:0] busy = on_port | waiting | arriving | come | coming;
@@ -157,7 +154,6 @@ module dispatcher (
     ready_is_right: assert (\dut.ready == (stored != 0));
     tag_free: assert ((on_port & (waiting | arriving)) == 4'd0 & (waiting & arriving) == 4'd0
       & (~asked | wr_req_tag[5:2] == job_epoch));
-    tags_in_order: assert (~asked | wr_req_tag == {job_epoch, next_slot - 2'd1});
     never_more: assert (\dut.reserved <= 3'd4);
     slots_in_order: assert (next_slot - \dut.oldest == in_use[1:0]);
     slots_are_right: assert (busy == slots(\dut.oldest , in_use) & (~\dut.freed | \dut.reserved != 3'd0));
@@ -175,8 +171,9 @@ module dispatcher (
     surprise_is_told: assert (unexpected == surprised);
     idle_is_right: assert (started | idle == was_nothing);
     sends_a_free_slot: assert (~\dut.may_send | \dut.reserved != 3'd4);
-    in_order: assert (next_address == job_destination + accepted + {57'd0, asked});
-    address: assert (~asked | wr_req_address == job_destination + accepted);
+    address: assert (~\dut.wr_req_of_job | wr_req_address == job_destination + accepted);
+    of_this_job: assert (~\dut.wr_req_of_job | wr_req_tag[5:2] == job_epoch);
+    begins_in_time: assert (\dut.wr_req_of_job | ((left | started) & accepted == 58'd0));
   end
 
   reg        held = 1'b0;

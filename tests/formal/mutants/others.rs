@@ -69,13 +69,7 @@ const BACKLOG: Rows = &[
 const STORE: Rows = &[("a line counts as nine", "comes ? (stored + 5'd1)", "comes ? (stored + 5'd9)", 36, "lines_fit")];
 
 const JOB_DISPATCHER: Rows = &[
-    (
-        "every other line is written",
-        "next_address + {57'd0, line_sent}",
-        "next_address + {56'd0, line_sent, 1'b0}",
-        39,
-        "in_order",
-    ),
+    ("every other line is written", "(wr_req_address + 58'd1)", "(wr_req_address + 58'd2)", 39, "in_order"),
     (
         "lines without room are written",
         "wire comes = line_valid & any_lines_of_room;",

@@ -246,14 +246,8 @@ const PORT_COLLECTOR: Rows = &[
 ];
 
 const PORT_DISPATCHER: Rows = &[
-    (
-        "every other line is written",
-        "next_address + {57'd0, line_sent}",
-        "next_address + {56'd0, line_sent, 1'b0}",
-        35,
-        "wr_in_order",
-    ),
-    ("all writes have one tag", "wr_req_tag <= {epoch, slot};", "wr_req_tag <= {epoch, 2'd0};", 35, "wr_tag_free"),
+    ("every other line is written", "(wr_req_address + 58'd1)", "(wr_req_address + 58'd2)", 35, "wr_in_order"),
+    ("all writes have one tag", "= {wr_req_epoch, wr_req_slot};", "= {wr_req_epoch, 2'd0};", 35, "wr_tag_free"),
     (
         "write requests do not wait",
         "wr_req_valid <= (goes & ~drops_requests) | ~wr_req_moves;",
