@@ -6,8 +6,8 @@
 // The link may send responses that were never requested. An abandoned request may still be on the port when the next
 // job begins.
 //
-// Assumed here and proven elsewhere: nothing runs once the job is given up (credits.sv: nothing_runs); a line is taken
-// only when it was announced (credits.sv: takes_a_line).
+// Assumed here and proven elsewhere: nothing runs once the job is given up (credits.sv: nothing_runs); its epoch
+// stays during a job (credits.sv: job_stays); a line is taken only when it was announced (credits.sv: takes_a_line).
 `default_nettype none
 
 module collector (
@@ -16,6 +16,7 @@ module collector (
   input wire        start,
   input wire        run,
   input wire        given_up,
+  input wire        ends,
   input wire [57:0] source,
   input wire [31:0] lines,
   input wire [3:0]  epoch,
@@ -78,7 +79,7 @@ module collector (
 
   reg        begun = 1'b0;
   reg        after_reset = 1'b0;
-  reg        over = 1'b0;   // the job was given up
+  reg        over = 1'b0;   // the job was given up or has ended
   reg        ran = 1'b0;
   reg        started = 1'b0;
   reg [57:0] job_source;
@@ -112,7 +113,7 @@ module collector (
   reg        was_nothing;
   always @(posedge clk) begin
     after_reset <= after_reset | rst;
-    over <= ~rst & ~start & (over | given_up);
+    over <= ~rst & ~start & (over | given_up | ends);
     ran <= run;
     started <= start;
     begun <= ~rst & (begun | start);
@@ -140,9 +141,10 @@ module collector (
     assume (after_reset | rst);
     assume (~run | (begun & ~start & ~given_up & ~over));
     assume (~start | ~given_up);
+    assume (~ends | (~run & ~ran & nothing));
     assume (~start | ~ran);
     assume (~taken | (announced != 3'd0 & begun));
-    if (begun & ~start) assume (epoch == job_epoch);
+    if (begun & ~start & ~over) assume (epoch == job_epoch);
   end
 
   // A request that was made is counted one cycle later.

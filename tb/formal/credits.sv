@@ -36,6 +36,8 @@ module credits (
   (* hierconn *) wire                       \dut.control.begin_credits ;
   (* hierconn *) wire                       \dut.control.begin_packer ;
   (* hierconn *) wire                       \dut.control.begin_dispatcher ;
+  (* hierconn *) wire [57:0]                \dut.control.job_destination ;
+  (* hierconn *) wire [3:0]                 \dut.control.job_epoch ;
   (* hierconn *) wire                       \dut.control.given_up ;
   (* hierconn *) wire                       \dut.control.drops_requests ;
   (* hierconn *) wire                       \dut.control.busy_copy_1 ;
@@ -137,6 +139,8 @@ module credits (
   reg all_out;
   // Whether a job ran one cycle ago, two, three.
   reg [2:0] ran = 3'd0;
+  // Where the job that was asked for last writes, and its epoch.
+  reg [61:0] asked;
   reg completed = 1'b0;
   always @(posedge clk) begin
     after_reset <= after_reset | rst;
@@ -144,6 +148,7 @@ module credits (
     begun <= ~rst & (begun | \dut.control.begin_job );
     began <= \dut.control.begin_job ;
     if (start & ~busy) job_count <= count;
+    if (start & ~busy) asked <= {destination, epoch};
     readied <= \dut.control.begin_job ? 32'd0 : readied + {31'd0, \dut.feeder.lines_left_step };
     entered <= \dut.control.begin_job ? 33'd0 : entered + {31'd0, \dut.feeder.entered };
     all_out <= ~\dut.control.begin_job & emerged == job_count;
@@ -196,6 +201,7 @@ module credits (
     begins_rested: assert (~\dut.control.begin_job | ~ran[0]);
     begins_empty: assert (~\dut.control.begin_job | (busy & counted_inside == 8'd0 & \dut.feeder.entered == 2'd0));
     idle_is_empty: assert (busy | (counted_inside == 8'd0 & \dut.feeder.entered == 2'd0));
+    job_stays: assert (~busy | {\dut.control.job_destination , \dut.control.job_epoch } == asked);
     lines_are_right: assert (~busy | \dut.control.job_lines == job_lines);
     last_is_right: assert (~(begun | busy) | \dut.control.last_place == ~job_count[0]);
     takes_a_line: assert (\dut.feeder.lines_waiting <= 3'd4

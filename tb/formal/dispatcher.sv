@@ -5,8 +5,9 @@
 // The link may send responses that were never requested. An abandoned request may still be on the port when the next
 // job begins.
 //
-// Assumed here and proven elsewhere: nothing runs once the job is given up (credits.sv: nothing_runs); a line arrives
-// only when there is room for it (credits.sv: fits).
+// Assumed here and proven elsewhere: nothing runs once the job is given up (credits.sv: nothing_runs); destination and
+// epoch stay as they are during a job (credits.sv: job_stays); a line arrives only when there is room for it
+// (credits.sv: fits).
 `default_nettype none
 
 module dispatcher (
@@ -15,6 +16,7 @@ module dispatcher (
   input wire        start,
   input wire        run,
   input wire        given_up,
+  input wire        ends,
   input wire [57:0] destination,
   input wire [3:0]  epoch,
   input wire        line_valid,
@@ -77,7 +79,7 @@ module dispatcher (
   // A job has begun since the last reset; its destination and epoch.
   reg        begun = 1'b0;
   reg        after_reset = 1'b0;
-  reg        over = 1'b0;   // the job was given up
+  reg        over = 1'b0;   // the job was given up or has ended
   reg        ran = 1'b0;
   reg [57:0] job_destination;
   reg [3:0]  job_epoch;
@@ -106,7 +108,7 @@ module dispatcher (
   reg        started = 1'b0;
   always @(posedge clk) begin
     after_reset <= after_reset | rst;
-    over <= ~rst & ~start & (over | given_up);
+    over <= ~rst & ~start & (over | given_up | ends);
     ran <= run;
     started <= start;
     begun <= ~rst & (begun | start);
@@ -131,8 +133,9 @@ module dispatcher (
     assume (after_reset | rst);
     assume (~run | (begun & ~start & ~given_up & ~over));
     assume (~start | ~given_up);
+    assume (~ends | (~run & ~ran & nothing));
     assume (~start | ~ran);
-    if (begun & ~start) assume (epoch == job_epoch & destination == job_destination);
+    if (begun & ~start & ~over) assume (epoch == job_epoch & destination == job_destination);
     assume (~line_valid | (begun & ~start & (\dut.stored != LINES | \dut.line_left )));
   end
 

@@ -83,6 +83,13 @@ const CONTROL: Rows = &[
         2,
         "lines_are_right",
     ),
+    (
+        "the destination of the next job",
+        "if (~busy_copy_2) job_destination <= destination;",
+        "job_destination <= destination;",
+        3,
+        "job_stays",
+    ),
     ("the last line is full", "last_place <= count[0] - 1'b1;", "last_place <= 1'b1;", 2, "last_is_right"),
 ];
 
