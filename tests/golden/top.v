@@ -30,41 +30,41 @@ module top #(
   localparam [31:0] SCPUS_IN_FOURS = (SCPUS > 32'd4) ? (SCPUS / 32'd4) * 32'd4 : SCPUS;
 
   // Places of the newest and of the oldest word in the delay lines of 6 cycles.
-  reg [2:0] delay_6;
-  reg [2:0] delay_6_next;
+  reg [2:0] newest_of_6;
+  reg [2:0] oldest_of_6;
   always @(posedge clk) begin
     if (rst) begin
-      delay_6 <= 3'd0;
-      delay_6_next <= 3'd1;
+      newest_of_6 <= 3'd0;
+      oldest_of_6 <= 3'd1;
     end else begin
-      delay_6 <= delay_6_next;
-      delay_6_next <= (delay_6_next == 3'd5) ? 3'd0 : (delay_6_next + 3'd1);
+      newest_of_6 <= oldest_of_6;
+      oldest_of_6 <= (oldest_of_6 == 3'd5) ? 3'd0 : (oldest_of_6 + 3'd1);
     end
   end
 
   // Places of the newest and of the oldest word in the delay lines of 9 cycles.
-  reg [3:0] delay_9;
-  reg [3:0] delay_9_next;
+  reg [3:0] newest_of_9;
+  reg [3:0] oldest_of_9;
   always @(posedge clk) begin
     if (rst) begin
-      delay_9 <= 4'd0;
-      delay_9_next <= 4'd1;
+      newest_of_9 <= 4'd0;
+      oldest_of_9 <= 4'd1;
     end else begin
-      delay_9 <= delay_9_next;
-      delay_9_next <= (delay_9_next == 4'd8) ? 4'd0 : (delay_9_next + 4'd1);
+      newest_of_9 <= oldest_of_9;
+      oldest_of_9 <= (oldest_of_9 == 4'd8) ? 4'd0 : (oldest_of_9 + 4'd1);
     end
   end
 
   // Places of the newest and of the oldest word in the delay lines of 16 cycles.
-  reg [3:0] delay_16;
-  reg [3:0] delay_16_next;
+  reg [3:0] newest_of_16;
+  reg [3:0] oldest_of_16;
   always @(posedge clk) begin
     if (rst) begin
-      delay_16 <= 4'd0;
-      delay_16_next <= 4'd1;
+      newest_of_16 <= 4'd0;
+      oldest_of_16 <= 4'd1;
     end else begin
-      delay_16 <= delay_16_next;
-      delay_16_next <= (delay_16_next == 4'd15) ? 4'd0 : (delay_16_next + 4'd1);
+      newest_of_16 <= oldest_of_16;
+      oldest_of_16 <= (oldest_of_16 == 4'd15) ? 4'd0 : (oldest_of_16 + 4'd1);
     end
   end
 
@@ -101,18 +101,18 @@ module top #(
   // ---- at the clock edge ----
   always @(posedge clk) begin
     stored <= store[position];
-    late_line[delay_9] <= data;
-    late <= late_line[delay_9_next];
-    later_line[delay_6] <= data_d73;
-    later <= later_line[delay_6_next];
-    data_d73_line[delay_16] <= data_d57;
-    data_d73 <= data_d73_line[delay_16_next];
-    data_d57_line[delay_16] <= data_d41;
-    data_d57 <= data_d57_line[delay_16_next];
-    data_d41_line[delay_16] <= data_d25;
-    data_d41 <= data_d41_line[delay_16_next];
-    data_d25_line[delay_16] <= late;
-    data_d25 <= data_d25_line[delay_16_next];
+    late_line[newest_of_9] <= data;
+    late <= late_line[oldest_of_9];
+    later_line[newest_of_6] <= data_d73;
+    later <= later_line[oldest_of_6];
+    data_d73_line[newest_of_16] <= data_d57;
+    data_d73 <= data_d73_line[oldest_of_16];
+    data_d57_line[newest_of_16] <= data_d41;
+    data_d57 <= data_d57_line[oldest_of_16];
+    data_d41_line[newest_of_16] <= data_d25;
+    data_d41 <= data_d41_line[oldest_of_16];
+    data_d25_line[newest_of_16] <= late;
+    data_d25 <= data_d25_line[oldest_of_16];
     if (enable) store[position] <= data;
   end
   always @(posedge clk) begin

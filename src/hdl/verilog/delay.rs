@@ -38,8 +38,8 @@ impl DelayKind {
         let width = node.width;
         match Self::of(node) {
             Some(Self::Memory(depth)) => {
-                let write = format!("    {name}_line[delay_{depth}] <= {source};\n");
-                write + &format!("    {name} <= {name}_line[delay_{depth}_next];\n")
+                let write = format!("    {name}_line[newest_of_{depth}] <= {source};\n");
+                write + &format!("    {name} <= {name}_line[oldest_of_{depth}];\n")
             }
             Some(Self::Shift(waiting)) => {
                 let bits = waiting * width;

@@ -258,15 +258,14 @@ impl<'a> Sections<'a> {
         let mut out = String::new();
         for depth in depths {
             let width = address_width(depth);
-            let (name, last) = (format!("delay_{depth}"), constant(width, u128::from(depth - 1)));
-            let (zero, one) = (constant(width, 0), constant(width, 1));
+            let (newest, oldest) = (format!("newest_of_{depth}"), format!("oldest_of_{depth}"));
+            let [zero, one, last] = [0, 1, depth - 1].map(|place| constant(width, place.into()));
             out +=
                 &format!("\n  // Places of the newest and of the oldest word in the delay lines of {depth} cycles.\n");
-            out += &format!("  reg {}{name};\n  reg {}{name}_next;\n", range(width), range(width));
-            let begins = format!("      {name} <= {zero};\n      {name}_next <= {one};\n");
+            out += &format!("  reg {}{newest};\n  reg {}{oldest};\n", range(width), range(width));
+            let begins = format!("      {newest} <= {zero};\n      {oldest} <= {one};\n");
             let moves = format!(
-                "      {name} <= {name}_next;\n      \
-                 {name}_next <= ({name}_next == {last}) ? {zero} : ({name}_next + {one});\n"
+                "      {newest} <= {oldest};\n      {oldest} <= ({oldest} == {last}) ? {zero} : ({oldest} + {one});\n"
             );
             out += &self.reset_block(&begins, &moves);
         }

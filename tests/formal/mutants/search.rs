@@ -237,8 +237,8 @@ const JOIN: Rows = &[
     ),
     (
         "a hit with another step's rows",
-        "step_numbered <= step_numbered_line[delay_3_next];",
-        "step_numbered <= step_numbered_line[delay_3];",
+        "step_numbered <= step_numbered_line[oldest_of_3];",
+        "step_numbered <= step_numbered_line[newest_of_3];",
         8,
         "numbers_are_right",
     ),

@@ -37,7 +37,7 @@ const ORDER: Rows = &[
 ];
 
 const GROUPS: Rows = &[
-    ("a row's number comes early", "row <= row_line[delay_5_next];", "row <= row_line[delay_5];", 8, "in_order"),
+    ("a row's number comes early", "row <= row_line[oldest_of_5];", "row <= row_line[newest_of_5];", 8, "in_order"),
     ("a token leaves with each step", "is_last & about[0]}", "about[0]}", 9, "conserved"),
     (
         "the same word is looked at again",
