@@ -81,10 +81,6 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
     let valid = graph.register("wr_req_valid", 1, 0);
     let moves = (!*valid | link.wr_req_ready).named("wr_req_moves");
     may_go.drive(*may_send & moves);
-    if bounded {
-        // The packer is stopped a few cycles before the memory is full, because lines are still in flight.
-        graph.output("accepts", (!stored.high(2).any()).registered("accepts"));
-    }
     // A request that is at the port when its job is given up stays until it is taken, even during the next job.
     valid.next((goes & !drops) | !moves);
     let of_job = graph.register("wr_req_of_job", 1, 0);
@@ -122,7 +118,10 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
         wr_req_data: request_data,
     };
     outputs(&graph, requests.named());
-    if !bounded {
+    if bounded {
+        // The packer is stopped a few cycles before the memory is full, because lines are still in flight.
+        graph.output("accepts", (!stored.high(2).any()).registered("accepts"));
+    } else {
         graph.output("line_left", left);
     }
     graph.output("answered", answers.answered);
