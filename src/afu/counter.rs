@@ -43,9 +43,12 @@ impl<'g> Countdown<'g> {
         self.many[0].next(!start & left.drop_low(3).any());
         self.many[1].next(start & from.drop_low(3).any());
         let few = left.low(3);
-        let flag = |of: &str| format!("{of}_{}", self.name);
-        let next_any = by_steps(counted, &flag("any"), |steps| many | few.greater_than(few.same(steps.into())));
-        let next_one = by_steps(counted, &flag("one"), |steps| !many & few.is(u128::from(steps + 1)));
+        let name = |of: &str| format!("{of}_{}", self.name);
+        // Whether any is left follows from both flags, without the count, but for the cycle after the start.
+        let started = start.registered(&name("started"));
+        let begins = (self.many[1].value() | (started & few.any())).named(&name("begins"));
+        let next_any = AtStep { with: self.any & !self.one, without: self.any | begins };
+        let next_one = by_steps(counted, &name("one"), |steps| !many & few.is(u128::from(steps + 1)));
         // The flags know the new count a cycle after it is there.
         self.flags[0].next(!start & next_any.at(step));
         self.flags[1].next(!start & next_one.at(step));
