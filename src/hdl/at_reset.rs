@@ -1,7 +1,7 @@
 //! Which levels a module's outputs have in reset: what documentation says of them, read off the module itself.
 
 use super::instance::InstanceCount;
-use super::module::{Module, NodeId, Op};
+use super::module::{Module, NodeId, Op, Start};
 
 /// A register that is only reset through its next value can follow another such; in this many steps, no more.
 const LONGEST: u32 = 32;
@@ -34,9 +34,9 @@ impl Scope<'_> {
             mask & match &node.op {
                 Op::Constant(value) => *value,
                 Op::Parameter(index) => self.module.parameters.get(*index)?.default.into(),
-                Op::Register { reset: Some(value), .. } => *value,
+                Op::Register { start: Start::Reset(value), .. } => *value,
                 // Reset by what it takes.
-                Op::Register { reset: None, .. } | Op::Delay { .. } | Op::Wire if node.operands.len() == 1 => of(0)?,
+                Op::Register { .. } | Op::Delay { .. } | Op::Wire if node.operands.len() == 1 => of(0)?,
                 Op::Not => !of(0)?,
                 Op::And if values().any(|value| value == Some(0)) => 0,
                 Op::And => values().try_fold(mask, |all, value| Some(all & value?))?,

@@ -36,13 +36,15 @@ fn line(cycles: u32, width: u32, primitive: Primitive) -> Result<Arc<Module>, Bu
     let graph = Graph::new(format!("delay_{cycles}x{width}{}", primitive.suffix()));
     graph.about(format!("value, {cycles} cycles ago: a block memory with registers of its own"));
     let bits = 32 - (depth - 1).leading_zeros();
-    // The oldest word is where the next one goes. Both places are registers: no sum stands before the block.
-    let oldest = graph.register("oldest", bits, 1);
+    // The oldest word is where the next one goes. Both places are registers: no sum stands before the block. From any
+    // values they come right by themselves, so no reset has to reach them.
+    let oldest = graph.zero_register("oldest", bits);
     let is_last = oldest.equals(graph.constant(bits, u128::from(depth - 1))).named("is_last");
     oldest.next(oldest.plus(1).gate(!is_last));
-    let newest = oldest.value().registered("newest");
+    let newest = graph.zero_register("newest", bits);
+    newest.next(oldest.value());
     let value = graph.input("value", width);
-    let ports = [("write_index", newest), ("read_index", oldest.value()), ("write_word", value)];
+    let ports = [("write_index", newest.value()), ("read_index", oldest.value()), ("write_word", value)];
     let memory = block_memory(depth, width, Ports::Free, Some(primitive))?;
     graph.output("delayed", graph.instance("line", &memory, &ports).output("word").delay(1));
     let mut module = graph.finish()?;

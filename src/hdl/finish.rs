@@ -6,7 +6,7 @@ use std::collections::{BTreeSet, HashMap};
 use super::error::{BuildErrors, Error};
 use super::graph::{Inner, Paths};
 use super::instance::Instance;
-use super::module::{Memory, Module, Node, NodeId, Op};
+use super::module::{Memory, Module, Node, NodeId, Op, Start};
 use super::share_delays;
 
 pub(super) fn finish(mut inner: Inner) -> Result<Module, BuildErrors> {
@@ -60,7 +60,7 @@ fn add_reset_registers(inner: &mut Inner) {
     let Some(active) = inner.reset else { return };
     let is_reset = inner.nodes.iter().any(Node::is_reset);
     let mut register = |name: String| {
-        let op = Op::Register { reset: None, is_copy: true };
+        let op = Op::Register { start: Start::Any, is_copy: true };
         inner.nodes.push(Node { op, width: 1, operands: vec![active], name: Some(name), stage: None });
         inner.places.push(inner.places[active.index()]);
         NodeId(inner.nodes.len() as u32 - 1)

@@ -35,6 +35,6 @@ pub use evaluate::{EvaluateError, Evaluator, Pin};
 pub use graph::Graph;
 pub use instance::{Instance, InstanceCount};
 pub(crate) use module::fits_luts;
-pub use module::{Memory, Module, Node, NodeId, Op, Parameter, Port, Primitive, Reset, Rounded, Size};
+pub use module::{Memory, Module, Node, NodeId, Op, Parameter, Port, Primitive, Reset, Rounded, Size, Start};
 pub use signal::Signal;
 pub use state::{Instantiated, MemoryHandle, Register};

@@ -75,8 +75,8 @@ pub enum Op {
     },
     /// A register. Operands: next value, then an enable (1 bit) if it has one.
     Register {
-        /// The value on reset; `None` for a register that is not reset.
-        reset: Option<u128>,
+        /// The value it begins with.
+        start: Start,
         /// True for one of several equal registers that synthesis must keep.
         is_copy: bool,
     },
@@ -97,6 +97,17 @@ pub enum Op {
     Wire,
 }
 
+/// The value with which a register begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Start {
+    /// The value on reset.
+    Reset(u128),
+    /// Zero when the device is configured; a reset does not change it.
+    Zero,
+    /// Any value; a reset does not change it.
+    Any,
+}
+
 /// One node of a module.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Node {
@@ -115,11 +126,7 @@ pub struct Node {
 impl Node {
     /// True if a reset changes it.
     pub(super) fn is_reset(&self) -> bool {
-        match self.op {
-            Op::Delay { cycles } => is_memory_delay(cycles, self.width),
-            Op::Register { reset, .. } => reset.is_some(),
-            _ => false,
-        }
+        matches!(self.op, Op::Register { start: Start::Reset(_), .. })
     }
 }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::graph::{Graph, is_identifier};
 use super::instance::{Instance, InstanceCount};
-use super::module::{Memory, Module, Op, fits_luts};
+use super::module::{Memory, Module, Op, Start, fits_luts};
 use super::signal::Signal;
 
 /// A register under construction. It reads as its present value.
@@ -74,10 +74,10 @@ impl<'g> Signal<'g> {
     }
 
     #[track_caller]
-    fn copied(self, name: &str, count: u32, reset: Option<u128>) -> Vec<Signal<'g>> {
+    fn copied(self, name: &str, count: u32, start: Start) -> Vec<Signal<'g>> {
         let (graph, place) = (self.graph(), Location::caller());
         let copy = |index: u32| {
-            let op = Op::Register { reset, is_copy: true };
+            let op = Op::Register { start, is_copy: true };
             let register =
                 Register(graph.fresh(op, self.width(), vec![], place).named(&format!("{name}_copy_{index}")));
             register.next(self);
@@ -91,13 +91,13 @@ impl<'g> Signal<'g> {
     /// that is no copy may become one of them.
     #[track_caller]
     pub fn copies(self, name: &str, count: u32) -> Vec<Signal<'g>> {
-        self.copied(name, count, Some(0))
+        self.copied(name, count, Start::Reset(0))
     }
 
     /// As [`Signal::copies`], without reset.
     #[track_caller]
     pub fn data_copies(self, name: &str, count: u32) -> Vec<Signal<'g>> {
-        self.copied(name, count, None)
+        self.copied(name, count, Start::Any)
     }
 }
 
@@ -206,13 +206,27 @@ impl Graph {
         if width < 128 && reset >> width != 0 {
             self.error(format!("register `{name}`: reset value {reset} does not fit {width} bits"), place);
         }
-        Register(self.fresh(Op::Register { reset: Some(reset), is_copy: false }, width, vec![], place).named(name))
+        Register(
+            self.fresh(Op::Register { start: Start::Reset(reset), is_copy: false }, width, vec![], place).named(name),
+        )
     }
 
     /// A register for data, which is not reset.
     #[track_caller]
     pub fn data_register(&self, name: &str, width: u32) -> Register<'_> {
-        let op = Op::Register { reset: None, is_copy: false };
+        self.unreset(name, width, Start::Any)
+    }
+
+    /// A register that no reset changes and that is zero when the device is configured, so that a simulation knows it.
+    /// Whatever it holds, the circuit around it must come right by itself.
+    #[track_caller]
+    pub fn zero_register(&self, name: &str, width: u32) -> Register<'_> {
+        self.unreset(name, width, Start::Zero)
+    }
+
+    #[track_caller]
+    fn unreset(&self, name: &str, width: u32, start: Start) -> Register<'_> {
+        let op = Op::Register { start, is_copy: false };
         Register(self.fresh(op, width, vec![], Location::caller()).named(name))
     }
 

@@ -31,41 +31,32 @@ module top #(
 
   // Places of the newest and of the oldest word in the delay lines of 6 cycles.
   reg [2:0] newest_of_6;
+  initial newest_of_6 = 3'd0;
   reg [2:0] oldest_of_6;
+  initial oldest_of_6 = 3'd0;
   always @(posedge clk) begin
-    if (rst) begin
-      newest_of_6 <= 3'd0;
-      oldest_of_6 <= 3'd1;
-    end else begin
-      newest_of_6 <= oldest_of_6;
-      oldest_of_6 <= (oldest_of_6 == 3'd5) ? 3'd0 : (oldest_of_6 + 3'd1);
-    end
+    newest_of_6 <= oldest_of_6;
+    oldest_of_6 <= (oldest_of_6 == 3'd5) ? 3'd0 : (oldest_of_6 + 3'd1);
   end
 
   // Places of the newest and of the oldest word in the delay lines of 9 cycles.
   reg [3:0] newest_of_9;
+  initial newest_of_9 = 4'd0;
   reg [3:0] oldest_of_9;
+  initial oldest_of_9 = 4'd0;
   always @(posedge clk) begin
-    if (rst) begin
-      newest_of_9 <= 4'd0;
-      oldest_of_9 <= 4'd1;
-    end else begin
-      newest_of_9 <= oldest_of_9;
-      oldest_of_9 <= (oldest_of_9 == 4'd8) ? 4'd0 : (oldest_of_9 + 4'd1);
-    end
+    newest_of_9 <= oldest_of_9;
+    oldest_of_9 <= (oldest_of_9 == 4'd8) ? 4'd0 : (oldest_of_9 + 4'd1);
   end
 
   // Places of the newest and of the oldest word in the delay lines of 16 cycles.
   reg [3:0] newest_of_16;
+  initial newest_of_16 = 4'd0;
   reg [3:0] oldest_of_16;
+  initial oldest_of_16 = 4'd0;
   always @(posedge clk) begin
-    if (rst) begin
-      newest_of_16 <= 4'd0;
-      oldest_of_16 <= 4'd1;
-    end else begin
-      newest_of_16 <= oldest_of_16;
-      oldest_of_16 <= (oldest_of_16 == 4'd15) ? 4'd0 : (oldest_of_16 + 4'd1);
-    end
+    newest_of_16 <= oldest_of_16;
+    oldest_of_16 <= oldest_of_16 + 4'd1;
   end
 
   // ---- memories ----

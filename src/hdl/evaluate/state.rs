@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::EvaluateError;
 use super::flatten::{Flat, FlatId, Link};
 use super::lower::{Lowered, Word, word_count};
-use crate::hdl::module::Op;
+use crate::hdl::module::{Op, Start};
 
 /// The most words that memories and delays may hold together: 8 GiB.
 const MOST_WORDS: u64 = 1 << 30;
@@ -146,7 +146,7 @@ impl Elements {
 
         let mut resets = Vec::new();
         for &id in self.always.iter().chain(&self.enabled) {
-            if let (Op::Register { reset: Some(value), .. }, Link::Own) = (&flat.node(id).op, &flat.links[id]) {
+            if let (Op::Register { start: Start::Reset(value), .. }, Link::Own) = (&flat.node(id).op, &flat.links[id]) {
                 let part = |index: usize| if index < 2 { (value >> (64 * index)) as u64 } else { 0 };
                 resets.extend(at(id).into_iter().enumerate().map(|(index, place)| (place, part(index))));
             }

@@ -4,7 +4,7 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 
 use super::super::instance::Instance;
 use super::super::keywords::keywords;
-use super::super::module::{Module, Node, NodeId, Op};
+use super::super::module::{Module, Node, NodeId, Op, Start};
 use super::derive::Derivation;
 use super::print::is_register;
 
@@ -119,7 +119,7 @@ impl Uses {
             uses.count[id.index()] += 1;
         }
         for node in &module.nodes {
-            if let (Op::Register { reset: None, is_copy: false }, [next]) = (&node.op, &node.operands[..]) {
+            if let (Op::Register { start: Start::Any, is_copy: false }, [next]) = (&node.op, &node.operands[..]) {
                 uses.taken[next.index()] += 1;
             }
             let mut seen = HashSet::new();

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::super::instance::{Instance, InstanceCount};
-use super::super::module::{Memory, Module, NodeId, Op, fits_luts};
+use super::super::module::{Memory, Module, NodeId, Op, Start, fits_luts};
 use super::super::state::address_width;
 use super::cases::Cases;
 use super::delay::DelayKind;
@@ -150,6 +150,9 @@ impl<'a> Sections<'a> {
         if !self.text.names.is_port[id.index()] {
             let kept = if is_copy(self.module, id) { COPY_ATTRIBUTES } else { "" };
             out += &format!("  {kept}reg {}{name};\n", range(node.width));
+            if matches!(node.op, Op::Register { start: Start::Zero, .. }) {
+                out += &format!("  initial {name} = {};\n", constant(node.width, 0));
+            }
         }
         out
     }
@@ -201,15 +204,15 @@ impl<'a> Sections<'a> {
                     let memory = &self.module.memories[*memory].name;
                     data += &format!("    {}{name} <= {memory}[{}];\n", enable(), operand(0));
                 }
-                Op::Register { reset: None, is_copy: false } if cases.take(name, node) => {}
-                Op::Register { reset: value, .. } => {
+                Op::Register { start: Start::Any, is_copy: false } if cases.take(name, node) => {}
+                Op::Register { start, .. } => {
                     let line = format!("{}{name} <= {};\n", enable(), operand(0));
-                    match value {
-                        Some(value) => {
+                    match start {
+                        Start::Reset(value) => {
                             reset += &format!("      {name} <= {};\n", constant(node.width, *value));
                             running += &format!("      {line}");
                         }
-                        None => data += &format!("    {line}"),
+                        Start::Zero | Start::Any => data += &format!("    {line}"),
                     }
                 }
                 _ => {}
@@ -252,7 +255,8 @@ impl<'a> Sections<'a> {
     }
 
     /// Two places for all delay lines of a depth: where the newest word goes, and one ahead of it, where the oldest is
-    /// read. Both are registers, so that no sum stands before a memory.
+    /// read. Both are registers, so that no sum stands before a memory. From any values they come right by themselves:
+    /// a reset would be a wire to every delay line.
     fn delay_pointers(&self) -> String {
         let depths: BTreeSet<u32> = self.module.nodes.iter().filter_map(DelayKind::memory_depth).collect();
         let mut out = String::new();
@@ -260,14 +264,19 @@ impl<'a> Sections<'a> {
             let width = address_width(depth);
             let (newest, oldest) = (format!("newest_of_{depth}"), format!("oldest_of_{depth}"));
             let [zero, one, last] = [0, 1, depth - 1].map(|place| constant(width, place.into()));
+            let clock = self.module.clock();
             out +=
                 &format!("\n  // Places of the newest and of the oldest word in the delay lines of {depth} cycles.\n");
-            out += &format!("  reg {}{newest};\n  reg {}{oldest};\n", range(width), range(width));
-            let begins = format!("      {newest} <= {zero};\n      {oldest} <= {one};\n");
-            let moves = format!(
-                "      {newest} <= {oldest};\n      {oldest} <= ({oldest} == {last}) ? {zero} : ({oldest} + {one});\n"
-            );
-            out += &self.reset_block(&begins, &moves);
+            for place in [&newest, &oldest] {
+                out += &format!("  reg {}{place};\n  initial {place} = {zero};\n", range(width));
+            }
+            out += &format!("  always @(posedge {clock}) begin\n    {newest} <= {oldest};\n");
+            let next = if depth.is_power_of_two() {
+                format!("{oldest} + {one}")
+            } else {
+                format!("({oldest} == {last}) ? {zero} : ({oldest} + {one})")
+            };
+            out += &format!("    {oldest} <= {next};\n  end\n");
         }
         out
     }
