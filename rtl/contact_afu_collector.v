@@ -36,12 +36,19 @@ module contact_afu_collector (
   // ---- state ----
   (* keep = "true", dont_merge *) reg rd_req_spare_valid_copy_0;
   reg may_ask;
-  reg lines_to_request_step;
-  reg many_lines_to_request;
-  reg started_with_many_lines_to_request;
-  reg [31:0] lines_to_request;
+  reg any_lines_to_request;
+  reg one_lines_to_request;
+  reg any_free;
   reg freed;
-  reg [6:0] reserved;
+  reg one_free;
+  reg started_with_many_lines_to_request;
+  reg started_lines_to_request;
+  reg [31:0] lines_to_request;
+  reg lines_to_request_step;
+  reg free_step;
+  reg [6:0] free;
+  reg many_free;
+  reg many_lines_to_request;
   (* keep = "true", dont_merge *) reg rd_req_spare_valid_copy_1;
   reg [57:0] rd_req_spare_address;
   reg [57:0] next_address;
@@ -77,16 +84,21 @@ module contact_afu_collector (
   wire rd_req_next_valid = ~drops_requests & (rd_req_spare_valid_copy_0 | may_ask);
   wire rd_req_moves = ~rd_req_valid | rd_req_ready;
   wire issue = may_ask & ~rd_req_spare_valid_copy_0;
-  wire has_many_lines_to_request = many_lines_to_request | started_with_many_lines_to_request;
-  wire any_lines_to_request_after_2 = has_many_lines_to_request | (3'd2 < lines_to_request[2:0]);
-  wire any_lines_to_request_after_1 = has_many_lines_to_request | (3'd1 < lines_to_request[2:0]);
-  wire some_free_now = freed | ~reserved[6];
-  wire any_lines_to_request_after_0 = has_many_lines_to_request | |lines_to_request[2:0];
+  wire any_lines_to_request_after_step = any_lines_to_request & ~one_lines_to_request;
+  wire any_free_after_step = any_free & (freed | ~one_free);
+  wire begins_lines_to_request =
+      started_with_many_lines_to_request | (started_lines_to_request & |lines_to_request[2:0]);
+  wire any_lines_to_request_without_step = any_lines_to_request | begins_lines_to_request;
+  wire any_free_without_step = any_free | freed;
   wire some_left_and_free =
-      issue ?
-          ((lines_to_request_step ? any_lines_to_request_after_2 : any_lines_to_request_after_1)
-           & (some_free_now & (freed | ~&reserved[5:0]))) :
-      ((lines_to_request_step ? any_lines_to_request_after_1 : any_lines_to_request_after_0) & some_free_now);
+      issue ? (any_lines_to_request_after_step & any_free_after_step) :
+      (any_lines_to_request_without_step & any_free_without_step);
+  wire free_step_next = issue & ~start;
+  wire two_free = (free_step ? (free[2:0] == 3'd3) : (free[2:0] == 3'd2)) & ~many_free;
+  wire has_many_lines_to_request = many_lines_to_request | started_with_many_lines_to_request;
+  wire one_lines_to_request_after_2 = ~has_many_lines_to_request & (lines_to_request[2:0] == 3'd3);
+  wire one_lines_to_request_after_1 = ~has_many_lines_to_request & (lines_to_request[2:0] == 3'd2);
+  wire one_lines_to_request_after_0 = ~has_many_lines_to_request & (lines_to_request[2:0] == 3'd1);
   wire rd_req_waits = rd_req_next_valid & ~rd_req_moves;
   wire [9:0] rd_req_spare_tag_next = {epoch, next_slot};
   wire oldest_goes = came[0] & ~clears_marks;
@@ -112,6 +124,7 @@ module contact_afu_collector (
     row_if_current[0] ? response_place : 8'd0
   };
   wire [6:0] twice_the_age = {answered_slot, 1'b0} - {oldest, oldest_goes};
+  wire idle_next = ~|outstanding & (~rd_req_valid & ~rd_req_spare_valid_copy_0) & ~may_ask & ~free_step;
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
@@ -144,12 +157,19 @@ module contact_afu_collector (
     if (rst) begin
       rd_req_valid <= 1'b0;
       may_ask <= 1'b0;
-      lines_to_request_step <= 1'b0;
-      many_lines_to_request <= 1'b0;
-      started_with_many_lines_to_request <= 1'b0;
-      lines_to_request <= 32'd0;
+      any_lines_to_request <= 1'b0;
+      one_lines_to_request <= 1'b0;
+      any_free <= 1'b1;
       freed <= 1'b0;
-      reserved <= 7'd0;
+      one_free <= 1'b0;
+      started_with_many_lines_to_request <= 1'b0;
+      started_lines_to_request <= 1'b0;
+      lines_to_request <= 32'd0;
+      lines_to_request_step <= 1'b0;
+      free_step <= 1'b0;
+      free <= 7'd64;
+      many_free <= 1'b0;
+      many_lines_to_request <= 1'b0;
       next_slot <= 6'd0;
       line_comes <= 1'b0;
       clears_marks <= 1'b1;
@@ -167,12 +187,24 @@ module contact_afu_collector (
     end else begin
       rd_req_valid <= rd_req_next_valid | ~rd_req_moves;
       may_ask <= run & some_left_and_free;
-      lines_to_request_step <= issue & ~start;
-      many_lines_to_request <= ~start & |lines_to_request[31:3];
-      started_with_many_lines_to_request <= start & |lines[31:3];
-      if (start | lines_to_request_step) lines_to_request <= start ? lines : (lines_to_request - 32'd1);
+      any_lines_to_request <= ~start & (issue ? any_lines_to_request_after_step : any_lines_to_request_without_step);
+      one_lines_to_request <=
+          ~start
+          & (issue                 ?
+                 (lines_to_request_step ? one_lines_to_request_after_2 : one_lines_to_request_after_1) :
+             lines_to_request_step ? one_lines_to_request_after_1 :
+             one_lines_to_request_after_0);
+      any_free <= start | (issue ? any_free_after_step : any_free_without_step);
       freed <= taken & ~start;
-      reserved <= start ? 7'd0 : (issue ^ freed) ? (issue ? (reserved + 7'd1) : (reserved - 7'd1)) : reserved;
+      one_free <= ~start & (issue ? (freed ? one_free : two_free) : freed ? ~any_free : one_free);
+      started_with_many_lines_to_request <= start & |lines[31:3];
+      started_lines_to_request <= start;
+      if (start | lines_to_request_step) lines_to_request <= start ? lines : (lines_to_request - 32'd1);
+      lines_to_request_step <= free_step_next;
+      free_step <= free_step_next;
+      free <= start ? 7'd64 : (freed ^ free_step) ? (freed ? (free + 7'd1) : (free - 7'd1)) : free;
+      many_free <= ~start & |free[6:3];
+      many_lines_to_request <= ~start & |lines_to_request[31:3];
       next_slot <= start ? 6'd0 : issue ? (next_slot + 6'd1) : next_slot;
       line_comes <= oldest_goes & ~start;
       clears_marks <= start;
@@ -185,10 +217,10 @@ module contact_afu_collector (
       oldest <= start ? 6'd0 : (oldest + {5'd0, oldest_goes});
       failed <= is_awaited & error_then & ~start;
       responded <= run & is_response & ~start;
-      idle <= ~|outstanding & (~rd_req_valid & ~rd_req_spare_valid_copy_0) & ~may_ask;
+      idle <= idle_next;
       outstanding <=
-          start              ? 7'd0 :
-          (issue ^ answered) ? (issue ? (outstanding + 7'd1) : (outstanding - 7'd1)) :
+          start                  ? 7'd0 :
+          (free_step ^ answered) ? (free_step ? (outstanding + 7'd1) : (outstanding - 7'd1)) :
           outstanding;
     end
   end

@@ -24,7 +24,7 @@ module contact_afu_dispatcher (
   output reg  [57:0]  wr_req_address,
   output wire [9:0]   wr_req_tag,
   output wire [511:0] wr_req_data,
-  output reg          line_left,
+  output wire         line_left,
   output reg          answered,
   output reg          failed,
   output reg          responded,
@@ -35,10 +35,17 @@ module contact_afu_dispatcher (
   // ---- state ----
   reg may_send;
   reg read_valid;
-  reg ready;
+  reg any_stored;
+  reg one_stored;
+  reg stored_step;
   reg [8:0] stored;
+  reg many_stored;
+  reg any_free;
   reg freed;
-  reg [6:0] reserved;
+  reg one_free;
+  reg free_step;
+  reg [6:0] free;
+  reg many_free;
   reg [63:0] came;
   reg clears_marks;
   reg [5:0] arrived_age;
@@ -73,15 +80,14 @@ module contact_afu_dispatcher (
   wire may_go = may_send & wr_req_moves;
   wire goes = may_go & read_valid;
   wire read = ~read_valid | may_go;
-  wire take = read & ready;
-  wire any_stored_after_2 = |stored[8:2] | (stored[1] & stored[0]);
-  wire any_stored_after_1 = |stored[8:1];
-  wire any_stored_after_0 = |stored;
-  wire some_ready =
-      take ? ((line_left ? any_stored_after_2 : any_stored_after_1) | line_valid) :
-      ((line_left ? any_stored_after_1 : any_stored_after_0) | line_valid);
-  wire some_free_now = freed | ~reserved[6];
-  wire some_free = goes ? (some_free_now & (freed | ~&reserved[5:0])) : some_free_now;
+  wire take = read & any_stored;
+  wire any_stored_after_step = any_stored & (line_valid | ~one_stored);
+  wire any_stored_without_step = any_stored | line_valid;
+  wire two_stored = (stored_step ? (stored[2:0] == 3'd3) : (stored[2:0] == 3'd2)) & ~many_stored;
+  wire any_free_after_step = any_free & (freed | ~one_free);
+  wire any_free_without_step = any_free | freed;
+  wire some_free = goes ? any_free_after_step : any_free_without_step;
+  wire two_free = (free_step ? (free[2:0] == 3'd3) : (free[2:0] == 3'd2)) & ~many_free;
   wire oldest_goes = came[0] & ~clears_marks;
   wire [63:0] marked = came | (answered ? (64'd1 << arrived_age) : 64'd0);
   wire is_awaited = is_response & (was_asked | (|(marked_in_rows & (8'd1 << answered_slot[5:3])) & ~was_answered));
@@ -107,6 +113,7 @@ module contact_afu_dispatcher (
   };
   wire [6:0] twice_the_age = {answered_slot, 1'b0} - {oldest, oldest_goes};
   assign wr_req_tag = {wr_req_epoch, wr_req_slot};
+  wire reads_0 = ~read_valid | may_go;
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
@@ -137,11 +144,17 @@ module contact_afu_dispatcher (
       wr_req_valid <= 1'b0;
       may_send <= 1'b0;
       read_valid <= 1'b0;
-      ready <= 1'b0;
-      line_left <= 1'b0;
+      any_stored <= 1'b0;
+      one_stored <= 1'b0;
+      stored_step <= 1'b0;
       stored <= 9'd0;
+      many_stored <= 1'b0;
+      any_free <= 1'b1;
       freed <= 1'b0;
-      reserved <= 7'd0;
+      one_free <= 1'b0;
+      free_step <= 1'b0;
+      free <= 7'd64;
+      many_free <= 1'b0;
       clears_marks <= 1'b1;
       answered <= 1'b0;
       is_response <= 1'b0;
@@ -161,11 +174,17 @@ module contact_afu_dispatcher (
       wr_req_valid <= (goes & ~drops_requests) | ~wr_req_moves;
       may_send <= run & some_free;
       read_valid <= ~start & (take | (read_valid & ~goes));
-      ready <= ~start & some_ready;
-      line_left <= take & ~start;
-      stored <= start ? 9'd0 : (line_valid ^ line_left) ? (line_valid ? (stored + 9'd1) : (stored - 9'd1)) : stored;
+      any_stored <= ~start & (take ? any_stored_after_step : any_stored_without_step);
+      one_stored <= ~start & (take ? (line_valid ? one_stored : two_stored) : line_valid ? ~any_stored : one_stored);
+      stored_step <= take & ~start;
+      stored <= start ? 9'd0 : (line_valid ^ stored_step) ? (line_valid ? (stored + 9'd1) : (stored - 9'd1)) : stored;
+      many_stored <= ~start & |stored[8:3];
+      any_free <= start | some_free;
       freed <= oldest_goes & ~start;
-      reserved <= start ? 7'd0 : (goes ^ freed) ? (goes ? (reserved + 7'd1) : (reserved - 7'd1)) : reserved;
+      one_free <= ~start & (goes ? (freed ? one_free : two_free) : freed ? ~any_free : one_free);
+      free_step <= goes & ~start;
+      free <= start ? 7'd64 : (freed ^ free_step) ? (freed ? (free + 7'd1) : (free - 7'd1)) : free;
+      many_free <= ~start & |free[6:3];
       clears_marks <= start;
       answered <= is_awaited & ~start;
       is_response <= is_current & ~start;
@@ -178,12 +197,12 @@ module contact_afu_dispatcher (
       head <= start ? 8'd0 : take ? (head + 8'd1) : head;
       failed <= is_awaited & error_then & ~start;
       responded <= run & is_response & ~start;
-      idle <= ~|outstanding & ~wr_req_valid & ~goes;
+      idle <= ~|outstanding & ~wr_req_valid & ~goes & ~free_step;
       outstanding <=
-          start             ? 7'd0 :
-          (goes ^ answered) ? (goes ? (outstanding + 7'd1) : (outstanding - 7'd1)) :
+          start                  ? 7'd0 :
+          (free_step ^ answered) ? (free_step ? (outstanding + 7'd1) : (outstanding - 7'd1)) :
           outstanding;
-      empty <= ~start & ~any_stored_after_0 & ~read_valid;
+      empty <= ~start & ~any_stored & ~read_valid;
     end
   end
 
@@ -196,10 +215,12 @@ module contact_afu_dispatcher (
     .write_index (tail),
     .write_word  (line),
     .read_index  (head),
-    .read        (read),
+    .read        (reads_0),
     .advance     (wr_req_moves),
     .word        (wr_req_data)
   );
+
+  assign line_left = stored_step;
 
   // Bits that nothing needs.
   wire unused = &{1'b0, twice_the_age[0]};

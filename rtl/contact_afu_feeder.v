@@ -41,19 +41,25 @@ module contact_afu_feeder (
   reg line_ready;
   reg last_line_ready;
   reg two_lines_ready;
-  reg some_come;
+  reg any_lines_waiting;
   reg any_lines_left;
+  reg one_lines_left;
+  reg started_with_many_lines_left;
+  reg started_lines_left;
+  reg [31:0] lines_left;
   reg lines_left_step;
   reg many_lines_left;
-  reg started_with_many_lines_left;
-  reg [31:0] lines_left;
+  reg one_lines_waiting;
+  reg lines_waiting_step;
   reg [6:0] lines_waiting;
-  reg one_lines_left;
+  reg many_lines_waiting;
   reg last;
   reg [6:0] turn_block;
   reg began;
   reg [1:0] carries_rank_0;
   reg [6:0] turn;
+  reg [6:0] turns_before_1;
+  reg [6:0] turns_before_2;
   (* keep = "true", dont_merge *) reg aligns_by_1_copy_3;
   reg [127:0] held_3;
   (* keep = "true", dont_merge *) reg aligns_by_1_copy_2;
@@ -84,18 +90,19 @@ module contact_afu_feeder (
   wire go_1 = go_0 & unit_1 & present_1;
   wire line_done = go_1 ? 1'b1 : go_0 ? ~holds_1 : 1'b0;
   wire take = line_ready & (line_done | ~in_hand);
-  wire line_readies = (some_come | line_comes) & any_lines_left & ~two_lines_ready;
+  wire any_lines_waiting_without_step = any_lines_waiting | line_comes;
+  wire line_readies = any_lines_waiting_without_step & any_lines_left & ~two_lines_ready;
+  wire any_lines_left_after_step = any_lines_left & ~one_lines_left;
+  wire begins_lines_left = started_with_many_lines_left | (started_lines_left & |lines_left[2:0]);
+  wire any_lines_left_without_step = any_lines_left | begins_lines_left;
+  wire lines_waiting_step_next = line_readies & ~start;
   wire has_many_lines_left = many_lines_left | started_with_many_lines_left;
-  wire any_lines_left_after_2 = has_many_lines_left | (3'd2 < lines_left[2:0]);
-  wire any_lines_left_after_1 = has_many_lines_left | (3'd1 < lines_left[2:0]);
-  wire any_lines_left_after_0 = has_many_lines_left | |lines_left[2:0];
-  wire any_lines_waiting_after_2 = |lines_waiting[6:2] | (lines_waiting[1] & lines_waiting[0]);
-  wire any_lines_waiting_after_1 = |lines_waiting[6:1];
-  wire any_lines_waiting_after_0 = |lines_waiting;
-  wire any_lines_waiting_now = lines_left_step ? any_lines_waiting_after_1 : any_lines_waiting_after_0;
   wire one_lines_left_after_2 = ~has_many_lines_left & (lines_left[2:0] == 3'd3);
   wire one_lines_left_after_1 = ~has_many_lines_left & (lines_left[2:0] == 3'd2);
   wire one_lines_left_after_0 = ~has_many_lines_left & (lines_left[2:0] == 3'd1);
+  wire any_lines_waiting_after_step = any_lines_waiting & (line_comes | ~one_lines_waiting);
+  wire two_lines_waiting =
+      (lines_waiting_step ? (lines_waiting[2:0] == 3'd3) : (lines_waiting[2:0] == 3'd2)) & ~many_lines_waiting;
   wire [2:0] place_after_2 = place_after_0 + 3'd2;
   wire next_place = go_1 ? place_after_2[0] : go_0 ? place_after_1[0] : place;
   wire next_line_goes_on_1 =
@@ -126,9 +133,7 @@ module contact_afu_feeder (
       ({2'd0, next_last} >= place_after_0);
   wire next_holds_0 = in_hand ? next_line_goes_on_0 : 1'b1;
   wire some_left = in_hand | line_ready | any_lines_left;
-  wire [6:0] turns_before_1 = scpus - 7'd1;
   wire [6:0] turn_after_1 = (turn >= turns_before_1) ? (turn - turns_before_1) : (turn + 7'd1);
-  wire [6:0] turns_before_2 = scpus - 7'd2;
   wire [6:0] turn_after_2 = (turn >= turns_before_2) ? (turn - turns_before_2) : (turn + 7'd2);
   wire [6:0] next_turn = (entered == 2'd2) ? turn_after_2 : (entered == 2'd1) ? turn_after_1 : turn;
   wire [511:0] aligned_by_1 = {
@@ -143,6 +148,8 @@ module contact_afu_feeder (
   always @(posedge clk) begin
     if (take) last <= next_last;
     targets <= {turn_after_1, turn};
+    turns_before_1 <= scpus - 7'd1;
+    turns_before_2 <= scpus - 7'd2;
     names <= {turn == turns_before_1, turn == 7'd0};
     pairs <= aligned_by_1;
     if (takes_line_copy_3) held_3 <= line[511:384];
@@ -168,14 +175,18 @@ module contact_afu_feeder (
       line_ready <= 1'b0;
       last_line_ready <= 1'b0;
       two_lines_ready <= 1'b0;
-      some_come <= 1'b0;
+      any_lines_waiting <= 1'b0;
       any_lines_left <= 1'b0;
+      one_lines_left <= 1'b0;
+      started_with_many_lines_left <= 1'b0;
+      started_lines_left <= 1'b0;
+      lines_left <= 32'd0;
       lines_left_step <= 1'b0;
       many_lines_left <= 1'b0;
-      started_with_many_lines_left <= 1'b0;
-      lines_left <= 32'd0;
+      one_lines_waiting <= 1'b0;
+      lines_waiting_step <= 1'b0;
       lines_waiting <= 7'd0;
-      one_lines_left <= 1'b0;
+      many_lines_waiting <= 1'b0;
       turn_block <= 7'd0;
       all_given <= 1'b0;
       began <= 1'b0;
@@ -197,30 +208,29 @@ module contact_afu_feeder (
       line_ready <= ~start & (line_readies | two_lines_ready | (line_ready & ~take));
       last_line_ready <= ~start & (last_line_ready | (line_readies & one_lines_left));
       two_lines_ready <= ~start & line_ready & ~take & (two_lines_ready | line_readies);
-      some_come <=
-          ~start
-          & (line_readies ?
-                 ((lines_left_step ? any_lines_waiting_after_2 : any_lines_waiting_after_1)
-                  | (line_comes & any_lines_waiting_now)) :
-             (any_lines_waiting_now | line_comes));
-      any_lines_left <=
-          ~start
-          & (line_readies    ? (lines_left_step ? any_lines_left_after_2 : any_lines_left_after_1) :
-             lines_left_step ? any_lines_left_after_1 :
-             any_lines_left_after_0);
-      lines_left_step <= line_readies & ~start;
-      many_lines_left <= ~start & |lines_left[31:3];
-      started_with_many_lines_left <= start & |lines[31:3];
-      if (start | lines_left_step) lines_left <= start ? lines : (lines_left - 32'd1);
-      lines_waiting <=
-          start                          ? 7'd0 :
-          (line_comes ^ lines_left_step) ? (line_comes ? (lines_waiting + 7'd1) : (lines_waiting - 7'd1)) :
-          lines_waiting;
+      any_lines_waiting <= ~start & (line_readies ? any_lines_waiting_after_step : any_lines_waiting_without_step);
+      any_lines_left <= ~start & (line_readies ? any_lines_left_after_step : any_lines_left_without_step);
       one_lines_left <=
           ~start
           & (line_readies    ? (lines_left_step ? one_lines_left_after_2 : one_lines_left_after_1) :
              lines_left_step ? one_lines_left_after_1 :
              one_lines_left_after_0);
+      started_with_many_lines_left <= start & |lines[31:3];
+      started_lines_left <= start;
+      if (start | lines_left_step) lines_left <= start ? lines : (lines_left - 32'd1);
+      lines_left_step <= lines_waiting_step_next;
+      many_lines_left <= ~start & |lines_left[31:3];
+      one_lines_waiting <=
+          ~start
+          & (line_readies ? (line_comes ? one_lines_waiting : two_lines_waiting) :
+             line_comes   ? ~any_lines_waiting :
+             one_lines_waiting);
+      lines_waiting_step <= lines_waiting_step_next;
+      lines_waiting <=
+          start                             ? 7'd0 :
+          (line_comes ^ lines_waiting_step) ? (line_comes ? (lines_waiting + 7'd1) : (lines_waiting - 7'd1)) :
+          lines_waiting;
+      many_lines_waiting <= ~start & |lines_waiting[6:3];
       turn_block <= round_begins ? 7'd0 : ends_block ? (turn_block + 7'd1) : turn_block;
       all_given <= start ? ~|lines : ((all_given | ~began) & ~some_left);
       began <= start;

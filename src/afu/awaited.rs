@@ -16,6 +16,8 @@ pub(super) const CYCLES_TO_ANSWER: u32 = 2;
 pub(super) struct Arrival<'g> {
     /// True if there is one.
     pub(super) valid: Signal<'g>,
+    /// As `valid`, in the cycle of its arrival.
+    pub(super) comes: Signal<'g>,
     /// The slot of its request.
     pub(super) slot: Signal<'g>,
     /// Its row of marks, one-hot; `None` if there is only one.
@@ -30,8 +32,10 @@ impl<'g> Arrival<'g> {
         let slot = tag.low(slots.ilog2());
         let row_bits = ROW.min(slots).ilog2();
         let rows = || slot.drop_low(row_bits).one_hot().delay(1).named("response_row");
+        let comes = valid & tag.high(EPOCH_BITS).equals(epoch);
         Self {
-            valid: (valid & tag.high(EPOCH_BITS).equals(epoch)).registered("is_current"),
+            valid: comes.registered("is_current"),
+            comes,
             slot: slot.delay(1).named("response_slot"),
             row: (slots > ROW).then(rows),
             place: slot.low(row_bits).one_hot().delay(1).named("response_place"),

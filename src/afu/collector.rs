@@ -11,9 +11,9 @@ use std::sync::Arc;
 use crate::hdl::{BuildErrors, Graph, Module};
 
 use super::awaited::{self, Arrival, awaited};
-use super::counter::{Countdown, from_zero, some_free, up_down};
+use super::counter::{Countdown, Level, from_zero, up_down};
 use super::in_order::{self, goes_in_order};
-use super::lines::{Access, line_memory};
+use super::lines::{self, Access, line_memory};
 use super::port::{ReadInputs, ReadOutputs, outputs};
 use super::slice::slice;
 use super::{ADDRESS_BITS, COUNT_BITS, EPOCH_BITS, Spec};
@@ -44,7 +44,7 @@ pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let remaining = Countdown::new(&graph, "lines_to_request", COUNT_BITS);
     let next_address = graph.data_register("next_address", ADDRESS_BITS);
     let next_slot = graph.register("next_slot", slot_bits, 0);
-    let reserved = graph.register("reserved", slot_bits + 1, 0);
+    let free = Level::new(&graph, "free", slot_bits + 1, slots.into());
     // One cycle ahead, it is known whether a request may be made.
     let may_ask = graph.register("may_ask", 1, 0);
     let tag = epoch.concat(next_slot.value());
@@ -57,8 +57,8 @@ pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     from_zero(next_slot, start, issue, next_slot.plus(1));
     // A slot is free once its line was taken.
     let freed = (taken & !start).registered("freed");
-    up_down(reserved, start, issue, freed);
-    may_ask.next(run & some_left.and(some_free(reserved, freed)).at(issue).named("some_left_and_free"));
+    let some_free = free.connect(start, freed, issue);
+    may_ask.next(run & some_left.and(some_free).at(issue).named("some_left_and_free"));
 
     // Responses go into the slot that the tag names. A response that no request waits for overwrites a line there and
     // ends the job.
@@ -68,18 +68,18 @@ pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let answers =
         awaited(&graph, slots, [start, clears, run], [port.accepted, request_tag.low(slot_bits)], &arrival, error);
     let outstanding = graph.register("outstanding", slot_bits + 1, 0);
-    up_down(outstanding, start, issue, answers.answered);
+    up_down(outstanding, start, *free.counted, answers.answered);
 
     // Lines are announced in order.
     let comes = goes_in_order(&graph, "line_comes", slots, [start, clears], arrival.slot, answers.answered);
     let always = graph.constant(1, 1);
     let access = Access {
-        write: arrival.valid,
+        write: &lines::steering(spec, slots, "response_is_current", [arrival.valid, arrival.comes]),
         write_index: arrival.slot,
         line: link.rd_rsp_data.delay(1).named("response_line"),
-        read: always,
+        read: &[always],
         read_index: place,
-        advance: always,
+        advance: &[always],
     };
     let line = line_memory(&graph, spec, "reorder", slots, &access)?;
 
@@ -90,6 +90,6 @@ pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     graph.output("answered", answers.answered);
     graph.output("failed", answers.failed);
     graph.output("responded", answers.responded);
-    graph.output("idle", (!outstanding.any() & port.is_empty & !*may_ask).registered("idle"));
+    graph.output("idle", (!outstanding.any() & port.is_empty & !*may_ask & !*free.counted).registered("idle"));
     graph.finish()
 }

@@ -47,7 +47,7 @@ impl<'g> Countdown<'g> {
         // Whether any is left follows from both flags, without the count, but for the cycle after the start.
         let started = start.registered(&name("started"));
         let begins = (self.many[1].value() | (started & few.any())).named(&name("begins"));
-        let next_any = AtStep { with: self.any & !self.one, without: self.any | begins };
+        let next_any = AtStep { with: self.any & !self.one, without: self.any | begins }.named(&name("any"));
         let next_one = by_steps(counted, &name("one"), |steps| !many & few.is(u128::from(steps + 1)));
         // The flags know the new count a cycle after it is there.
         self.flags[0].next(!start & next_any.at(step));
@@ -70,26 +70,16 @@ impl<'g> AtStep<'g> {
         step.select(self.with, self.without)
     }
 
+    fn named(self, name: &str) -> Self {
+        let Self { with, without } = self;
+        let named = |signal: Signal<'g>, when: &str| signal.named(&format!("{name}_{when}_step"));
+        Self { with: named(with, "after"), without: named(without, "without") }
+    }
+
     /// True if both are true.
     pub(super) fn and(self, other: Self) -> Self {
         Self { with: self.with & other.with, without: self.without & other.without }
     }
-
-    /// True in either case if `signal` is set.
-    pub(super) fn or(self, signal: Signal<'g>) -> Self {
-        Self { with: self.with | signal, without: self.without | signal }
-    }
-}
-
-/// True if anything is left of `count` after a cycle with a step. `count` still includes the one that went a cycle
-/// before, at `counted`.
-pub(super) fn left_after<'g>(count: Signal<'g>, counted: Signal<'g>, name: &str) -> AtStep<'g> {
-    let count = count.extend(count.width().max(3));
-    by_steps(counted, name, |steps| match steps {
-        0 => count.any(),
-        1 => count.drop_low(1).any(),
-        _ => count.drop_low(2).any() | (count.bit(1) & count.bit(0)),
-    })
 }
 
 /// `of` the number of steps that are not counted yet; the signals are named after it.
@@ -148,20 +138,59 @@ pub(super) fn some_free<'g>(reserved: Register<'g>, frees: Signal<'g>) -> AtStep
     AtStep { with: without & (frees | !reserved.low(slots).all()), without }
 }
 
-/// A counter of things that come and go, at most `2^(width − 1)` of them. The one that went a cycle ago is counted at
-/// `gone`. Returns whether any will be left, after a cycle in which one goes or not; one that comes may go at once.
-pub(super) fn waiting<'g>(
-    graph: &'g Graph,
-    name: &str,
-    width: u32,
-    [start, comes]: [Signal<'g>; 2],
-    gone: Signal<'g>,
-) -> AtStep<'g> {
-    let count = graph.register(name, width, 0);
-    up_down(count, start, comes, gone);
-    let left = left_after(*count, gone, &format!("any_{name}"));
-    let now = left.without.named(&format!("any_{name}_now"));
-    AtStep { with: left.with | (comes & now), without: now | comes }
+/// The number of things that come and go, one at a time. One that goes is counted a cycle late; whether there are any,
+/// and whether there is exactly one, is known at once.
+pub(super) struct Level<'g> {
+    name: String,
+    first: u128,
+    /// Their number, with the one that went in the last cycle.
+    pub(super) count: Register<'g>,
+    /// True if there are any.
+    pub(super) any: Register<'g>,
+    one: Register<'g>,
+    /// True in the cycle in which one that went is counted.
+    pub(super) counted: Register<'g>,
+    /// True if a cycle ago there were so many that there are neither two nor three now.
+    many: Option<Register<'g>>,
+}
+
+impl<'g> Level<'g> {
+    /// A level of this number of bits, `first` after a reset and at the start: less than eight, or a multiple of it.
+    pub(super) fn new(graph: &'g Graph, name: &str, width: u32, first: u128) -> Self {
+        let flag = |of: &str, set: bool| graph.register(&format!("{of}_{name}"), 1, set.into());
+        Self {
+            first,
+            count: graph.register(name, width, first),
+            any: flag("any", first > 0),
+            one: flag("one", first == 1),
+            counted: graph.register(&format!("{name}_step"), 1, 0),
+            many: (width > 3).then(|| flag("many", false)),
+            name: name.to_owned(),
+        }
+    }
+
+    /// One comes, or goes, which it does only while there are some, or in the cycle in which it comes. Returns whether
+    /// there will be any.
+    pub(super) fn connect(&self, start: Signal<'g>, comes: Signal<'g>, goes: Signal<'g>) -> AtStep<'g> {
+        let Self { count, any, one, counted, many, .. } = *self;
+        counted.next(goes & !start);
+        let moved = comes.select(count.plus(1), count.minus(1));
+        count.next(start.select(count.same(self.first), (comes ^ *counted).select(moved, *count)));
+        let low = count.low(3.min(count.width()));
+        let mut two = counted.select(low.is(3), low.is(2));
+        if let Some(many) = many {
+            many.next(!start & count.drop_low(3).any());
+            two = two & !*many;
+        }
+        let next_any = AtStep { with: *any & (comes | !*one), without: *any | comes };
+        let next_any = next_any.named(&format!("any_{}", self.name));
+        let two = two.named(&format!("two_{}", self.name));
+        let next_one = AtStep { with: comes.select(*one, two), without: comes.select(!*any, *one) };
+        let at_start = |flag: bool, next: Signal<'g>| if flag { start | next } else { !start & next };
+        any.next(at_start(self.first > 0, next_any.at(goes)));
+        one.next(at_start(self.first == 1, next_one.at(goes)));
+        next_any
+    }
 }
 
 /// The place of the oldest word in a memory of a power of two of words, which `moves` on. Returns the place in the next

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
-use super::counter::{Countdown, from_zero, waiting};
+use super::counter::{Countdown, Level, from_zero};
 use super::lines::CYCLES_TO_WORD;
 use super::rounds::Rounds;
 use super::{COUNT_BITS, SCPU_BITS, Spec, wide};
@@ -177,13 +177,11 @@ impl<'g> Coming<'g> {
     fn new(graph: &'g Graph, spec: &Spec, [start, comes, take]: [Signal<'g>; 3], lines: Signal<'g>) -> Self {
         let ready = ["line_ready", "two_lines_ready"].map(|name| graph.register(name, 1, 0));
         let [one, two] = ready.map(|flag| flag.value());
-        let some_come = graph.register("some_come", 1, 0);
+        let waiting = Level::new(graph, "lines_waiting", spec.max_outstanding.ilog2() + 1, 0);
         let lines_left = Countdown::new(graph, "lines_left", COUNT_BITS);
         let (some_left, last_is_first) = (lines_left.any, lines_left.one);
-        let readies = ((*some_come | comes) & some_left & !two).named("line_readies");
-        let come_bits = spec.max_outstanding.ilog2() + 1;
-        let left = waiting(graph, "lines_waiting", come_bits, [start, comes], lines_left.counted).at(readies);
-        some_come.next(!start & left);
+        let readies = ((*waiting.any | comes) & some_left & !two).named("line_readies");
+        waiting.connect(start, comes, readies);
         lines_left.connect(start, lines, readies);
         ready[0].next(!start & (readies | two | (one & !take)));
         ready[1].next(!start & one & !take & (two | readies));
@@ -204,7 +202,7 @@ fn targets<'g>(
 ) -> [Signal<'g>; 2] {
     let turn = graph.register("turn", SCPU_BITS, 0);
     // The first turn that wraps. There are never more pairs in a group than SCPUs.
-    let last = |pairs: u32| scpus.minus(pairs.into()).named(&format!("turns_before_{pairs}"));
+    let last = |pairs: u32| scpus.minus(pairs.into()).delay(1).named(&format!("turns_before_{pairs}"));
     let behind = |pairs: u32| {
         let last = last(pairs);
         let wrapped = turn.at_least(last).select(turn.value() - last, turn.plus(pairs.into()));

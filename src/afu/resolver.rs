@@ -63,12 +63,12 @@ pub(super) fn of_pairs(spec: &Spec, scpu: &Arc<Module>, places: u32) -> Result<A
     let mut banks = Vec::new();
     for (bank, (pair, writes)) in (0..lanes).zip(turned.into_iter().zip(writes)) {
         let access = Access {
-            write: writes.delay(2).named(&format!("writes_bank_{bank}")),
+            write: &[writes.delay(2).named(&format!("writes_bank_{bank}"))],
             write_index: row(tail.value(), bank, lanes).delay(2).named(&format!("row_of_bank_{bank}")),
             line: pair.delay(1).named(&format!("pair_for_bank_{bank}")),
-            read: always,
+            read: &[always],
             read_index: place.drop_low(lane_bits),
-            advance: always,
+            advance: &[always],
         };
         banks.push(line_memory(&graph, spec, &format!("bank_{bank}"), places / lanes, &access)?);
     }

@@ -54,7 +54,10 @@ module collector (
   (* hierconn *) wire [57:0] \dut.rd_req_spare_address ;
   (* hierconn *) wire [5:0]  \dut.rd_req_spare_tag ;
   (* hierconn *) wire        \dut.rd_req_of_job ;
-  (* hierconn *) wire [2:0]  \dut.reserved ;
+  (* hierconn *) wire [2:0]  \dut.free ;
+  (* hierconn *) wire        \dut.free_step ;
+  (* hierconn *) wire        \dut.any_free ;
+  (* hierconn *) wire        \dut.one_free ;
   (* hierconn *) wire [2:0]  \dut.outstanding ;
   (* hierconn *) wire        \dut.clears_marks ;
   (* hierconn *) wire [3:0]  \dut.came ;
@@ -75,6 +78,8 @@ module collector (
   (* hierconn *) wire [1:0]  \dut.next_slot ;
   (* hierconn *) wire        \dut.may_ask ;
   (* hierconn *) wire [31:0] \dut.lines_to_request ;
+  (* hierconn *) wire        \dut.any_lines_to_request ;
+  (* hierconn *) wire        \dut.one_lines_to_request ;
   (* hierconn *) wire [57:0] \dut.next_address ;
 
   reg        begun = 1'b0;
@@ -149,6 +154,9 @@ module collector (
 
   // A request that was made is counted one cycle later.
   wire [31:0] to_request = \dut.lines_to_request - {31'd0, \dut.lines_to_request_step };
+  // A slot that is taken is counted a cycle late, and one that is freed in the next cycle.
+  wire [2:0] free = \dut.free - {2'd0, \dut.free_step };
+  wire [2:0] in_use = 3'd4 - free - {2'd0, \dut.freed };
   `include "slots.svh"
 
   // Filled slots: announced, known to be filled, about to be known, and heard in this cycle.
@@ -161,18 +169,21 @@ module collector (
   wire [3:0] filled = offered | come | coming;
   wire [3:0] last_offered = 4'd1 << (\dut.oldest - 2'd1);
   always @* if (begun & ~start & ~given_up & ~over & ~rst & after_reset) begin
-    never_more: assert (\dut.reserved <= 3'd4);
-    slots_in_order: assert (\dut.next_slot - head + {1'b0, \dut.freed } == \dut.reserved [1:0]);
+    never_more: assert (free <= 3'd4 & (~\dut.free_step | \dut.free != 3'd0));
+    free_is_known: assert (\dut.any_free == (free != 3'd0) & \dut.one_free == (free == 3'd1));
+    slots_in_order: assert (\dut.next_slot - head == in_use[1:0]);
     tags_in_order: assert ((~spare | (rd_req_valid & \dut.rd_req_spare_tag == {job_epoch, \dut.next_slot - 2'd1}))
       & (~asked | rd_req_tag[1:0] == \dut.next_slot - 2'd1 - {1'b0, spare}));
     offered_in_order: assert (\dut.oldest - head == offers[1:0] & offers <= 3'd4 & announced <= 3'd4);
     one_of_three: assert ((on_port & (waiting | arriving)) == 4'd0 & (waiting & arriving) == 4'd0
       & (filled & (on_port | waiting | arriving)) == 4'd0);
     come_once: assert ((offered & come) == 4'd0 & (offered & coming) == 4'd0 & (come & coming) == 4'd0);
-    none_lost: assert ((on_port | waiting | arriving | filled) == slots(head, \dut.reserved - {2'd0, \dut.freed }));
-    taken_is_reserved: assert (~\dut.freed | \dut.reserved != 3'd0);
-    asks_while_any: assert (~\dut.may_ask | (to_request != 32'd0 & \dut.reserved != 3'd4));
-    counted: assert (\dut.outstanding == ones(on_port | waiting | arriving) + {2'd0, \dut.answered });
+    none_lost: assert ((on_port | waiting | arriving | filled) == slots(head, in_use));
+    taken_is_reserved: assert (~\dut.freed | free != 3'd4);
+    flags_are_right: assert (started | (\dut.any_lines_to_request == (to_request != 32'd0)
+      & \dut.one_lines_to_request == (to_request == 32'd1)));
+    asks_while_any: assert (~\dut.may_ask | (to_request != 32'd0 & free != 3'd0));
+    counted: assert (\dut.outstanding + {2'd0, \dut.free_step } == ones(on_port | waiting | arriving) + {2'd0, \dut.answered });
     leftover_is_right: assert (~rd_req_valid | \dut.rd_req_of_job == ~left);
     decoded: assert (~\dut.is_current | \dut.response_place == heard);
     clears_in_time: assert (\dut.clears_marks == started);

@@ -64,7 +64,9 @@ module credits (
   (* hierconn *) wire                       \dut.feeder.line_ready ;
   (* hierconn *) wire                       \dut.feeder.two_lines_ready ;
   (* hierconn *) wire                       \dut.feeder.last_line_ready ;
-  (* hierconn *) wire                       \dut.feeder.some_come ;
+  (* hierconn *) wire                       \dut.feeder.any_lines_waiting ;
+  (* hierconn *) wire                       \dut.feeder.one_lines_waiting ;
+  (* hierconn *) wire                       \dut.feeder.lines_waiting_step ;
   (* hierconn *) wire                       \dut.feeder.lines_left_step ;
   (* hierconn *) wire                       \dut.feeder.holds_1 ;
   (* hierconn *) wire [31:0]                \dut.feeder.lines_left ;
@@ -76,7 +78,9 @@ module credits (
   (* hierconn *) wire [6:0]                 \dut.feeder.turn ;
   (* hierconn *) wire [$clog2(`LINES):0]    \dut.dispatcher.stored ;
   (* hierconn *) wire                       \dut.dispatcher.take ;
-  (* hierconn *) wire                       \dut.dispatcher.line_left ;
+  (* hierconn *) wire                       \dut.dispatcher.stored_step ;
+  (* hierconn *) wire                       \dut.dispatcher.any_stored ;
+  (* hierconn *) wire                       \dut.dispatcher.one_stored ;
 `ifdef PER_LINE
   (* hierconn *) wire [1:0]                 \dut.sieve.group_here ;
   (* hierconn *) wire [1:0]                 \dut.sieve.hits_rank_0 ;
@@ -178,6 +182,10 @@ module credits (
   wire [1:0] lines_ready = {1'b0, \dut.feeder.line_ready } + {1'b0, \dut.feeder.two_lines_ready };
   wire [1:0] in_hand = \dut.feeder.in_hand ? 2'd1 + {1'b0, \dut.feeder.last } - {1'b0, \dut.feeder.place } : 2'd0;
 
+  // Lines that wait for the feeder, and that wait to be written. One that went is counted a cycle late.
+  wire [2:0] lines_waiting = \dut.feeder.lines_waiting - {2'd0, \dut.feeder.lines_waiting_step };
+  wire [$clog2(`LINES):0] lines_stored = \dut.dispatcher.stored - \dut.dispatcher.stored_step ;
+
   always @* assume (after_reset | rst);
   // The collector announces no more lines than it has slots (collector.sv: offered_in_order).
   always @* assume (~\dut.collector.line_comes | \dut.feeder.lines_waiting < 3'd4);
@@ -205,16 +213,20 @@ module credits (
     lines_are_right: assert (~busy | \dut.control.job_lines == job_lines);
     last_is_right: assert (~(begun | busy) | \dut.control.last_place == ~job_count[0]);
     takes_a_line: assert (\dut.feeder.lines_waiting <= 3'd4
-      & \dut.feeder.some_come == (\dut.feeder.lines_waiting != {2'd0, \dut.feeder.lines_left_step })
+      & \dut.feeder.any_lines_waiting == (lines_waiting != 3'd0)
+      & \dut.feeder.one_lines_waiting == (lines_waiting == 3'd1)
+      & \dut.feeder.lines_waiting_step == \dut.feeder.lines_left_step
       & (\dut.feeder.line_ready | ~\dut.feeder.two_lines_ready )
-      & (~\dut.feeder.lines_left_step | (\dut.feeder.lines_waiting != 3'd0 & \dut.feeder.lines_left != 32'd0)));
+      & (~\dut.feeder.lines_left_step | \dut.feeder.lines_waiting != 3'd0));
     begins_everywhere: assert ({5{\dut.control.begin_job }} == {\dut.control.begin_collector ,
       \dut.control.begin_feeder , \dut.control.begin_credits , \dut.control.begin_packer ,
       \dut.control.begin_dispatcher });
-    sends_a_line: assert ((~\dut.dispatcher.line_left | \dut.dispatcher.stored != 0)
-      & (~\dut.dispatcher.take | \dut.dispatcher.stored != \dut.dispatcher.line_left ));
   end
   always @* if (begun & ~\dut.control.begin_job & ~rst) begin
+    knows_what_is_stored: assert (\dut.dispatcher.any_stored == (lines_stored != 0)
+      & \dut.dispatcher.one_stored == (lines_stored == 1));
+    sends_a_line: assert ((~\dut.dispatcher.stored_step | \dut.dispatcher.stored != 0)
+      & (~\dut.dispatcher.take | \dut.dispatcher.stored != \dut.dispatcher.stored_step ));
     turn_is_an_scpu: assert (\dut.feeder.turn < `SCPUS);
     flags_are_right: assert (began | (\dut.feeder.any_lines_left == (unready != 32'd0)
       & \dut.feeder.one_lines_left == (unready == 32'd1)));
@@ -223,7 +235,8 @@ module credits (
     knows_what_it_holds: assert (~\dut.feeder.in_hand | ((\dut.feeder.last | ~\dut.feeder.place )
       & \dut.feeder.holds_1 == (\dut.feeder.last & ~\dut.feeder.place )));
     only_last_is_short: assert (~\dut.feeder.in_hand | \dut.feeder.last | last_taken);
-    readies_once: assert (readied <= job_lines & \dut.feeder.lines_left == job_lines - readied);
+    readies_once: assert ((~\dut.feeder.lines_left_step | \dut.feeder.lines_left != 32'd0)
+      & readied <= job_lines & \dut.feeder.lines_left == job_lines - readied);
     enters_once: assert (entered <= {1'b0, job_count} & pairs_readied == entered + {31'd0, \dut.feeder.entered }
       + {30'd0, lines_ready, 1'b0} + {31'd0, in_hand});
     comes_out_once: assert ({24'd0, inside} + {30'd0, uncounted} == entered[31:0] - emerged);
@@ -271,7 +284,7 @@ module credits (
     last_line_once: assert (~flushed | (emerged == job_count & ~\dut.packer.place ));
     places_add_up: assert ({4'd0, next_room} + inside + {7'd0, \dut.packer.place } + {3'd0, leaving, 1'b0}
       == CAPACITY + {7'd0, flushed});
-    fits: assert (leaving - {3'd0, \dut.dispatcher.line_left } <= `LINES);
+    fits: assert (leaving - {3'd0, \dut.dispatcher.stored_step } <= `LINES);
   end
 `endif
 

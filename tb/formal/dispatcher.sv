@@ -50,12 +50,16 @@ module dispatcher (
   (* hierconn *) wire [$clog2(`LINES):0]   \dut.stored ;
   (* hierconn *) wire [$clog2(`LINES)-1:0] \dut.head ;
   (* hierconn *) wire [$clog2(`LINES)-1:0] \dut.tail ;
-  (* hierconn *) wire        \dut.ready ;
-  (* hierconn *) wire        \dut.line_left ;
+  (* hierconn *) wire        \dut.any_stored ;
+  (* hierconn *) wire        \dut.one_stored ;
+  (* hierconn *) wire        \dut.stored_step ;
   (* hierconn *) wire        \dut.goes ;
   (* hierconn *) wire        \dut.may_send ;
   (* hierconn *) wire        \dut.read_valid ;
-  (* hierconn *) wire [2:0]  \dut.reserved ;
+  (* hierconn *) wire [2:0]  \dut.free ;
+  (* hierconn *) wire        \dut.free_step ;
+  (* hierconn *) wire        \dut.any_free ;
+  (* hierconn *) wire        \dut.one_free ;
   (* hierconn *) wire        \dut.freed ;
   (* hierconn *) wire        \dut.clears_marks ;
   (* hierconn *) wire [3:0]  \dut.came ;
@@ -136,11 +140,11 @@ module dispatcher (
     assume (~ends | (~run & ~ran & nothing));
     assume (~start | ~ran);
     if (begun & ~start & ~over) assume (epoch == job_epoch & destination == job_destination);
-    assume (~line_valid | (begun & ~start & (\dut.stored != LINES | \dut.line_left )));
+    assume (~line_valid | (begun & ~start & (\dut.stored != LINES | \dut.stored_step )));
   end
 
   // A line that has left the memory is still counted for one cycle.
-  wire [$clog2(`LINES):0] stored = \dut.stored - \dut.line_left ;
+  wire [$clog2(`LINES):0] stored = \dut.stored - \dut.stored_step ;
   `include "slots.svh"
   // What is being cleared does not count.
   wire [3:0] cleared = {4{\dut.clears_marks }};
@@ -148,20 +152,22 @@ module dispatcher (
   wire [3:0] coming = aged(\dut.answered ? 4'd1 << \dut.arrived_age : 4'd0, \dut.oldest );
   // The slot of the next line. The port has the job's first slot, address and epoch once no earlier request is there.
   wire [1:0] next_slot = \dut.wr_req_of_job ? \dut.wr_req_slot + {1'b0, asked} : 2'd0;
-  // A slot that left is reserved for one more cycle.
-  wire [2:0] in_use = \dut.reserved - {2'd0, \dut.freed };
+  // A slot that is taken is counted a cycle late, and one that is freed in the next cycle.
+  wire [2:0] free = \dut.free - {2'd0, \dut.free_step };
+  wire [2:0] in_use = 3'd4 - free - {2'd0, \dut.freed };
   wire [3:0] busy = on_port | waiting | arriving | come | coming;
   always @* if (begun & ~start & ~given_up & ~over & ~rst & after_reset) begin
-    fifo_fits: assert (\dut.stored <= LINES & (~\dut.line_left | \dut.stored != 0));
+    fifo_fits: assert (\dut.stored <= LINES & (~\dut.stored_step | \dut.stored != 0));
     fifo_counts: assert (\dut.tail - \dut.head == stored[$clog2(`LINES)-1:0]);
-    ready_is_right: assert (\dut.ready == (stored != 0));
+    stored_is_known: assert (\dut.any_stored == (stored != 0) & \dut.one_stored == (stored == 1));
+    free_is_known: assert (\dut.any_free == (free != 3'd0) & \dut.one_free == (free == 3'd1));
     tag_free: assert ((on_port & (waiting | arriving)) == 4'd0 & (waiting & arriving) == 4'd0
       & (~asked | wr_req_tag[5:2] == job_epoch));
-    never_more: assert (\dut.reserved <= 3'd4);
+    never_more: assert (free <= 3'd4 & (~\dut.free_step | \dut.free != 3'd0));
     slots_in_order: assert (next_slot - \dut.oldest == in_use[1:0]);
-    slots_are_right: assert (busy == slots(\dut.oldest , in_use) & (~\dut.freed | \dut.reserved != 3'd0));
+    slots_are_right: assert (busy == slots(\dut.oldest , in_use) & (~\dut.freed | free != 3'd4));
     come_once: assert (((on_port | waiting | arriving) & (come | coming)) == 4'd0 & (come & coming) == 4'd0);
-    none_lost: assert (\dut.outstanding == ones(on_port | waiting | arriving) + {2'd0, \dut.answered });
+    none_lost: assert (\dut.outstanding + {2'd0, \dut.free_step } == ones(on_port | waiting | arriving) + {2'd0, \dut.answered });
     leftover_is_right: assert (~wr_req_valid | \dut.wr_req_of_job == ~left);
     decoded: assert (~\dut.is_current | \dut.response_place == heard);
     clears_in_time: assert (\dut.clears_marks == started);
@@ -173,7 +179,7 @@ module dispatcher (
       & (\dut.accepted ? 4'd1 << \dut.accepted_slot : 4'd0) == asks_heard);
     surprise_is_told: assert (unexpected == surprised);
     idle_is_right: assert (started | idle == was_nothing);
-    sends_a_free_slot: assert (~\dut.may_send | \dut.reserved != 3'd4);
+    sends_a_free_slot: assert (~\dut.may_send | free != 3'd0);
     address: assert (~\dut.wr_req_of_job | wr_req_address == job_destination + accepted);
     of_this_job: assert (~\dut.wr_req_of_job | wr_req_tag[5:2] == job_epoch);
     begins_in_time: assert (\dut.wr_req_of_job | ((left | started) & accepted == 58'd0));

@@ -26,7 +26,7 @@ module entry (
   (* hierconn *) wire        \dut.loader.may_go ;
   (* hierconn *) wire        \dut.loader.any_left ;
   (* hierconn *) wire        \dut.loader.counts_spheres ;
-  (* hierconn *) wire        \dut.loader.line_waits ;
+  (* hierconn *) wire        \dut.loader.any_lines_waiting ;
   (* hierconn *) wire        \dut.loader.row_begins ;
   (* hierconn *) wire        \dut.loader.is_searched ;
   (* hierconn *) wire  [3:0] \dut.loader.column_now ;
@@ -87,7 +87,7 @@ module entry (
     none_before: assert (!stays | searched | began == 0);
     rows_let_it_go: assert (!(stays & \dut.control_run ) | \dut.loader.may_go == (column != 0 | !searched | \dut.loader.rows_inside < KEPT));
     some_are_left: assert (\dut.loader.counts_spheres | \dut.loader.any_left == (\dut.loader.spheres_left != 0));
-    no_line_yet: assert (!(\dut.loader.counts_spheres & \dut.loader.line_waits ));
+    no_line_yet: assert (!(\dut.loader.counts_spheres & \dut.loader.any_lines_waiting ));
     whole_rows: assert (\dut.loader.spheres_left != 0 | column == 0);
     all_are_out: assert (!\dut.loader_all_ended | began == ended);
   end

@@ -6,8 +6,7 @@ use std::sync::Arc;
 use super::bits::{chosen, count as number_of};
 use super::bounds::{SPHERE_BITS, sphere_box};
 use super::{ROW, ROW_BITS, ROW_NUMBER_BITS, Sizes};
-use crate::afu::counter::later;
-use crate::afu::counter::{up_down, waiting};
+use crate::afu::counter::{Level, later, up_down};
 use crate::afu::lines::CYCLES_TO_WORD;
 use crate::afu::{COUNT_BITS, Spec};
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
@@ -30,11 +29,9 @@ pub(super) fn loader(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, BuildErr
     // Lines that were announced and not taken yet.
     let slot_bits = spec.max_outstanding.ilog2();
     let per_line = spec.line_bits / SPHERE_BITS;
-    let line_waits = graph.register("line_waits", 1, 0);
+    let waiting = Level::new(&graph, "lines_waiting", slot_bits + 1, 0);
     let line_ends = graph.wire("line_ends", 1);
-    let taken = (line_ends & !start).registered("taken");
-    let waits_then = waiting(&graph, "lines_waiting", slot_bits + 1, [start, comes], taken).at(line_ends);
-    line_waits.next(!start & waits_then.named("some_wait"));
+    waiting.connect(start, comes, line_ends);
 
     // Where the next sphere is: the set, the row and the column.
     let second = graph.register("is_second_set", 1, 0);
@@ -50,7 +47,7 @@ pub(super) fn loader(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, BuildErr
     let some_left = graph.register("any_left", 1, 0);
     let may_go = graph.register("may_go", 1, 1);
     let any_left = *some_left;
-    let goes = (run & *line_waits & any_left & *may_go).named("goes");
+    let goes = (run & *waiting.any & any_left & *may_go).named("goes");
     let begins = (goes & searched & !column.any()).named("row_begins");
     let row_loaded = (goes & column.all()).named("row_loaded");
     let per_line_bits = (per_line / sizes.loaded).ilog2();
@@ -84,7 +81,7 @@ pub(super) fn loader(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, BuildErr
 
     // The line in the collector's memory, a cycle after its spheres are counted: the collector may be far away.
     let head = graph.register("head", slot_bits, 0);
-    head.next_if(start | taken, start.select(head.same(0), head.plus(1)));
+    head.next_if(start | *waiting.counted, start.select(head.same(0), head.plus(1)));
     let to_line = 1 + CYCLES_TO_WORD;
     let word = column.low(per_line_bits).delay(to_line).named("word");
     let together = sizes.loaded * SPHERE_BITS;
@@ -112,7 +109,7 @@ pub(super) fn loader(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, BuildErr
     let to_table = !*second;
     graph.output("to_table", to_table.delay(cycles).named("to_table_then"));
     graph.output("head", head.value());
-    graph.output("taken", taken);
+    graph.output("taken", waiting.counted.value());
 
     // The status.
     let told = (run & valid).named("tells");
@@ -147,6 +144,6 @@ pub(super) fn loader(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, BuildErr
     let ended = set_ended & !inside.any() & !on_the_way.any() & !goes;
     graph.output("all_ended", (ended & run & !start).registered("all_ended"));
     let waits = run & any_left;
-    graph.output("waits_for_input", (waits & !*line_waits).registered("waits_for_input"));
+    graph.output("waits_for_input", (waits & !*waiting.any).registered("waits_for_input"));
     graph.finish()
 }

@@ -71,8 +71,14 @@ impl<'a> Store<'a> {
             return Ok(read.delay(1).named(&format!("{name}_word")));
         }
         let always = graph.constant(1, 1);
-        let access =
-            Access { write, write_index: write_place, line: word, read: always, read_index: place, advance: always };
+        let access = Access {
+            write: &[write],
+            write_index: write_place,
+            line: word,
+            read: &[always],
+            read_index: place,
+            advance: &[always],
+        };
         line_memory(graph, self.spec, name, self.depth, &access)
     }
 

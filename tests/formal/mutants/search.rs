@@ -269,7 +269,7 @@ const LOADER: Rows = &[
     (
         "a column passes without a sphere",
         "if (start | goes) column_now",
-        "if (start | line_waits) column_now",
+        "if (start | any_lines_waiting) column_now",
         4,
         "row_is_whole",
     ),
@@ -304,7 +304,7 @@ const LOADER: Rows = &[
         "rows_let_it_go",
     ),
     ("an empty set has a row", "counts_spheres      ? |spheres_left", "counts_spheres      ? 1'b1", 5, "some_are_left"),
-    ("a line of the job before", "line_waits <= ~start & some_wait;", "line_waits <= some_wait;", 8, "no_line_yet"),
+    ("a line of the job before", " any_lines_waiting <= ~start & ", " any_lines_waiting <= ", 8, "no_line_yet"),
     ("the end before the last row", "set_ended & ~|rows_inside &", "set_ended &", 30, "all_are_out"),
 ];
 

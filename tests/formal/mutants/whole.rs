@@ -97,8 +97,8 @@ const FEEDER: Rows = &[
     ("pairs enter after an abort", "wire go_0 = may_go_on & ", "wire go_0 = ", 20, "only_in_a_job"),
     (
         "a line is ready that is not there",
-        "(some_come | line_comes) & any_lines_left",
-        "any_lines_left",
+        "= any_lines_waiting_without_step & any_lines_left",
+        "= any_lines_left",
         16,
         "takes_a_line",
     ),
@@ -202,7 +202,20 @@ const STORE: Rows = &[
         29,
         "fits",
     ),
-    ("sends a line that has left", "take ? ((line_left", "1'b0 ? ((line_left", 30, "sends_a_line"),
+    (
+        "sends a line that has left",
+        "take ? any_stored_after_step",
+        "1'b0 ? any_stored_after_step",
+        30,
+        "sends_a_line",
+    ),
+    (
+        "a line that comes last is not known",
+        "take ? any_stored_after_step : any_stored_without_step",
+        "take ? any_stored_after_step : any_stored",
+        30,
+        "knows_what_is_stored",
+    ),
 ];
 
 const SLOT: Rows = &[(
@@ -242,7 +255,7 @@ const PORT_CONTROL: Rows = &[
 const PORT_COLLECTOR: Rows = &[
     ("every other line is read", "(next_address + 58'd1)", "(next_address + 58'd2)", 12, "rd_in_order"),
     ("the first line is asked for again", "= {epoch, next_slot};", "= {epoch, 2'd0};", 12, "rd_tag_free"),
-    ("ends while a read is out", "idle <= ~|outstanding & ", "idle <= ", 18, "done_acknowledged"),
+    ("ends while a read is out", "~|outstanding & ", "", 18, "done_acknowledged"),
     (
         "read requests do not wait",
         "rd_req_valid <= rd_req_next_valid | ~rd_req_moves;",
@@ -298,7 +311,7 @@ const ANY_COLLECTOR: Rows = &[(
     "rd_in_order",
 )];
 
-const ENDS: Rows = &[("acknowledgements are not counted", "(goes ^ answered)", "goes", 55, "ends")];
+const ENDS: Rows = &[("acknowledgements are not counted", "(free_step ^ answered)", "free_step", 55, "ends")];
 
 pub const TABLES: &[(&str, &str, Rows)] = &[
     ("credits", "contact_afu_control.v", CONTROL),
