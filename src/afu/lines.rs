@@ -35,7 +35,7 @@ fn primitive(spec: &Spec, depth: u32) -> Option<Primitive> {
     spec.delays.memory_primitive.filter(|_| depth <= DEEPEST_PRIMITIVE)
 }
 
-/// What steers a memory of `depth` lines: the register `state`, which takes `next`, or a copy of it for each part of the
+/// What steers a memory of `depth` lines: the register `state`, which takes `next`; or a copy of it for each part of a
 /// line, to be placed beside the primitives that it steers.
 pub(super) fn steering<'g>(spec: &Spec, depth: u32, name: &str, [state, next]: [Signal<'g>; 2]) -> Vec<Signal<'g>> {
     let bits = spec.line_bits;

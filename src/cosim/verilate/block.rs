@@ -47,9 +47,8 @@ pub(super) fn build(design: &Design, tool: &Tool, compiler: &Compiler, cache: &P
         let generated = aside.join("cpp");
         run_verilator(design, tool, aside, &generated, &arguments)?;
         let mut classes = Classes::read(&generated.join(format!("{PREFIX}_classes.mk")))?;
-        classes.model.push(BLOCK.to_owned());
-        let sources = compile::bundle(&generated, &classes.model, PREFIX, "")?;
-        compiler.compile_all(&sources, &compile::model_flags(tool, Trace::Off), aside)?;
+        classes.fast.push(BLOCK.to_owned());
+        compiler.compile_model(&classes, "", &compile::model_flags(tool, Trace::Off), [&generated, aside])?;
         let wrapper = format!("{BLOCK}.sv");
         fs::copy(generated.join(&wrapper), aside.join(&wrapper)).map_err(|e| Error::io("read", &generated, e))?;
         super::write(&aside.join("runtime"), &classes.runtime.join("\n"))?;

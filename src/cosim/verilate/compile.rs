@@ -11,7 +11,8 @@ use std::thread;
 
 use super::{Error, Tool, Trace};
 
-/// Never 0, whatever the Cargo profile: a model at -O0 ran 17 times slower. Above 1 only compilation slows down.
+/// Never 0, whatever the Cargo profile: a model at -O0 ran 17 times slower. Above 1 only compilation slows down. What runs
+/// once is not optimised.
 const OPTIMISATION: u32 = 1;
 
 /// Variables that GCC and Clang read: folders of headers, programs and libraries, and the SDK of a Mac.
@@ -24,6 +25,19 @@ const READ_BY_COMPILERS: [&str; 7] = [
     "MACOSX_DEPLOYMENT_TARGET",
     "SDKROOT",
 ];
+
+/// A file to compile.
+pub(super) struct Source {
+    path: PathBuf,
+    /// A flag behind those of all files.
+    own_flag: Option<&'static str>,
+}
+
+impl From<PathBuf> for Source {
+    fn from(path: PathBuf) -> Self {
+        Self { path, own_flag: None }
+    }
+}
 
 /// The C++ compiler.
 #[derive(Clone, Debug)]
@@ -76,21 +90,36 @@ impl Compiler {
         self.identity.lines().nth(1).unwrap_or("")
     }
 
+    /// Compiles the model's files in `generated` into `folder`, `first` at their head.
+    pub(super) fn compile_model(
+        &self,
+        classes: &Classes,
+        first: &str,
+        flags: &[String],
+        [generated, folder]: [&Path; 2],
+    ) -> Result<Vec<PathBuf>, Error> {
+        let fast = bundle(generated, &classes.fast, "fast", first, jobs())?;
+        let slow = bundle(generated, &classes.slow, "slow", "", 1)?;
+        let slow = slow.into_iter().map(|path| Source { path, own_flag: Some("-O0") });
+        let sources: Vec<_> = fast.into_iter().map(Source::from).chain(slow).collect();
+        self.compile_all(&sources, flags, folder)
+    }
+
     /// Compiles each of `sources` into `folder`, several at a time. The objects are in the order of the sources.
     pub(super) fn compile_all(
         &self,
-        sources: &[PathBuf],
+        sources: &[Source],
         flags: &[String],
         folder: &Path,
     ) -> Result<Vec<PathBuf>, Error> {
-        let object = |source: &Path| folder.join(source.file_name().unwrap_or_default()).with_extension("o");
+        let object = |source: &Source| folder.join(source.path.file_name().unwrap_or_default()).with_extension("o");
         let next = AtomicUsize::new(0);
         let failure = Mutex::new(None);
         let work = || {
             while let Some(source) = sources.get(next.fetch_add(1, Ordering::Relaxed)) {
                 let mut command = self.tool.to_command();
-                command.args(flags).arg("-c").arg(source).arg("-o").arg(object(source));
-                if let Err(error) = run(&mut command, &source.display().to_string()) {
+                command.args(flags).args(source.own_flag).arg("-c").arg(&source.path).arg("-o").arg(object(source));
+                if let Err(error) = run(&mut command, &source.path.display().to_string()) {
                     next.store(sources.len(), Ordering::Relaxed); // the others stop after their current source
                     *failure.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = Some(error);
                 }
@@ -99,7 +128,7 @@ impl Compiler {
         thread::scope(|scope| (0..jobs().min(sources.len())).for_each(|_| drop(scope.spawn(work))));
         match failure.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner()) {
             Some(error) => Err(error),
-            None => Ok(sources.iter().map(|source| object(source)).collect()),
+            None => Ok(sources.iter().map(object).collect()),
         }
     }
 
@@ -203,8 +232,10 @@ pub(super) fn runtime_flags(tool: &Tool, trace: Trace) -> Vec<String> {
 
 /// The C++ files of one model, as Verilator lists them (their names change from version to version).
 pub(super) struct Classes {
-    /// Files of the model, without folder and extension.
-    pub model: Vec<String>,
+    /// Files of the model that run in every cycle, without folder and extension.
+    pub fast: Vec<String>,
+    /// Files of the model that run once.
+    pub slow: Vec<String>,
     /// Files of Verilator's runtime, likewise.
     pub runtime: Vec<String>,
 }
@@ -213,15 +244,14 @@ impl Classes {
     /// Reads `V*_classes.mk`.
     pub(super) fn read(path: &Path) -> Result<Self, Error> {
         let text = fs::read_to_string(path).map_err(|e| Error::io("read", path, e))?;
-        let mut classes = Self { model: Vec::new(), runtime: Vec::new() };
+        let mut classes = Self { fast: Vec::new(), slow: Vec::new(), runtime: Vec::new() };
         let mut list: Option<&mut Vec<String>> = None;
         for line in text.lines() {
             let item = line.trim().trim_end_matches('\\').trim();
             if let Some((variable, _)) = item.split_once("+=") {
                 list = match variable.trim() {
-                    name if name.starts_with("VM_CLASSES_") || name.starts_with("VM_SUPPORT_") => {
-                        Some(&mut classes.model)
-                    }
+                    "VM_CLASSES_FAST" | "VM_SUPPORT_FAST" => Some(&mut classes.fast),
+                    "VM_CLASSES_SLOW" | "VM_SUPPORT_SLOW" => Some(&mut classes.slow),
                     name if name.starts_with("VM_GLOBAL_") => Some(&mut classes.runtime),
                     _ => None,
                 };
@@ -231,7 +261,7 @@ impl Classes {
                 list.push(item.to_owned());
             }
         }
-        if classes.model.is_empty() || classes.runtime.is_empty() {
+        if classes.fast.is_empty() || classes.runtime.is_empty() {
             let what = "lists no class or no runtime file".to_owned();
             return Err(Error::Unexpected { path: path.to_owned(), what });
         }
@@ -241,11 +271,14 @@ impl Classes {
 
 /// Bytes of C++ above which another translation unit pays off. For each unit, reading Verilator's headers takes about
 /// as long as compiling this much.
-const UNIT_BYTES: u64 = 150_000;
+const UNIT_BYTES: u64 = 400_000;
 
-/// Joins many small C++ files into few translation units of about equal size, which `#include` them. `first` is at the
-/// head of the first unit. Returns the units.
-pub(super) fn bundle(folder: &Path, names: &[String], prefix: &str, first: &str) -> Result<Vec<PathBuf>, Error> {
+/// Joins many small C++ files into few translation units of about equal size, at most `most`, which `#include` them.
+/// `first` is at the head of the first unit. Returns the units.
+fn bundle(folder: &Path, names: &[String], kind: &str, first: &str, most: usize) -> Result<Vec<PathBuf>, Error> {
+    if names.is_empty() {
+        return Ok(Vec::new());
+    }
     let mut files = Vec::new();
     for name in names {
         let path = folder.join(format!("{name}.cpp"));
@@ -254,7 +287,7 @@ pub(super) fn bundle(folder: &Path, names: &[String], prefix: &str, first: &str)
     }
     files.sort_by(|a, b| b.cmp(a));
     let total: u64 = files.iter().map(|(bytes, _)| bytes).sum();
-    let units = usize::try_from(total.div_ceil(UNIT_BYTES)).unwrap_or(1).clamp(1, files.len());
+    let units = usize::try_from(total.div_ceil(UNIT_BYTES)).unwrap_or(1).clamp(1, files.len().min(most));
     let mut filled = vec![(0u64, String::new()); units];
     filled[0].1.push_str(first);
     for (bytes, name) in files {
@@ -265,7 +298,7 @@ pub(super) fn bundle(folder: &Path, names: &[String], prefix: &str, first: &str)
     }
     let mut paths = Vec::new();
     for (index, (_, text)) in filled.iter().enumerate() {
-        let path = folder.join(format!("{prefix}_unit_{index}.cpp"));
+        let path = folder.join(format!("{kind}_unit_{index}.cpp"));
         super::write(&path, text)?;
         paths.push(path);
     }

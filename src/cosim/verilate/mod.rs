@@ -234,8 +234,8 @@ fn objects(
     let mut flags = compile::model_flags(tool, design.trace);
     flags.push(format!("-DAFU_TRACE={}", design.trace.number()));
     flags.push(format!("-DAFU_RTL_SHA256=\"{}\"", rtl_sha256(design.files)));
-    let sources = compile::bundle(&generated, &classes.model, PREFIX, "#include \"harness.cpp\"\n")?;
-    objects.extend(compiler.compile_all(&sources, &flags, &generated)?);
+    let harness = "#include \"harness.cpp\"\n";
+    objects.extend(compiler.compile_model(&classes, harness, &flags, [&generated, &generated])?);
     objects.extend(block.into_iter().flat_map(|block| block.objects));
     Ok(objects)
 }
@@ -287,7 +287,7 @@ fn runtime(
             name => tool.include().join(format!("{name}.cpp")),
         };
         write(&of_ours, fst)?;
-        let sources: Vec<PathBuf> = names.iter().map(source).collect();
+        let sources: Vec<_> = names.iter().map(source).map(compile::Source::from).collect();
         compiler.compile_all(&sources, &flags, aside).map(drop)
     })?;
     cache::files_in(&folder, "o")
