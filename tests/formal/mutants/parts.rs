@@ -36,13 +36,7 @@ const COLLECTOR: Rows = &[
     ("lines come again", "{1'b0, marked[3:1]} : marked", "{marked[0], marked[3:1]} : marked", 10, "come_once"),
     ("lines are forgotten", "oldest_goes ? {1'b0, marked[3:1]}", "oldest_goes ? {2'b0, marked[3:2]}", 10, "none_lost"),
     ("a slot is free before its line", "freed <= taken & ~start;", "freed <= taken | start;", 2, "taken_is_reserved"),
-    (
-        "three lines are two",
-        "(lines_to_request[2:0] == 3'd2)",
-        "(lines_to_request[2:0] == 3'd3)",
-        5,
-        "flags_are_right",
-    ),
+    ("three lines are two", "(lines_to_request[2:0] == 3'd2)", "(lines_to_request[2:0] == 3'd3)", 5, "flags_are_right"),
     (
         "asks for a line too many",
         "= any_lines_to_request & ~one_lines_to_request;",

@@ -202,13 +202,7 @@ const STORE: Rows = &[
         29,
         "fits",
     ),
-    (
-        "sends a line that has left",
-        "take ? any_stored_after_step",
-        "1'b0 ? any_stored_after_step",
-        30,
-        "sends_a_line",
-    ),
+    ("sends a line that has left", "take ? any_stored_after_step", "1'b0 ? any_stored_after_step", 30, "sends_a_line"),
     (
         "a line that comes last is not known",
         "take ? any_stored_after_step : any_stored_without_step",
