@@ -38,10 +38,10 @@ fn line(cycles: u32, width: u32, primitive: Primitive) -> Result<Arc<Module>, Bu
     let bits = 32 - (depth - 1).leading_zeros();
     // The oldest word is where the next one goes. Both places are registers: no sum stands before the block. From any
     // values they come right by themselves, so no reset has to reach them.
-    let oldest = graph.zero_register("oldest", bits);
+    let oldest = graph.configured_register("oldest", bits, 1);
     let is_last = oldest.equals(graph.constant(bits, u128::from(depth - 1))).named("is_last");
     oldest.next(oldest.plus(1).gate(!is_last));
-    let newest = graph.zero_register("newest", bits);
+    let newest = graph.configured_register("newest", bits, 0);
     newest.next(oldest.value());
     let value = graph.input("value", width);
     let ports = [("write_index", newest.value()), ("read_index", oldest.value()), ("write_word", value)];

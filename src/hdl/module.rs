@@ -102,8 +102,8 @@ pub enum Op {
 pub enum Start {
     /// The value on reset.
     Reset(u128),
-    /// Zero when the device is configured; a reset does not change it.
-    Zero,
+    /// The value when the device is configured; a reset does not change it.
+    Configured(u128),
     /// Any value; a reset does not change it.
     Any,
 }

@@ -217,11 +217,11 @@ impl Graph {
         self.unreset(name, width, Start::Any)
     }
 
-    /// A register that no reset changes and that is zero when the device is configured, so that a simulation knows it.
-    /// Whatever it holds, the circuit around it must come right by itself.
+    /// A register that no reset changes and that holds `value` when the device is configured. Whatever it holds after a
+    /// fault, the circuit around it must come right by itself.
     #[track_caller]
-    pub fn zero_register(&self, name: &str, width: u32) -> Register<'_> {
-        self.unreset(name, width, Start::Zero)
+    pub fn configured_register(&self, name: &str, width: u32, value: u128) -> Register<'_> {
+        self.unreset(name, width, Start::Configured(value))
     }
 
     #[track_caller]

@@ -33,7 +33,7 @@ module top #(
   reg [2:0] newest_of_6;
   initial newest_of_6 = 3'd0;
   reg [2:0] oldest_of_6;
-  initial oldest_of_6 = 3'd0;
+  initial oldest_of_6 = 3'd1;
   always @(posedge clk) begin
     newest_of_6 <= oldest_of_6;
     oldest_of_6 <= (oldest_of_6 == 3'd5) ? 3'd0 : (oldest_of_6 + 3'd1);
@@ -43,7 +43,7 @@ module top #(
   reg [3:0] newest_of_9;
   initial newest_of_9 = 4'd0;
   reg [3:0] oldest_of_9;
-  initial oldest_of_9 = 4'd0;
+  initial oldest_of_9 = 4'd1;
   always @(posedge clk) begin
     newest_of_9 <= oldest_of_9;
     oldest_of_9 <= (oldest_of_9 == 4'd8) ? 4'd0 : (oldest_of_9 + 4'd1);
@@ -53,7 +53,7 @@ module top #(
   reg [3:0] newest_of_16;
   initial newest_of_16 = 4'd0;
   reg [3:0] oldest_of_16;
-  initial oldest_of_16 = 4'd0;
+  initial oldest_of_16 = 4'd1;
   always @(posedge clk) begin
     newest_of_16 <= oldest_of_16;
     oldest_of_16 <= oldest_of_16 + 4'd1;

@@ -120,6 +120,7 @@ impl Evaluator {
             scopes: flat.scopes,
             settled: false,
         };
+        evaluator.state.configure(&mut evaluator.words);
         evaluator.reset();
         Ok(evaluator)
     }

@@ -55,6 +55,8 @@ pub(super) struct State {
     memories: Vec<Memory>,
     reads: Vec<Read>,
     resets: Vec<(u32, u64)>,
+    /// The same for registers that have a value when the device is configured.
+    configured: Vec<(u32, u64)>,
     sampled: Vec<u64>,
 }
 
@@ -144,19 +146,31 @@ impl Elements {
             reads.push(Read { memory: index, address: operand(id, 0)[0], enable });
         }
 
-        let mut resets = Vec::new();
+        let (mut resets, mut configured) = (Vec::new(), Vec::new());
         for &id in self.always.iter().chain(&self.enabled) {
-            if let (Op::Register { start: Start::Reset(value), .. }, Link::Own) = (&flat.node(id).op, &flat.links[id]) {
+            if let (Op::Register { start, .. }, Link::Own) = (&flat.node(id).op, &flat.links[id]) {
+                let (value, of) = match start {
+                    Start::Reset(value) => (value, &mut resets),
+                    Start::Configured(value) => (value, &mut configured),
+                    Start::Any => continue,
+                };
                 let part = |index: usize| if index < 2 { (value >> (64 * index)) as u64 } else { 0 };
-                resets.extend(at(id).into_iter().enumerate().map(|(index, place)| (place, part(index))));
+                of.extend(at(id).into_iter().enumerate().map(|(index, place)| (place, part(index))));
             }
         }
         let sampled = vec![0; self.words(flat, lowered).len()];
-        State { always, enabled, rings, memories, reads, resets, sampled }
+        State { always, enabled, rings, memories, reads, resets, configured, sampled }
     }
 }
 
 impl State {
+    /// Sets every register that has a value when the device is configured.
+    pub(super) fn configure(&self, words: &mut [u64]) {
+        for &(place, value) in &self.configured {
+            words[place as usize] = value;
+        }
+    }
+
     /// Sets every register to its reset value, if it has one.
     pub(super) fn reset(&self, words: &mut [u64]) {
         for &(place, value) in &self.resets {

@@ -150,8 +150,8 @@ impl<'a> Sections<'a> {
         if !self.text.names.is_port[id.index()] {
             let kept = if is_copy(self.module, id) { COPY_ATTRIBUTES } else { "" };
             out += &format!("  {kept}reg {}{name};\n", range(node.width));
-            if matches!(node.op, Op::Register { start: Start::Zero, .. }) {
-                out += &format!("  initial {name} = {};\n", constant(node.width, 0));
+            if let Op::Register { start: Start::Configured(value), .. } = node.op {
+                out += &format!("  initial {name} = {};\n", constant(node.width, value));
             }
         }
         out
@@ -212,7 +212,7 @@ impl<'a> Sections<'a> {
                             reset += &format!("      {name} <= {};\n", constant(node.width, *value));
                             running += &format!("      {line}");
                         }
-                        Start::Zero | Start::Any => data += &format!("    {line}"),
+                        Start::Configured(_) | Start::Any => data += &format!("    {line}"),
                     }
                 }
                 _ => {}
@@ -267,8 +267,8 @@ impl<'a> Sections<'a> {
             let clock = self.module.clock();
             out +=
                 &format!("\n  // Places of the newest and of the oldest word in the delay lines of {depth} cycles.\n");
-            for place in [&newest, &oldest] {
-                out += &format!("  reg {}{place};\n  initial {place} = {zero};\n", range(width));
+            for (place, first) in [(&newest, &zero), (&oldest, &one)] {
+                out += &format!("  reg {}{place};\n  initial {place} = {first};\n", range(width));
             }
             out += &format!("  always @(posedge {clock}) begin\n    {newest} <= {oldest};\n");
             let next = if depth.is_power_of_two() {
