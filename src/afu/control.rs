@@ -52,10 +52,13 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let [read_failed, write_failed] = ["read_failed", "write_failed"].map(input);
     let [read_answered, write_answered] = ["read_answered", "write_answered"].map(input);
     let [read_responded, write_responded] = ["read_responded", "write_responded"].map(input);
-    let response = (read_answered | write_answered).registered("response_heard");
-    // A response that answers no request.
+    let answered = (read_answered | write_answered).named("response");
+    let response = answered.registered("response_heard");
+    // A response that answers no request. What arrives as a job completes is used only after the next one begins.
     let unexpected = (read_responded & !read_answered) | (write_responded & !write_answered);
-    let unexpected = unexpected.registered("unexpected_heard");
+    let unexpected = unexpected.named("unexpected");
+    let begins = graph.wire("begins", 1);
+    let unexpected = (unexpected & !begins).registered("unexpected_heard");
     let link_idle_now = (input("read_idle") & input("write_idle")).named("link_idle");
     let link_idle = link_idle_now.registered("link_idle_heard");
     let [waits_for_input, waits_for_output] = ["waits_for_input", "waits_for_output"].map(input);
@@ -71,9 +74,8 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let copies = is_busy.copies("busy", 3);
     let (busy, keeps_values, keeps_addresses) = (copies[0], copies[1], copies[2]);
     let accept = (start & !busy).named("accept");
-    // One copy for control, and one for each count of cycles.
-    let first_cycles = accept.copies("first_cycle", 4);
-    let first_cycle = first_cycles[0];
+    // One copy for each count of cycles.
+    let first_cycles = accept.copies("first_cycle", 3);
     let takes_values = (start & !keeps_values).named("takes_values");
 
     // The job is held from its start; everything downstream begins one cycle later. The addresses are wide, so they
@@ -103,25 +105,24 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let stopping = graph.register("cycles_draining", CYCLES_TO_STOP.ilog2(), 0);
     let stopped = stopping.all().named("stopped");
     stopping.next(stopped.select(*stopping, stopping.plus(1)).gate(*draining));
-    let stops = (*draining & !stopping.any()).named("begins_to_drain");
 
     // Watchdog: cycles since the last response while a request is outstanding. The count restarts when the job is to
     // end. The register does not make a timely response late.
     let silence = graph.register("silence", COUNT_BITS, 0);
     let quiet = (response | link_idle.registered("link_idle_before")).named("link_is_alive");
-    let restarts = (quiet | !busy | stops).named("silence_restarts");
+    let restarts = graph.register("silence_restarts", 1, 1);
     silence.next(restarts.select(silence.same(0), silence.plus(1)));
     // It is compared one cycle before it is used: it will be above the watchdog's cycles.
-    let is_over = (!restarts & *has_watchdog & silence.at_least(*job_watchdog)).registered("silence_is_over");
+    let is_over = (!*restarts & *has_watchdog & silence.at_least(*job_watchdog)).registered("silence_is_over");
     let expires = (busy & !quiet & is_over).named("expires");
     let expired = expires.registered("expired");
 
     // The end.
     let complete = graph.register("completes", 1, 0);
     // What is no job is refused one cycle after its start.
+    let refuses = (accept & (has_unknown_mode | is_too_large)).registered("refuses");
     let has_unknown_mode = has_unknown_mode.delay(1).named("has_unknown_mode");
     let is_too_large = is_too_large.delay(1).named("is_too_large");
-    let refuses = (first_cycle & (has_unknown_mode | is_too_large)).named("refuses");
     // What ends a job early, in order of precedence. A refusal comes before all: it is known as the job begins to run.
     // The next three are known with their code from a register.
     let code_of = |error: JobError| graph.constant(JobError::BITS, error.code().into());
@@ -129,8 +130,6 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let told_causes = [(write_failed, JobError::Write), (read_failed, JobError::Read), (abort, JobError::Aborted)];
     let told_cause = told_causes.into_iter().fold(none, |other, (fails, error)| fails.select(code_of(error), other));
     let told_cause = told_cause.gate(*running).registered("told_cause");
-    // What arrives as a job completes is used only after the next one begins.
-    let unexpected = (unexpected & !*begin).named("is_unexpected");
     let watched = unexpected.select(code_of(JobError::Response), expired.select(code_of(JobError::Watchdog), none));
     let cause = told_cause.any().select(told_cause, watched);
     let refusal = (is_too_large & !has_unknown_mode).select(code_of(JobError::Table), code_of(JobError::Mode));
@@ -154,7 +153,7 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     // A job begins once the delay lines are filled, and runs one cycle later. Each part has a copy of the beginning.
     // While one waits nothing is outstanding, so only a registered cause ends it.
     let still_waits = (*waits & !fails).named("still_waits");
-    let begins = ((accept | still_waits) & filled).named("begins");
+    begins.drive((accept | still_waits) & filled);
     begin.next(begins);
     let names = if takes_spheres { &PARTS_OF_SPHERES[..] } else { &PARTS };
     let parts = begins.copies("begin_job", names.len() as u32);
@@ -165,6 +164,7 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     waits.next((accept | keeps_waiting) & !filled);
     run.next((*run | *begin) & goes_on);
     draining.next(failing | (*draining & !drained));
+    restarts.next(answered | link_idle | failing | !is_busy);
     done.next(!accept & (*done | complete | drained));
     let failed = failing.select(cause, *error).named("failed");
     let mut ended = failed;
@@ -187,7 +187,7 @@ pub(super) fn control(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
         .map(|(name, waits)| (accept | (waits & *run)).registered(name));
     let counts =
         [(told.cycles_busy, busy, 1), (told.cycles_input, counts_input, 0), (told.cycles_output, counts_output, 0)];
-    for ((port, counts, first), restart) in counts.into_iter().zip(&first_cycles[1..]) {
+    for ((port, counts, first), restart) in counts.into_iter().zip(&first_cycles) {
         graph.output(port.name, cycles(&graph, port.name, port.bits, [*restart, counts], first));
     }
     graph.output("busy", busy);

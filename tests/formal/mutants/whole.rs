@@ -232,8 +232,8 @@ const PORT_CONTROL: Rows = &[
     ("done and still busy", "(busy_copy_0 & ~completes & ~drained)", "(busy_copy_0 & ~drained)", 13, "done_known"),
     (
         "a response that nobody waits for is no error",
-        "wire is_unexpected = unexpected_heard & ~begin_job;",
-        "wire is_unexpected = 1'b0;",
+        "unexpected_heard <= unexpected & ~begins;",
+        "unexpected_heard <= 1'b0;",
         40,
         "surprise_is_told",
     ),
