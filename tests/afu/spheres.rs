@@ -13,6 +13,7 @@ use contact_afu::synth::Target;
 use contact_afu::verify::{Bench, SpheresVerdict, VerifyError};
 
 use crate::primitives::primitives;
+use crate::side_by_side::side_by_side;
 
 fn config(search: Search) -> Config {
     Config {
@@ -217,7 +218,7 @@ fn found(config: &Config, faults: &[(&str, &str, &str, &str)]) {
     let afu = Afu::generate(Spec::from(config.clone())).unwrap();
     let crowd = Spheres { first: vec![Sphere::new([1.0, 2.0, 3.0, 0.5]); 300], second: None };
     let sets = [sorted(set("gas:500:0.4")), tangents(), set("probes:100:300"), crowd];
-    for &(what, file, old, new) in faults {
+    side_by_side(faults, |&(what, file, old, new)| {
         let folder = tempfile::tempdir().unwrap();
         write(&afu, folder.path());
         plant(&folder.path().join(file), old, new);
@@ -226,7 +227,7 @@ fn found(config: &Config, faults: &[(&str, &str, &str, &str)]) {
         let is_found =
             jobs.into_iter().any(|(spheres, link)| run(&bench, spheres, link, 1).map_or(true, |v| !v.is_good()));
         assert!(is_found, "{what}: {file}");
-    }
+    });
 }
 
 /// As synthesis for an ECP5 reads it: every block memory is a model that gives wrong bits for a word that is read in

@@ -9,15 +9,16 @@ mod mutants;
 mod proofs;
 mod public;
 mod search;
+#[path = "../support/side_by_side.rs"]
+mod side_by_side;
 mod tools;
 
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::thread;
 use std::time::Instant;
 
 use mutants::Mutant;
 use proofs::{Proof, proofs};
+use side_by_side::side_by_side;
 use tools::Verdict;
 
 /// An error text if the proof does not hold.
@@ -42,18 +43,12 @@ fn none(errors: Vec<String>) {
     assert!(errors.is_empty(), "{errors:#?}");
 }
 
-/// What `check` says of each item, on as many threads as there are cores.
-fn side_by_side<T: Sync>(items: &[T], check: impl Fn(&T) -> Option<String> + Sync) -> Vec<String> {
-    let next = AtomicUsize::new(0);
+/// The errors that `check` finds in the items, on as many threads as there are cores.
+fn errors_of<T: Sync>(items: &[T], check: impl Fn(&T) -> Option<String> + Sync) -> Vec<String> {
     let errors = Mutex::new(Vec::new());
-    let work = || {
-        while let Some(item) = items.get(next.fetch_add(1, Ordering::Relaxed)) {
-            let error = check(item);
-            errors.lock().expect("no push panics").extend(error);
-        }
-    };
-    thread::scope(|scope| {
-        (0..thread::available_parallelism().map_or(1, usize::from)).for_each(|_| drop(scope.spawn(work)))
+    side_by_side(items, |item| {
+        let error = check(item);
+        errors.lock().expect("no push panics").extend(error);
     });
     errors.into_inner().expect("no push panics")
 }
@@ -95,12 +90,12 @@ fn every_property_has_a_mutant() {
 #[ignore = "minutes: scripts/prove"]
 fn every_proof_holds() {
     let chosen: Vec<Proof> = proofs().into_iter().filter(is_chosen).collect();
-    none(side_by_side(&chosen, fails));
+    none(errors_of(&chosen, fails));
 }
 
 #[test]
 #[ignore = "minutes: scripts/prove"]
 fn every_mutant_falls() {
     let chosen: Vec<Mutant> = mutants::all().into_iter().filter(|mutant| is_chosen(&mutant.proof())).collect();
-    none(side_by_side(&chosen, stands));
+    none(errors_of(&chosen, stands));
 }

@@ -11,8 +11,8 @@ use std::thread;
 
 use super::{Error, Tool, Trace};
 
-/// Never 0, whatever the Cargo profile: a model at -O0 ran 17 times slower. Above 1 only compilation slows down. What runs
-/// once is not optimised.
+/// Never 0, whatever the Cargo profile: a model at -O0 ran 17 times slower. Above 1 only compilation slows down. Only what
+/// runs once is not optimised.
 const OPTIMISATION: u32 = 1;
 
 /// Variables that GCC and Clang read: folders of headers, programs and libraries, and the SDK of a Mac.
