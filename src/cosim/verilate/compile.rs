@@ -11,7 +11,7 @@ use std::thread;
 
 use super::{Error, Tool, Trace};
 
-/// Never 0, whatever the Cargo profile: a model at -O0 ran 17 times slower. Above 1 only compilation slows down. Only what
+/// Never 0, whatever the Cargo profile: a model at -O0 ran 17 times slower. Above 1 only compilation slows down. What
 /// runs once is not optimised.
 const OPTIMISATION: u32 = 1;
 
