@@ -54,7 +54,7 @@ module contact_afu_control (
   // ---- state ----
   reg [31:0] cycles_busy_high;
   reg [31:0] cycles_busy_low;
-  (* keep = "true", dont_merge *) reg first_cycle_copy_1;
+  (* keep = "true", dont_merge *) reg first_cycle_copy_0;
   (* keep = "true", dont_merge *) reg busy_copy_0;
   reg completes;
   reg draining;
@@ -66,6 +66,7 @@ module contact_afu_control (
   reg response_heard;
   reg link_idle_before;
   reg silence_is_over;
+  reg silence_restarts;
   reg has_watchdog;
   reg [31:0] silence;
   reg [31:0] job_watchdog;
@@ -74,20 +75,19 @@ module contact_afu_control (
   reg running;
   reg fails;
   reg unexpected_heard;
-  reg begin_job;
-  (* keep = "true", dont_merge *) reg first_cycle_copy_0;
-  reg has_unknown_mode;
+  reg refuses;
   reg waits_to_begin;
   reg filled_heard;
+  reg begin_job;
   reg cycles_busy_low_is_full;
   reg [31:0] cycles_input_high;
   reg [31:0] cycles_input_low;
-  (* keep = "true", dont_merge *) reg first_cycle_copy_2;
+  (* keep = "true", dont_merge *) reg first_cycle_copy_1;
   reg counts_input;
   reg cycles_input_low_is_full;
   reg [31:0] cycles_output_high;
   reg [31:0] cycles_output_low;
-  (* keep = "true", dont_merge *) reg first_cycle_copy_3;
+  (* keep = "true", dont_merge *) reg first_cycle_copy_2;
   reg counts_output;
   reg cycles_output_low_is_full;
   reg [3:0] told_cause;
@@ -109,23 +109,21 @@ module contact_afu_control (
   wire is_given_up = ~accept & (given_up | gives_up);
   wire link_is_alive = response_heard | link_idle_before;
   wire expires = busy_copy_0 & ~link_is_alive & silence_is_over;
-  wire begins_to_drain = draining & ~|cycles_draining;
-  wire silence_restarts = link_is_alive | ~busy_copy_0 | begins_to_drain;
-  wire link_idle = read_idle & write_idle;
-  wire is_unexpected = unexpected_heard & ~begin_job;
-  wire refuses = first_cycle_copy_0 & has_unknown_mode;
-  wire failing = running & (fails | is_unexpected | refuses) & ~completes;
+  wire response = read_answered | write_answered;
+  wire failing = running & (fails | unexpected_heard | refuses) & ~completes;
+  wire unexpected = (read_responded & ~read_answered) | (write_responded & ~write_answered);
   wire still_waits = waits_to_begin & ~fails;
   wire begins = (accept | still_waits) & filled_heard;
   wire keeps_waiting = waits_to_begin & ~failing;
   wire goes_on = running & ~completes & ~failing;
+  wire link_idle = read_idle & write_idle;
   assign cycles_input = {cycles_input_high, cycles_input_low};
   assign cycles_output = {cycles_output_high, cycles_output_low};
   wire [3:0] cause =
-      refuses       ? 4'd5 :
-      |told_cause   ? told_cause :
-      is_unexpected ? 4'd7 :
-      expired       ? 4'd4 :
+      refuses          ? 4'd5 :
+      |told_cause      ? told_cause :
+      unexpected_heard ? 4'd7 :
+      expired          ? 4'd4 :
       4'd0;
   wire [3:0] failed = failing ? cause : error;
   wire [3:0] ended = gives_up ? 4'd4 : failed;
@@ -134,7 +132,6 @@ module contact_afu_control (
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
-    has_unknown_mode <= |mode;
     if (~busy_copy_2) job_source <= source;
     if (~busy_copy_2) job_destination <= destination;
     if (takes_values) last_place <= count[0] - 1'b1;
@@ -153,6 +150,7 @@ module contact_afu_control (
       response_heard <= 1'b0;
       link_idle_before <= 1'b0;
       silence_is_over <= 1'b0;
+      silence_restarts <= 1'b1;
       has_watchdog <= 1'b0;
       silence <= 32'd0;
       job_watchdog <= 32'd0;
@@ -160,10 +158,11 @@ module contact_afu_control (
       running <= 1'b0;
       fails <= 1'b0;
       unexpected_heard <= 1'b0;
-      begin_job <= 1'b0;
+      refuses <= 1'b0;
       waits_to_begin <= 1'b0;
       filled_heard <= 1'b0;
       run <= 1'b0;
+      begin_job <= 1'b0;
       cycles_busy_low_is_full <= 1'b0;
       cycles_input_high <= 32'd0;
       cycles_input_low <= 32'd0;
@@ -180,9 +179,9 @@ module contact_afu_control (
       job_epoch <= 4'd0;
       job_lines <= 32'd0;
     end else begin
-      if (busy_copy_0 & (first_cycle_copy_1 | cycles_busy_low_is_full))
-        cycles_busy_high <= first_cycle_copy_1 ? 32'd0 : (cycles_busy_high + 32'd1);
-      if (busy_copy_0) cycles_busy_low <= first_cycle_copy_1 ? 32'd1 : (cycles_busy_low + 32'd1);
+      if (busy_copy_0 & (first_cycle_copy_0 | cycles_busy_low_is_full))
+        cycles_busy_high <= first_cycle_copy_0 ? 32'd0 : (cycles_busy_high + 32'd1);
+      if (busy_copy_0) cycles_busy_low <= first_cycle_copy_0 ? 32'd1 : (cycles_busy_low + 32'd1);
       completes <= run & packer_done & dispatched & link_idle & goes_on;
       draining <= failing | (draining & ~drained);
       cycles_draining <= draining ? (stopped ? cycles_draining : (cycles_draining + 3'd1)) : 3'd0;
@@ -190,33 +189,35 @@ module contact_afu_control (
       link_idle_heard <= link_idle;
       given_up <= is_given_up;
       expired <= expires;
-      response_heard <= read_answered | write_answered;
+      response_heard <= response;
       link_idle_before <= link_idle_heard;
       silence_is_over <= ~silence_restarts & has_watchdog & (silence >= job_watchdog);
+      silence_restarts <= response | link_idle_heard | failing | ~is_busy;
       has_watchdog <= accept ? |watchdog : (has_watchdog | needs_watchdog);
       silence <= silence_restarts ? 32'd0 : (silence + 32'd1);
       if (~busy_copy_1 | needs_watchdog) job_watchdog <= needs_watchdog ? 32'h10000 : watchdog;
       needs_watchdog <= draining & ~has_watchdog;
       running <= accept | goes_on;
       fails <= (running & (abort_job | read_failed | write_failed)) | expires;
-      unexpected_heard <= (read_responded & ~read_answered) | (write_responded & ~write_answered);
-      begin_job <= begins;
+      unexpected_heard <= unexpected & ~begins;
+      refuses <= accept & |mode;
       waits_to_begin <= (accept | keeps_waiting) & ~filled_heard;
       filled_heard <= filled;
       run <= (run | begin_job) & goes_on;
-      if (busy_copy_0) cycles_busy_low_is_full <= ~first_cycle_copy_1 & (&cycles_busy_low[31:1] & ~cycles_busy_low[0]);
-      if (counts_input & (first_cycle_copy_2 | cycles_input_low_is_full))
-        cycles_input_high <= first_cycle_copy_2 ? 32'd0 : (cycles_input_high + 32'd1);
-      if (counts_input) cycles_input_low <= first_cycle_copy_2 ? 32'd0 : (cycles_input_low + 32'd1);
+      begin_job <= begins;
+      if (busy_copy_0) cycles_busy_low_is_full <= ~first_cycle_copy_0 & (&cycles_busy_low[31:1] & ~cycles_busy_low[0]);
+      if (counts_input & (first_cycle_copy_1 | cycles_input_low_is_full))
+        cycles_input_high <= first_cycle_copy_1 ? 32'd0 : (cycles_input_high + 32'd1);
+      if (counts_input) cycles_input_low <= first_cycle_copy_1 ? 32'd0 : (cycles_input_low + 32'd1);
       counts_input <= accept | (waits_for_input & run);
       if (counts_input) cycles_input_low_is_full <=
-          ~first_cycle_copy_2 & (&cycles_input_low[31:1] & ~cycles_input_low[0]);
-      if (counts_output & (first_cycle_copy_3 | cycles_output_low_is_full))
-        cycles_output_high <= first_cycle_copy_3 ? 32'd0 : (cycles_output_high + 32'd1);
-      if (counts_output) cycles_output_low <= first_cycle_copy_3 ? 32'd0 : (cycles_output_low + 32'd1);
+          ~first_cycle_copy_1 & (&cycles_input_low[31:1] & ~cycles_input_low[0]);
+      if (counts_output & (first_cycle_copy_2 | cycles_output_low_is_full))
+        cycles_output_high <= first_cycle_copy_2 ? 32'd0 : (cycles_output_high + 32'd1);
+      if (counts_output) cycles_output_low <= first_cycle_copy_2 ? 32'd0 : (cycles_output_low + 32'd1);
       counts_output <= accept | (waits_for_output & run);
       if (counts_output) cycles_output_low_is_full <=
-          ~first_cycle_copy_3 & (&cycles_output_low[31:1] & ~cycles_output_low[0]);
+          ~first_cycle_copy_2 & (&cycles_output_low[31:1] & ~cycles_output_low[0]);
       done <= ~accept & (done | completes | drained);
       error <= accept ? 4'd0 : ended;
       told_cause <= running ? (abort_job ? 4'd1 : read_failed ? 4'd2 : write_failed ? 4'd3 : 4'd0) : 4'd0;
@@ -227,12 +228,11 @@ module contact_afu_control (
   end
   (* keep = "true" *) always @(posedge clk) begin
     if (rst) begin
-      first_cycle_copy_1 <= 1'b0;
+      first_cycle_copy_0 <= 1'b0;
       busy_copy_0 <= 1'b0;
       busy_copy_1 <= 1'b0;
-      first_cycle_copy_0 <= 1'b0;
+      first_cycle_copy_1 <= 1'b0;
       first_cycle_copy_2 <= 1'b0;
-      first_cycle_copy_3 <= 1'b0;
       begin_job_copy_0 <= 1'b0;
       begin_job_copy_1 <= 1'b0;
       begin_job_copy_2 <= 1'b0;
@@ -240,12 +240,11 @@ module contact_afu_control (
       begin_job_copy_4 <= 1'b0;
       busy_copy_2 <= 1'b0;
     end else begin
-      first_cycle_copy_1 <= accept;
+      first_cycle_copy_0 <= accept;
       busy_copy_0 <= is_busy;
       busy_copy_1 <= is_busy;
-      first_cycle_copy_0 <= accept;
+      first_cycle_copy_1 <= accept;
       first_cycle_copy_2 <= accept;
-      first_cycle_copy_3 <= accept;
       begin_job_copy_0 <= begins;
       begin_job_copy_1 <= begins;
       begin_job_copy_2 <= begins;
