@@ -85,8 +85,8 @@ pub fn verilog(module: &Arc<Module>, form: As) -> Files {
             files.insert(0, path);
             return Files { _folder: folder, files, language: "-g2012" };
         }
-        // Only one kind of flip-flop: resets and enables become gates too.
-        As::Gates => format!("synth -flatten -noabc -top {top}; dfflegalize -cell $_DFF_P_ x; abc; opt_clean"),
+        // Only one kind of flip-flop, which begins with either value: resets and enables become gates too.
+        As::Gates => format!("synth -flatten -noabc -top {top}; dfflegalize -cell $_DFF_P_ 01; abc; opt_clean"),
         As::Ecp5Apart => format!("synth_ecp5 -noflatten -top {top}"),
         As::Ecp5 => format!("synth_ecp5 -top {top}"),
     };
