@@ -12,8 +12,8 @@ pub(super) struct Countdown<'g> {
     /// True if exactly one is left.
     pub(super) one: Signal<'g>,
     flags: [Register<'g>; 2],
-    /// True if there were so many a cycle ago that some are left whatever was counted since: counted down, or as many
-    /// as they were at the start.
+    /// True if there were so many a cycle ago that more than three are left whatever was counted since: counted down,
+    /// or as many as they were at the start.
     many: [Register<'g>; 2],
     has_many: Signal<'g>,
     counts: Register<'g>,

@@ -202,32 +202,34 @@ impl Graph {
     /// A register that takes `reset` on reset.
     #[track_caller]
     pub fn register(&self, name: &str, width: u32, reset: u128) -> Register<'_> {
-        let place = Location::caller();
-        if width < 128 && reset >> width != 0 {
-            self.error(format!("register `{name}`: reset value {reset} does not fit {width} bits"), place);
-        }
-        Register(
-            self.fresh(Op::Register { start: Start::Reset(reset), is_copy: false }, width, vec![], place).named(name),
-        )
+        self.begins(name, width, Start::Reset(reset))
     }
 
     /// A register for data, which is not reset.
     #[track_caller]
     pub fn data_register(&self, name: &str, width: u32) -> Register<'_> {
-        self.unreset(name, width, Start::Any)
+        self.begins(name, width, Start::Any)
     }
 
     /// A register that no reset changes and that holds `value` when the device is configured. Whatever it holds after a
     /// fault, the circuit around it must come right by itself.
     #[track_caller]
     pub fn configured_register(&self, name: &str, width: u32, value: u128) -> Register<'_> {
-        self.unreset(name, width, Start::Configured(value))
+        self.begins(name, width, Start::Configured(value))
     }
 
     #[track_caller]
-    fn unreset(&self, name: &str, width: u32, start: Start) -> Register<'_> {
-        let op = Op::Register { start, is_copy: false };
-        Register(self.fresh(op, width, vec![], Location::caller()).named(name))
+    fn begins(&self, name: &str, width: u32, start: Start) -> Register<'_> {
+        let place = Location::caller();
+        let value = match start {
+            Start::Reset(value) => Some(("reset value", value)),
+            Start::Configured(value) => Some(("configured value", value)),
+            Start::Any => None,
+        };
+        if let Some((kind, value)) = value.filter(|(_, value)| width < 128 && value >> width != 0) {
+            self.error(format!("register `{name}`: {kind} {value} does not fit {width} bits"), place);
+        }
+        Register(self.fresh(Op::Register { start, is_copy: false }, width, vec![], place).named(name))
     }
 
     /// A memory of `depth` ≥ 2 words of `width` bits; its addresses have ⌈log2 depth⌉ bits. It is never reset.

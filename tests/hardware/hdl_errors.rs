@@ -94,6 +94,10 @@ fn ports_names_and_parameters_are_checked() {
 
 #[test]
 fn state_is_checked() {
+    bad!("register `r`: configured value 4 does not fit 2 bits", |g, a, b, c| {
+        let r = g.configured_register("r", 2, 4);
+        r.next(r.value());
+    });
     bad!("register `r`: reset value 4 does not fit 2 bits", |g, a, b, c| {
         let r = g.register("r", 2, 4);
         r.next(a.low(2));

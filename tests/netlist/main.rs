@@ -107,6 +107,31 @@ fn every_profile_in_four_states() {
     }
 }
 
+/// Whatever the places of a delay line hold in the beginning, even beyond its last word, they come right within the
+/// first 16 cycles: no reset reaches them. A place that does not follow the other one stays wrong.
+#[test]
+fn a_delay_line_comes_right_from_any_places() {
+    const CYCLES: u32 = 6;
+    let graph = Graph::new("line");
+    graph.output("delayed", graph.input("value", 16).delay(CYCLES));
+    let module = graph.finish().expect("a sound module");
+    let words: Vec<Vector> = (1..40).map(|word| vec![(word, 16)]).collect();
+    let wanted: Vec<String> = words.iter().map(simulate::bits).collect();
+    let found = |newest: u32, oldest: u32, next: &str| {
+        let files = verilog(&module, As::Printed)
+            .spoilt("initial newest_of_6 = 3'd0;", &format!("initial newest_of_6 = 3'd{newest};"))
+            .spoilt("initial oldest_of_6 = 3'd1;", &format!("initial oldest_of_6 = 3'd{oldest};"))
+            .spoilt("newest_of_6 <= oldest_of_6;", next);
+        simulate(&module, &files, CYCLES, &words)
+    };
+    for (newest, oldest) in (0..8).flat_map(|newest| (0..8).map(move |oldest| (newest, oldest))) {
+        assert_eq!(found(newest, oldest, "newest_of_6 <= oldest_of_6;")[16..], wanted[16..], "{newest}, {oldest}");
+    }
+    let alone = "newest_of_6 <= (newest_of_6 == 3'd5) ? 3'd0 : (newest_of_6 + 3'd1);";
+    assert_eq!(found(0, 1, alone), wanted);
+    assert_ne!(found(0, 3, alone)[16..], wanted[16..]);
+}
+
 /// Copies of a register survive synthesis, and equal registers that are no copies become one.
 #[test]
 fn copies_of_a_register_are_kept() {
