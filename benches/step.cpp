@@ -40,11 +40,11 @@ extern "C" const afu_table *open_model(const char *library) {
     return model ? model() : nullptr;
 }
 
-// Runs `pairs` pairs from the lines at `source` into `destination` on a new instance, over a link that answers in the
-// next cycle. Returns the number of cycles from start to done, or 0 on an error or after `limit` cycles. Stores their
+// Runs `pairs` pairs from the lines at `source` into `destination` on a new instance, `idle` cycles after its reset, over a
+// link that answers in the next cycle. Returns the number of cycles from start to done, or 0 on an error or after `limit` cycles. Stores their
 // CPU time in `seconds`.
 extern "C" uint64_t run_job(const afu_table *table, const uint32_t *source, uint32_t *destination, uint32_t pairs,
-                            uint64_t limit, double *seconds) {
+                            uint64_t idle, uint64_t limit, double *seconds) {
     afu_instance *afu = table->create(0);
     if (!afu) return 0;
     Ports ports;
@@ -65,6 +65,7 @@ extern "C" uint64_t run_job(const afu_table *table, const uint32_t *source, uint
     ports.at<uint8_t>("rst") = 1;
     table->clock(afu, clk, 4);
     ports.at<uint8_t>("rst") = 0;
+    table->clock(afu, clk, idle);
     ports.at<uint8_t>("rd_req_ready") = 1;
     ports.at<uint8_t>("wr_req_ready") = 1;
     const double begun = cpu_seconds();
