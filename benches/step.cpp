@@ -40,9 +40,9 @@ extern "C" const afu_table *open_model(const char *library) {
     return model ? model() : nullptr;
 }
 
-// Runs `pairs` pairs from the lines at `source` into `destination` on a new instance, `idle` cycles after its reset, over a
-// link that answers in the next cycle. Returns the number of cycles from start to done, or 0 on an error or after `limit` cycles. Stores their
-// CPU time in `seconds`.
+// Runs `pairs` pairs from the lines at `source` into `destination` on a new instance, `idle` cycles after its reset,
+// over a link that answers in the next cycle. Returns the number of cycles from start to done, or 0 on an error or after
+// `limit` cycles. Stores their CPU time in `seconds`.
 extern "C" uint64_t run_job(const afu_table *table, const uint32_t *source, uint32_t *destination, uint32_t pairs,
                             uint64_t idle, uint64_t limit, double *seconds) {
     afu_instance *afu = table->create(0);
