@@ -48,7 +48,8 @@ pub struct Synth {
     /// Seeds of the placer: 1,2,3 or 1..8 (includes 8); the clock is the median over them
     #[arg(long, value_name = "LIST", default_value = "1,2,3")]
     seeds: List,
-    /// nextpnr's placer: heap, its own choice, or static, whose wires are shorter in a large design
+    /// nextpnr's placer: heap, its own choice; static, whose wires are shorter in a large design; or floorplan: static,
+    /// with multipliers and block memories placed before, by how data flow between them (ECP5)
     #[arg(long, value_name = "NAME", default_value_t, conflicts_with_all = ["no_route", "fit", "page", "intervals"])]
     placer: Placer,
     /// Count cells, without place and route
@@ -88,9 +89,16 @@ pub fn run(options: &Synth) -> Result<(), Failure> {
     if let Some(file) = &options.fit {
         return fit(file, target, &options.seeds.0);
     }
+    let placer = options.placer;
+    if !placer.serves(target) {
+        return Err(Failure::new(
+            Kind::Usage,
+            format!("--placer {placer} is for --target ecp5, not {target}: use heap or static"),
+        ));
+    }
     let config = options.one.at_full_rate(options.one.machine.config_for_any_target()?, "ideal")?;
     let seeds = if options.no_route { Vec::new() } else { options.seeds.0.clone() };
-    let how = synth::Options { target, seeds, placer: options.placer };
+    let how = synth::Options { target, seeds, placer };
     let units = units(options, &config, target)?;
     let out = options.out.as_deref();
     if let Some(folder) = out {

@@ -8,6 +8,7 @@ mod cells;
 mod error;
 mod figures;
 pub mod fit;
+mod floorplan;
 mod names;
 mod placer;
 mod request;

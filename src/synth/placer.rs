@@ -5,6 +5,8 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
+use super::Target;
+
 /// How nextpnr places cells.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -14,30 +16,39 @@ pub enum Placer {
     Heap,
     /// Cells as charges that spread over the device. Wires are shorter, which helps a large design.
     Static,
+    /// The same, with sites for multiplier blocks and block memories that are chosen before, by how data flow between
+    /// them. The sites of the ECP5 are known; for another family it is `static`.
+    Floorplan,
 }
 
 /// A name that is not one of a [`Placer`].
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("unknown placer `{0}`: use heap, static")]
+#[error("unknown placer `{0}`: use heap, static, floorplan")]
 pub struct PlacerError(String);
 
 impl Placer {
     /// All placers.
-    pub const ALL: [Self; 2] = [Self::Heap, Self::Static];
+    pub const ALL: [Self; 3] = [Self::Heap, Self::Static, Self::Floorplan];
 
     /// The name on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Heap => "heap",
             Self::Static => "static",
+            Self::Floorplan => "floorplan",
         }
+    }
+
+    /// True if it differs from the other placers for this family.
+    pub fn serves(self, target: Target) -> bool {
+        self != Self::Floorplan || target == Target::Ecp5
     }
 
     /// nextpnr's options for it. Those of its own choice are left out, so routes that are kept stay valid.
     pub(super) const fn options(self) -> &'static [&'static str] {
         match self {
             Self::Heap => &[],
-            Self::Static => &["--placer", "static"],
+            Self::Static | Self::Floorplan => &["--placer", "static"],
         }
     }
 }

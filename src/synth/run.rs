@@ -5,7 +5,7 @@ use super::figures::{Figures, SCHEMA, Seed, Tools};
 use super::names::Source;
 use super::route::{Routed, Run};
 use super::yosys::{Design, synthesise as cells};
-use super::{Area, Placer, SynthError, Target, Trimmed, Unit, wrapper};
+use super::{Area, Placer, SynthError, Target, Trimmed, Unit, floorplan, wrapper};
 use crate::store::{Store, sha256};
 use crate::tools::Program;
 
@@ -47,10 +47,15 @@ pub fn synthesise(unit: &Unit, options: &Options, mut progress: impl FnMut(&str)
 
     let mut routed: Vec<(u32, Routed)> = Vec::new();
     if let (Some(nextpnr), Some((_, device))) = (&nextpnr, router) {
+        let planned = match options.placer {
+            Placer::Floorplan => floorplan::planned(&whole, target, &store)?,
+            Placer::Heap | Placer::Static => None,
+        };
+        let netlist = planned.as_ref().unwrap_or(&whole);
         for &seed in &options.seeds {
             progress(&format!("{name}: nextpnr, seed {seed}"));
             let placer = options.placer;
-            let run = Run { nextpnr, netlist: &whole, target, device, placer, seed, unit: &name };
+            let run = Run { nextpnr, netlist, target, device, placer, seed, unit: &name };
             routed.push((seed, run.route(&store)?));
         }
     }

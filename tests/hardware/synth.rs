@@ -32,6 +32,7 @@ fn what_is_missing_is_exit_3_with_its_command_and_bad_words_are_exit_2() {
         &["--scpus", "0"],
         &["--placer", "sa"],
         &["--placer", "static", "--no-route"],
+        &["--placer", "floorplan", "--target", "ice40"],
     ] {
         assert_eq!(afu(arguments, &[]).status.code(), Some(2), "{arguments:?}");
     }
@@ -74,6 +75,34 @@ fn an_operator_is_placed_and_routed() {
     assert!(said.contains("add half, ecp5, placer static: critical path"), "{said}");
     assert_eq!((other.placer, other.area.ffs), (Some(Placer::Static), figures.area.ffs));
     assert_ne!(other.critical, figures.critical, "cells stand elsewhere");
+    // Without blocks there is nothing to plan.
+    let (planned, _) = run(&["--placer", "floorplan"]);
+    assert_eq!((planned.placer, planned.seeds), (Some(Placer::Floorplan), other.seeds));
+}
+
+/// nextpnr refuses a site that the device does not have.
+#[test]
+fn multipliers_and_tables_are_placed_by_a_floorplan() {
+    let cache = tempfile::tempdir().expect("a temporary folder");
+    let folder = cache.path().to_str().expect("UTF-8");
+    let arguments = ["--operator", "recip", "--profile", "wide", "--clock", "200", "--seeds", "1"];
+    let output = afu(&[&arguments[..], &["--placer", "floorplan"]].concat(), &[("AFU_CACHE", folder)]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let netlists: Vec<serde_json::Value> = (std::fs::read_dir(cache.path().join("synth")).expect("a store"))
+        .map(|entry| entry.expect("an entry").path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "netlist"))
+        .map(|path| serde_json::from_slice(&std::fs::read(path).expect("a file")).expect("JSON"))
+        .collect();
+    let mut sites: Vec<(String, String)> = Vec::new();
+    for cell in netlists.iter().flat_map(|netlist| netlist["modules"]["bench"]["cells"].as_object().expect("cells")) {
+        if let Some(site) = cell.1["attributes"]["BEL"].as_str() {
+            sites.push((cell.1["type"].as_str().expect("a type").to_owned(), site.to_owned()));
+        }
+    }
+    assert!(sites.iter().any(|(kind, site)| kind == "MULT18X18D" && site.contains("/MULT18_")), "{sites:?}");
+    assert!(sites.iter().all(|(kind, site)| (kind == "DP16KD") == site.contains("/EBR")), "{sites:?}");
+    let different: std::collections::BTreeSet<_> = sites.iter().collect();
+    assert_eq!(different.len(), sites.len(), "a site has one block: {sites:?}");
 }
 
 /// An operator with two architectures, and one with a single architecture, which is listed once.
