@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-use super::Target;
+use super::{Target, floorplan};
 
 /// How nextpnr places cells.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -39,9 +39,9 @@ impl Placer {
         }
     }
 
-    /// True if it differs from the other placers for this family.
+    /// False for a floorplan if the sites of the family's device are not known.
     pub fn serves(self, target: Target) -> bool {
-        self != Self::Floorplan || target == Target::Ecp5
+        self != Self::Floorplan || floorplan::knows(target)
     }
 
     /// nextpnr's options for it. Those of its own choice are left out, so routes that are kept stay valid.

@@ -48,7 +48,7 @@ pub fn synthesise(unit: &Unit, options: &Options, mut progress: impl FnMut(&str)
     let mut routed: Vec<(u32, Routed)> = Vec::new();
     if let (Some(nextpnr), Some((_, device))) = (&nextpnr, router) {
         let planned = match options.placer {
-            Placer::Floorplan => floorplan::planned(&whole, target, &store)?,
+            Placer::Floorplan => Some(floorplan::planned(&whole, target, &store)?),
             Placer::Heap | Placer::Static => None,
         };
         let netlist = planned.as_ref().unwrap_or(&whole);

@@ -23,11 +23,13 @@ use flow::Wire;
 /// The attribute by which nextpnr knows a cell's site.
 const SITE: &str = "BEL";
 
+/// True if the sites of the family's device are known.
+pub(super) fn knows(target: Target) -> bool {
+    !sites::kinds(target).is_empty()
+}
+
 /// The netlist with its floorplan, from the store if it is there.
-pub(super) fn planned(netlist: &Netlist, target: Target, store: &Store) -> Result<Option<Netlist>, SynthError> {
-    if sites::kinds(target).is_empty() {
-        return Ok(None);
-    }
+pub(super) fn planned(netlist: &Netlist, target: Target, store: &Store) -> Result<Netlist, SynthError> {
     let key = Key::new("floorplan/1", &(&netlist.key, target.name()))?;
     let path = store.file(&key, "netlist");
     if !path.is_file() {
@@ -36,7 +38,7 @@ pub(super) fn planned(netlist: &Netlist, target: Target, store: &Store) -> Resul
         plan(target, &netlist.path, &file)?;
         fs::rename(file, &path).map_err(|e| SynthError::io("create", &path, e))?;
     }
-    Ok(Some(Netlist { key, cells: netlist.cells.clone(), path }))
+    Ok(Netlist { key, cells: netlist.cells.clone(), path })
 }
 
 /// Reads the netlist `from`, in Yosys's JSON, and writes it to `to`, with a site for each block. A netlist without
