@@ -34,8 +34,10 @@ module contact_afu_collector (
 );
 
   // ---- state ----
+  (* keep = "true", dont_merge *) reg rd_req_spare_valid_copy_1;
+  (* keep = "true", dont_merge *) reg may_ask_copy_0;
+  (* keep = "true", dont_merge *) reg may_ask_copy_1;
   (* keep = "true", dont_merge *) reg rd_req_spare_valid_copy_0;
-  reg may_ask;
   reg any_lines_to_request;
   reg one_lines_to_request;
   reg any_free;
@@ -49,7 +51,7 @@ module contact_afu_collector (
   reg [6:0] free;
   reg many_free;
   reg many_lines_to_request;
-  (* keep = "true", dont_merge *) reg rd_req_spare_valid_copy_1;
+  (* keep = "true", dont_merge *) reg rd_req_spare_valid_copy_2;
   reg [57:0] rd_req_spare_address;
   reg [57:0] next_address;
   reg [9:0] rd_req_spare_tag;
@@ -81,9 +83,9 @@ module contact_afu_collector (
   reg [6:0] outstanding;
 
   // ---- logic ----
-  wire rd_req_next_valid = ~drops_requests & (rd_req_spare_valid_copy_0 | may_ask);
+  wire rd_req_next_valid = ~drops_requests & (rd_req_spare_valid_copy_1 | may_ask_copy_0);
   wire rd_req_moves = ~rd_req_valid | rd_req_ready;
-  wire issue = may_ask & ~rd_req_spare_valid_copy_0;
+  wire issue = may_ask_copy_1 & ~rd_req_spare_valid_copy_0;
   wire any_lines_to_request_after_step = any_lines_to_request & ~one_lines_to_request;
   wire any_free_after_step = any_free & (freed | ~one_free);
   wire begins_lines_to_request =
@@ -93,6 +95,7 @@ module contact_afu_collector (
   wire some_left_and_free =
       issue ? (any_lines_to_request_after_step & any_free_after_step) :
       (any_lines_to_request_without_step & any_free_without_step);
+  wire asks_next = run & some_left_and_free;
   wire free_step_next = issue & ~start;
   wire two_free = (free_step ? (free[2:0] == 3'd3) : (free[2:0] == 3'd2)) & ~many_free;
   wire has_many_lines_to_request = many_lines_to_request | started_with_many_lines_to_request;
@@ -124,15 +127,16 @@ module contact_afu_collector (
     row_if_current[0] ? response_place : 8'd0
   };
   wire [6:0] twice_the_age = {answered_slot, 1'b0} - {oldest, oldest_goes};
-  wire idle_next = ~|outstanding & (~rd_req_valid & ~rd_req_spare_valid_copy_0) & ~may_ask & ~free_step;
+  wire idle_next = ~|outstanding & (~rd_req_valid & ~rd_req_spare_valid_copy_1) & ~may_ask_copy_1 & ~free_step;
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
-    if (rd_req_moves) rd_req_address <= rd_req_spare_valid_copy_1 ? rd_req_spare_address : next_address;
-    if (~rd_req_spare_valid_copy_1) rd_req_spare_address <= next_address;
+    if (rd_req_moves) rd_req_address <= rd_req_spare_valid_copy_2 ? rd_req_spare_address : next_address;
+    if (~rd_req_spare_valid_copy_2) rd_req_spare_address <= next_address;
     if (start | issue) next_address <= start ? source : (next_address + 58'd1);
-    if (rd_req_moves) rd_req_tag <= rd_req_spare_valid_copy_1 ? rd_req_spare_tag : rd_req_spare_tag_next;
-    if (~rd_req_spare_valid_copy_1) rd_req_spare_tag <= rd_req_spare_tag_next;
+    if (rd_req_moves) rd_req_tag <= rd_req_spare_valid_copy_2 ? rd_req_spare_tag : rd_req_spare_tag_next;
+    if (~rd_req_spare_valid_copy_2) rd_req_spare_tag <= rd_req_spare_tag_next;
+    next_slot <= start ? 6'd0 : issue ? (next_slot + 6'd1) : next_slot;
     came <= clears_marks ? 64'd0 : oldest_goes ? {1'b0, marked[63:1]} : marked;
     arrived_age <= twice_the_age[6:1];
     was_asked <= is_asked & (asked_slot == response_slot);
@@ -156,7 +160,6 @@ module contact_afu_collector (
   always @(posedge clk) begin
     if (rst) begin
       rd_req_valid <= 1'b0;
-      may_ask <= 1'b0;
       any_lines_to_request <= 1'b0;
       one_lines_to_request <= 1'b0;
       any_free <= 1'b1;
@@ -170,7 +173,6 @@ module contact_afu_collector (
       free <= 7'd64;
       many_free <= 1'b0;
       many_lines_to_request <= 1'b0;
-      next_slot <= 6'd0;
       line_comes <= 1'b0;
       clears_marks <= 1'b1;
       answered <= 1'b0;
@@ -186,7 +188,6 @@ module contact_afu_collector (
       outstanding <= 7'd0;
     end else begin
       rd_req_valid <= rd_req_next_valid | ~rd_req_moves;
-      may_ask <= run & some_left_and_free;
       any_lines_to_request <= ~start & (issue ? any_lines_to_request_after_step : any_lines_to_request_without_step);
       one_lines_to_request <=
           ~start
@@ -205,7 +206,6 @@ module contact_afu_collector (
       free <= start ? 7'd64 : (freed ^ free_step) ? (freed ? (free + 7'd1) : (free - 7'd1)) : free;
       many_free <= ~start & |free[6:3];
       many_lines_to_request <= ~start & |lines_to_request[31:3];
-      next_slot <= start ? 6'd0 : issue ? (next_slot + 6'd1) : next_slot;
       line_comes <= oldest_goes & ~start;
       clears_marks <= start;
       answered <= is_awaited & ~start;
@@ -225,8 +225,18 @@ module contact_afu_collector (
     end
   end
   (* keep = "true" *) always @(posedge clk) begin
-    rd_req_spare_valid_copy_0 <= rd_req_waits;
     rd_req_spare_valid_copy_1 <= rd_req_waits;
+    rd_req_spare_valid_copy_0 <= rd_req_waits;
+    rd_req_spare_valid_copy_2 <= rd_req_waits;
+  end
+  (* keep = "true" *) always @(posedge clk) begin
+    if (rst) begin
+      may_ask_copy_0 <= 1'b0;
+      may_ask_copy_1 <= 1'b0;
+    end else begin
+      may_ask_copy_0 <= asks_next;
+      may_ask_copy_1 <= asks_next;
+    end
   end
 
   line_memory #(

@@ -136,6 +136,8 @@ module contact_afu_dispatcher (
     asked_slot <= accepted_slot;
     if (counts_request) wr_req_address <= wr_req_of_job ? (wr_req_address + 58'd1) : destination;
     if (counts_request) wr_req_epoch <= epoch;
+    tail <= start ? 8'd0 : line_valid ? (tail + 8'd1) : tail;
+    head <= start ? 8'd0 : take ? (head + 8'd1) : head;
     error_then <= wr_rsp_error_d1;
     wr_rsp_error_d1 <= wr_rsp_error;
   end
@@ -163,8 +165,6 @@ module contact_afu_dispatcher (
       is_current <= 1'b0;
       is_asked <= 1'b0;
       oldest <= 6'd0;
-      tail <= 8'd0;
-      head <= 8'd0;
       failed <= 1'b0;
       responded <= 1'b0;
       idle <= 1'b0;
@@ -193,8 +193,6 @@ module contact_afu_dispatcher (
       is_current <= wr_rsp_valid & (wr_rsp_tag[9:6] == epoch);
       is_asked <= accepted & ~start;
       oldest <= start ? 6'd0 : (oldest + {5'd0, oldest_goes});
-      tail <= start ? 8'd0 : line_valid ? (tail + 8'd1) : tail;
-      head <= start ? 8'd0 : take ? (head + 8'd1) : head;
       failed <= is_awaited & error_then & ~start;
       responded <= run & is_response & ~start;
       idle <= ~|outstanding & ~wr_req_valid & ~goes & ~free_step;

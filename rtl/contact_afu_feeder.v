@@ -146,6 +146,7 @@ module contact_afu_feeder (
 
   // ---- at the clock edge ----
   always @(posedge clk) begin
+    place <= (start | ~in_hand) ? 1'b0 : next_place;
     if (take) last <= next_last;
     targets <= {turn_after_1, turn};
     turns_before_1 <= scpus - 7'd1;
@@ -158,6 +159,7 @@ module contact_afu_feeder (
     if (takes_line_copy_0) held_0 <= line[127:0];
     takes_line_soon <= take;
     first_place_soon <= place;
+    head <= start ? 6'd0 : take ? (head + 6'd1) : head;
     waits_for_input <= waits & ~in_hand;
     waits_for_output <= waits & in_hand & ~may_go_on;
   end
@@ -171,7 +173,6 @@ module contact_afu_feeder (
       turn_within <= 1'b0;
       block_is_last <= 1'b0;
       holds_1 <= 1'b0;
-      place <= 1'b0;
       line_ready <= 1'b0;
       last_line_ready <= 1'b0;
       two_lines_ready <= 1'b0;
@@ -193,7 +194,6 @@ module contact_afu_feeder (
       carries <= 2'd0;
       carries_rank_0 <= 2'd0;
       turn <= 7'd0;
-      head <= 6'd0;
       taken <= 1'b0;
     end else begin
       entered <= go_1 ? 2'd2 : go_0 ? 2'd1 : 2'd0;
@@ -204,7 +204,6 @@ module contact_afu_feeder (
       turn_within <= (start | ends_block) ? 1'b0 : next_within;
       block_is_last <= round_begins ? one_block : ends_block ? before_last_block : block_is_last;
       holds_1 <= take ? next_holds_1 : still_holds_1;
-      place <= (start | ~in_hand) ? 1'b0 : next_place;
       line_ready <= ~start & (line_readies | two_lines_ready | (line_ready & ~take));
       last_line_ready <= ~start & (last_line_ready | (line_readies & one_lines_left));
       two_lines_ready <= ~start & line_ready & ~take & (two_lines_ready | line_readies);
@@ -237,7 +236,6 @@ module contact_afu_feeder (
       carries <= carries_rank_0;
       carries_rank_0 <= {go_1, go_0};
       turn <= start ? 7'd0 : next_turn;
-      head <= start ? 6'd0 : take ? (head + 6'd1) : head;
       taken <= take & ~start;
     end
   end

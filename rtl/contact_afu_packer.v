@@ -52,6 +52,7 @@ module contact_afu_packer (
   (* keep = "true", dont_merge *) reg empties_0_copy_1;
   (* keep = "true", dont_merge *) reg stores_0_copy_1;
   reg [31:0] contact_count;
+  reg clears_counts;
   reg [1:0] contacts_now;
   reg [1:0] leaves_here;
   reg [31:0] invalid_count;
@@ -107,6 +108,14 @@ module contact_afu_packer (
     empties_soon <= empties;
     first_place <= 2'd1 << place;
     carried <= leaves_now;
+    contact_count <= clears_counts ? 32'd0 : (contact_count + {30'd0, contacts_now});
+    invalid_count <= clears_counts ? 32'd0 : (invalid_count + {30'd0, invalid_now});
+    first_invalid_pair <=
+        clears_counts                 ? 32'hffffffff :
+        (some_invalid & none_invalid) ? (emerged + {31'd0, first_invalid_lane}) :
+        first_invalid_pair;
+    none_invalid <= clears_counts | (none_invalid & ~some_invalid);
+    emerged <= start ? 32'd0 : (emerged + {30'd0, group_before});
     first_invalid_lane <= ~invalid_here_0;
   end
   always @(posedge clk) begin
@@ -117,15 +126,11 @@ module contact_afu_packer (
       filled_here <= 1'b0;
       place <= 1'b0;
       done <= 1'b0;
-      contact_count <= 32'd0;
+      clears_counts <= 1'b1;
       contacts_now <= 2'd0;
       leaves_here <= 2'd0;
-      invalid_count <= 32'd0;
       invalid_now <= 2'd0;
-      first_invalid_pair <= 32'hffffffff;
       some_invalid <= 1'b0;
-      none_invalid <= 1'b1;
-      emerged <= 32'd0;
       group_before <= 2'd0;
       group_here <= 2'd0;
     end else begin
@@ -135,18 +140,11 @@ module contact_afu_packer (
       filled_here <= filled;
       place <= start_or_flushes ? 1'b0 : next_place;
       done <= done_next;
-      contact_count <= start ? 32'd0 : (contact_count + {30'd0, contacts_now});
+      clears_counts <= start;
       contacts_now <= {1'b0, contact_here_0} + {1'b0, contact_here_1};
       leaves_here <= leaves_now;
-      invalid_count <= start ? 32'd0 : (invalid_count + {30'd0, invalid_now});
       invalid_now <= {1'b0, invalid_here_0} + {1'b0, invalid_here_1};
-      first_invalid_pair <=
-          start                         ? 32'hffffffff :
-          (some_invalid & none_invalid) ? (emerged + {31'd0, first_invalid_lane}) :
-          first_invalid_pair;
       some_invalid <= invalid_here_0 | invalid_here_1;
-      none_invalid <= start | (none_invalid & ~some_invalid);
-      emerged <= start ? 32'd0 : (emerged + {30'd0, group_before});
       group_before <= group_here;
       group_here <= group;
     end

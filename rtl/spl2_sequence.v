@@ -95,6 +95,8 @@ module spl2_sequence (
   reg [57:0] first_pairs;
   reg [57:0] destination_line;
   reg [3:0] job_mode;
+  reg higher_mode_differs;
+  reg [3:0] higher_mode_bytes_differ;
   reg [31:0] job_watchdog;
   reg abort;
   reg abort_word_differs;
@@ -142,6 +144,7 @@ module spl2_sequence (
   wire reads_context = (at_idle & context_valid) | switches;
   wire got_context = at_context & answered;
   wire [57:0] address = asks_for_context ? job_context_line : source_line;
+  wire [31:0] rsp_data_95_68_extended = {4'd0, rsp_data[95:68]};
   wire aborts = answered & abort_word_differs & runs;
   wire [511:0] shows_latency_copy_0_or_shows_busy_copy_0 =
       {
@@ -205,7 +208,11 @@ module spl2_sequence (
     if (at_context) source_line <= compared[127:70];
     first_pairs <= source_line + 58'd1;
     if (at_context) destination_line <= compared[191:134];
-    if (at_poll) job_mode <= compared[67:64] | {3'd0, |compared[95:68]};
+    if (at_poll) job_mode <= compared[67:64] | {3'd0, higher_mode_differs};
+    higher_mode_differs <= |higher_mode_bytes_differ;
+    higher_mode_bytes_differ <= {
+      rsp_data_95_68_extended[31:24] != 8'd0, rsp_data[91:84] != 8'd0, rsp_data[83:76] != 8'd0, rsp_data[75:68] != 8'd0
+    };
     if (at_poll) job_watchdog <= compared[191:160];
     abort_word_differs <= |abort_word_bytes_differ;
     abort_word_bytes_differ <= {
@@ -309,8 +316,8 @@ module spl2_sequence (
   assign wr_valid = writes;
 
   // Bits that nothing needs.
-  wire unused = &{1'b0, destination_count[0], compared[31:0], compared[133:128], compared[511:224],
-    source_count[0], dsm_line[5:0]};
+  wire unused = &{1'b0, destination_count[0], compared[31:0], compared[69:68], compared[133:128],
+    compared[511:224], source_count[0], rsp_data_95_68_extended[23:0], dsm_line[5:0]};
 
 endmodule
 

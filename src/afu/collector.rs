@@ -43,22 +43,24 @@ pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     // Requests: one for each free slot, in order of lines.
     let remaining = Countdown::new(&graph, "lines_to_request", COUNT_BITS);
     let next_address = graph.data_register("next_address", ADDRESS_BITS);
-    let next_slot = graph.register("next_slot", slot_bits, 0);
+    let next_slot = graph.data_register("next_slot", slot_bits);
     let free = Level::new(&graph, "free", slot_bits + 1, slots.into());
-    // One cycle ahead, it is known whether a request may be made.
-    let may_ask = graph.register("may_ask", 1, 0);
+    // One cycle ahead, it is known whether a request may be made. One copy asks, one counts what was asked.
+    let asks_next = graph.wire("asks_next", 1);
+    let may_ask = asks_next.copies("may_ask", 2);
+    let (asks, counts) = (may_ask[0], may_ask[1]);
     let tag = epoch.concat(next_slot.value());
     let fields = [("address", next_address.value()), ("tag", tag)];
-    let port = slice(&graph, "rd_req", [start, drops], *may_ask, &fields, link.rd_req_ready);
+    let port = slice(&graph, "rd_req", [start, drops], asks, &fields, link.rd_req_ready);
     let (request_address, request_tag) = (port.fields[0], port.fields[1]);
-    let issue = (*may_ask & port.has_room).named("issue");
+    let issue = (counts & port.has_room).named("issue");
     let some_left = remaining.connect(start, lines, issue);
     next_address.next_if(start | issue, start.select(source, next_address.plus(1)));
     from_zero(next_slot, start, issue, next_slot.plus(1));
     // A slot is free once its line was taken.
     let freed = (taken & !start).registered("freed");
     let some_free = free.connect(start, freed, issue);
-    may_ask.next(run & some_left.and(some_free).at(issue).named("some_left_and_free"));
+    asks_next.drive(run & some_left.and(some_free).at(issue).named("some_left_and_free"));
 
     // Responses go into the slot that the tag names. A response that no request waits for overwrites a line there and
     // ends the job.
@@ -90,6 +92,6 @@ pub(super) fn collector(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     graph.output("answered", answers.answered);
     graph.output("failed", answers.failed);
     graph.output("responded", answers.responded);
-    graph.output("idle", (!outstanding.any() & port.is_empty & !*may_ask & !*free.counted).registered("idle"));
+    graph.output("idle", (!outstanding.any() & port.is_empty & !counts & !*free.counted).registered("idle"));
     graph.finish()
 }

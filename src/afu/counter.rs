@@ -88,7 +88,8 @@ fn by_steps<'g>(counted: Signal<'g>, name: &str, of: impl Fn(u32) -> Signal<'g>)
     AtStep { with: counted.select(two, one), without: counted.select(one, none) }
 }
 
-/// Connects a counter that is 0 at `start`, and takes `next` where it `moves`. `start` resets it and delays nothing.
+/// Connects a counter that is 0 at `start`, and takes `next` where it `moves`. `start` resets it and delays nothing, so
+/// one that means nothing before a job needs no reset.
 pub(super) fn from_zero<'g>(count: Register<'g>, start: Signal<'g>, moves: Signal<'g>, next: Signal<'g>) {
     count.next(start.select(count.same(0), moves.select(next, *count)));
 }

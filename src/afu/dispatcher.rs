@@ -57,8 +57,8 @@ pub(super) fn dispatcher(spec: &Spec, depth: u32) -> Result<Arc<Module>, BuildEr
 
     // Finished lines wait in a memory; the oldest one has been read already. It cannot overflow: a pair enters an SCPU
     // only when its result has a place here. A line that was read is counted as stored for one more cycle.
-    let tail = graph.register("tail", place_bits, 0);
-    let head = graph.register("head", place_bits, 0);
+    let tail = graph.data_register("tail", place_bits);
+    let head = graph.data_register("head", place_bits);
     let stored = Level::new(&graph, "stored", place_bits + 1, 0);
     let read_valid = graph.register("read_valid", 1, 0);
     let may_go = graph.wire("may_go", 1);

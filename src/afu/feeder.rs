@@ -52,7 +52,7 @@ pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     // A window of two lines: the line in hand, and the oldest that waits in the collector. Their contents arrive later.
     // These are the places of the next pair and of the last pair in the line in hand.
     let in_hand = graph.register("in_hand", 1, 0);
-    let place = graph.register("place", place_bits, 0);
+    let place = graph.data_register("place", place_bits);
     let last = graph.data_register("last", place_bits);
     let take = graph.wire("take", 1);
     let coming = Coming::new(&graph, spec, [start, comes, take], lines);
@@ -108,7 +108,7 @@ pub(super) fn feeder(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
         flag.next(take.select(moved(on), stays));
     }
     // The place in the collector's memory of the line after the one in hand.
-    let head = graph.register("head", spec.max_outstanding.ilog2(), 0);
+    let head = graph.data_register("head", spec.max_outstanding.ilog2());
     from_zero(head, start, take, head.plus(1));
     if let Some(rounds) = &rounds {
         let ends_block = by_group(&go, |pairs| rounds.ends_block(pairs)).named("ends_block");

@@ -32,7 +32,7 @@ pub(super) fn lanes(spec: &Spec) -> u32 {
 
 /// Cycles from the numbers of a hit to its contact, for SCPUs of that latency.
 pub(super) fn latency(spec: &Spec, scpu: &Module) -> u32 {
-    CYCLES_TO_WORD + slot::latency(scpu.latency) + units(spec)
+    CYCLES_TO_WORD + slot::latency(spec, scpu.latency) + units(spec)
 }
 
 /// Builds the module `contact_afu_resolver` for pairs, `places` of which it keeps while they are decided.
@@ -132,7 +132,7 @@ pub(super) fn resolve<'g>(
             waits.next_if(takes, pair);
             graph.instance("scpu_0", scpu, &[("take", takes), ("pair", waits.value())])
         } else {
-            graph.instance("scpu_0", scpu, &[("pair", pair.delay(1).named("pair_in_scpu"))])
+            graph.instance("scpu_0", scpu, &[("pair", pair.delay(slot::ranks_before(spec)).named("pair_in_scpu"))])
         };
         unit.output("record").delay(1).named("contact")
     } else {

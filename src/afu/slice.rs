@@ -29,10 +29,11 @@ pub(super) fn slice<'g>(
     ready: Signal<'g>,
 ) -> Slice<'g> {
     let at_port = graph.register(&format!("{port}_valid"), 1, 0);
-    // One copy says whether there is room, the other steers the wide fields. A reset clears them because it `drops`.
+    // A copy says whether there is room, one stands at the port, one steers the wide fields. A reset clears them because it
+    // `drops`.
     let waits = graph.wire(&format!("{port}_waits"), 1);
-    let copies = waits.data_copies(&format!("{port}_spare_valid"), 2);
-    let (spare, steers) = (copies[0], copies[1]);
+    let copies = waits.data_copies(&format!("{port}_spare_valid"), 3);
+    let (room, spare, steers) = (copies[0], copies[1], copies[2]);
     let moves = (!*at_port | ready).named(&format!("{port}_moves"));
     let behind = (!drops & (spare | valid)).named(&format!("{port}_next_valid"));
     at_port.next(behind | !moves);
@@ -50,7 +51,7 @@ pub(super) fn slice<'g>(
     let of_job = graph.register(&format!("{port}_of_job"), 1, 0);
     of_job.next(!start & (moves | *of_job));
     Slice {
-        has_room: !spare,
+        has_room: !room,
         valid: at_port.value(),
         fields,
         accepted: *at_port & ready & *of_job,

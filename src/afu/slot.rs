@@ -10,13 +10,16 @@ use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
 use super::{SCPU_BITS, Spec, wide};
 
-/// Register ranks before the SCPU: the chosen pair is registered.
-const RANKS_BEFORE: u32 = 1;
+/// Register ranks before the SCPU: the chosen pair is registered. At interval 1 a second rank stands at the SCPU, whose
+/// first stages are carry chains. At others the pair stays in the first one.
+pub(super) fn ranks_before(spec: &Spec) -> u32 {
+    if spec.config.interval > 1 { 1 } else { 2 }
+}
 
 /// Cycles from a pair before its slot to its result behind the SCPU, for an SCPU of that latency. The chain's
 /// registers, as many as there are slots, come on top.
-pub(super) fn latency(kernel_latency: u32) -> u32 {
-    RANKS_BEFORE + kernel_latency
+pub(super) fn latency(spec: &Spec, kernel_latency: u32) -> u32 {
+    ranks_before(spec) + kernel_latency
 }
 
 /// Builds the module of this name.
@@ -56,7 +59,7 @@ pub(super) fn slot(spec: &Spec, name: &str, scpu: &Arc<Module>) -> Result<Arc<Mo
         pair.next_if(takes, chosen);
         graph.instance("unit", scpu, &[("take", takes), ("pair", pair.value())])
     } else {
-        graph.instance("unit", scpu, &[("pair", chosen.delay(RANKS_BEFORE).named("pair"))])
+        graph.instance("unit", scpu, &[("pair", chosen.delay(1).named("chosen").delay(1).named("pair"))])
     };
     graph.output("carries_out", carries.registered("carries"));
     graph.output("targets_out", targets.delay(1).named("targets"));
@@ -69,7 +72,7 @@ pub(super) fn slot(spec: &Spec, name: &str, scpu: &Arc<Module>) -> Result<Arc<Mo
     // the results.
     let taken = taken.into_iter().rev().reduce(Signal::concat).unwrap_or_else(|| graph.constant(1, 0));
     let taken = if lanes > 1 { taken.named("takes_lanes") } else { taken };
-    let answers_next = taken.delay(latency(scpu.latency) - 1).named("answers_soon");
+    let answers_next = taken.delay(latency(spec, scpu.latency) - 1).named("answers_soon");
     let leaves = graph.input("leaves_in", lanes);
     graph.output("leaves_out", (leaves | answers_next).registered("leaves"));
     for lane in 0..lanes {

@@ -43,7 +43,7 @@ pub(super) fn number<'g>(graph: &'g Graph, lanes: Signal<'g>) -> Signal<'g> {
 
 /// The number of pairs that left before this cycle's `group` since `start`.
 pub(super) fn emerged<'g>(graph: &'g Graph, start: Signal<'g>, group: Signal<'g>) -> Signal<'g> {
-    let emerged = graph.register("emerged", COUNT_BITS, 0);
+    let emerged = graph.data_register("emerged", COUNT_BITS);
     emerged.next(start.select(emerged.same(0), emerged.value() + group.extend(COUNT_BITS)));
     emerged.value()
 }
@@ -58,15 +58,19 @@ pub(super) fn count<'g>(
     invalids: &[Signal<'g>],
 ) {
     let lanes = invalids.len() as u32;
-    let contact_count = graph.register("contact_count", COUNT_BITS, 0);
-    let invalid_count = graph.register("invalid_count", COUNT_BITS, 0);
-    let first_invalid = graph.register("first_invalid_pair", COUNT_BITS, u128::from(u32::MAX));
+    // A register of their own clears the counts, a cycle after the start or reset: long before the first result.
+    let clears = graph.register("clears_counts", 1, 1);
+    clears.next(start);
+    let start = clears.value();
+    let contact_count = graph.data_register("contact_count", COUNT_BITS);
+    let invalid_count = graph.data_register("invalid_count", COUNT_BITS);
+    let first_invalid = graph.data_register("first_invalid_pair", COUNT_BITS);
     for (count, bits, name) in [(contact_count, contacts, "contacts_now"), (invalid_count, invalids, "invalid_now")] {
         let now = ones(graph, bits).registered(name).extend(COUNT_BITS);
         count.next(start.select(count.same(0), count.value() + now));
     }
     // The first invalid lane is found before its number is added, so all lanes share one sum.
-    let none_yet = graph.register("none_invalid", 1, 1);
+    let none_yet = graph.data_register("none_invalid", 1);
     let mut first = emerged_before;
     if lanes > 1 {
         let of_lane = |lane: u32| graph.constant(lanes.ilog2(), lane.into());

@@ -17,7 +17,7 @@ pub struct Timing {
     pub collect: u32,
     /// Feeder: to pairs on their way to the slots.
     pub feed: u32,
-    /// Slot: the SCPU, and the register before it.
+    /// Slot: the SCPU, and the registers before it.
     pub scpu: u32,
     /// The chain of slots: a register each, before the SCPU or behind it.
     pub chain: u32,
@@ -50,12 +50,13 @@ impl Afu {
     pub fn timing(&self) -> Timing {
         let chain = self.spec().scpus_in_turn(self.spec().config.interval);
         Timing {
-            fill: credits::cycles_to_fill(slot::latency(self.kernel().latency), chain) + control::CYCLES_TO_HEAR,
+            fill: credits::cycles_to_fill(slot::latency(self.spec(), self.kernel().latency), chain)
+                + control::CYCLES_TO_HEAR,
             start: control::CYCLES_TO_RUN,
             request: collector::CYCLES_TO_REQUEST,
             collect: collector::CYCLES_TO_LINE,
             feed: feeder::CYCLES_TO_ISSUE,
-            scpu: slot::latency(self.kernel().latency),
+            scpu: slot::latency(self.spec(), self.kernel().latency),
             chain,
             pack: packer::cycles_to_line(self.spec()),
             flush: packer::cycles_to_flush(self.spec()),

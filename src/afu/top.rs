@@ -24,7 +24,7 @@ pub(super) fn line_top(
     // The specification of the slots, and of what gives them pairs and takes their results.
     let of_slots = deciding.as_ref().unwrap_or(spec);
     let lanes = spec.lanes();
-    let slot_latency = slot::latency(unit.latency);
+    let slot_latency = slot::latency(of_slots, unit.latency);
     let has_records = of_slots.layout().result_bits() > 0;
     let only_hits = spec.config.results == config::Results::Hits;
     let places = Room::of(of_slots, slot_latency, resolving.map(|scpu| (spec, &**scpu)));

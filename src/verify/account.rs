@@ -63,7 +63,7 @@ pub fn account(afu: &Afu, link: &LinkModel, pairs: u32) -> Option<Vec<Part>> {
         part("link: the lines behind the first", last_arrival),
         of("collector: back in order", timing.collect),
         of("feeder: to the slots", timing.feed),
-        of("slot: the SCPU and the register before it", timing.scpu),
+        of("slot: the SCPU and the registers before it", timing.scpu),
         of("chain of slots: a register each", timing.chain),
         of("packer: a line", timing.pack),
         part("packer: a last line that is not full", flush),

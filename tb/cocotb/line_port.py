@@ -90,7 +90,8 @@ async def reset(dut):
         if [row[1] for row in PORTS.tables["port"] if row[0] == name] == ["in"] and name != "clk":
             getattr(dut, name).value = 0
     port.value = active
-    await RisingEdge(dut.clk)
+    for _ in range(2):
+        await RisingEdge(dut.clk)
     await FallingEdge(dut.clk)
     for name, level in PORTS.levels.items():
         if level != "any":

@@ -50,6 +50,7 @@ module collector (
   );
   (* hierconn *) wire        \dut.rd_req_spare_valid_copy_0 ;
   (* hierconn *) wire        \dut.rd_req_spare_valid_copy_1 ;
+  (* hierconn *) wire        \dut.rd_req_spare_valid_copy_2 ;
   (* hierconn *) wire        \dut.lines_to_request_step ;
   (* hierconn *) wire [57:0] \dut.rd_req_spare_address ;
   (* hierconn *) wire [5:0]  \dut.rd_req_spare_tag ;
@@ -76,7 +77,8 @@ module collector (
   (* hierconn *) wire [1:0]  \dut.arrived_age ;
   (* hierconn *) wire        \dut.freed ;
   (* hierconn *) wire [1:0]  \dut.next_slot ;
-  (* hierconn *) wire        \dut.may_ask ;
+  (* hierconn *) wire        \dut.may_ask_copy_0 ;
+  (* hierconn *) wire        \dut.may_ask_copy_1 ;
   (* hierconn *) wire [31:0] \dut.lines_to_request ;
   (* hierconn *) wire        \dut.any_lines_to_request ;
   (* hierconn *) wire        \dut.one_lines_to_request ;
@@ -105,6 +107,7 @@ module collector (
   reg        left;
   wire       asked = rd_req_valid & ~left;
   wire       spare = \dut.rd_req_spare_valid_copy_0 ;
+  wire       may_ask = \dut.may_ask_copy_1 ;
   wire [3:0] asks = asked & rd_req_ready ? 4'd1 << rd_req_tag[1:0] : 4'd0;
   wire [3:0] answers = mine ? 4'd1 << rd_rsp_tag[1:0] : 4'd0;
   wire [3:0] on_port = (asked ? 4'd1 << rd_req_tag[1:0] : 4'd0) | (spare ? 4'd1 << \dut.rd_req_spare_tag [1:0] : 4'd0);
@@ -114,7 +117,7 @@ module collector (
   // Lines that were announced and not taken, and the slot of the oldest.
   reg [2:0]  announced;
   reg [1:0]  head;
-  wire       nothing = (on_port | waiting | arriving) == 4'd0 & ~rd_req_valid & ~\dut.answered & ~\dut.may_ask ;
+  wire       nothing = (on_port | waiting | arriving) == 4'd0 & ~rd_req_valid & ~\dut.answered & ~may_ask;
   reg        was_nothing;
   always @(posedge clk) begin
     after_reset <= after_reset | rst;
@@ -182,7 +185,7 @@ module collector (
     taken_is_reserved: assert (~\dut.freed | free != 3'd4);
     flags_are_right: assert (started | (\dut.any_lines_to_request == (to_request != 32'd0)
       & \dut.one_lines_to_request == (to_request == 32'd1)));
-    asks_while_any: assert (~\dut.may_ask | (to_request != 32'd0 & free != 3'd0));
+    asks_while_any: assert (~may_ask | (to_request != 32'd0 & free != 3'd0));
     counted: assert (\dut.outstanding + {2'd0, \dut.free_step } == ones(on_port | waiting | arriving) + {2'd0, \dut.answered });
     leftover_is_right: assert (~rd_req_valid | \dut.rd_req_of_job == ~left);
     decoded: assert (~\dut.is_current | \dut.response_place == heard);
@@ -210,11 +213,12 @@ module collector (
     was <= {rd_req_address, rd_req_tag};
   end
   always @* if (begun & ~rst) begin
-    copy_is_right: assert (\dut.rd_req_spare_valid_copy_1 == spare);
+    copies_are_right: assert (\dut.rd_req_spare_valid_copy_1 == spare & \dut.rd_req_spare_valid_copy_2 == spare
+      & \dut.may_ask_copy_0 == may_ask);
   end
   // Once the job is given up, only the request that stands on the port is left.
   always @* if (over & ~start & ~rst) begin
-    nothing_follows: assert (~spare & ~\dut.may_ask & (~rd_req_valid | held));
+    nothing_follows: assert (~spare & ~may_ask & (~rd_req_valid | held));
   end
   always @* if (held & ~rst) begin
     stable: assert (rd_req_valid & {rd_req_address, rd_req_tag} == was);

@@ -27,7 +27,12 @@ module credits (
 `endif
   localparam ROOM_BITS = $clog2(CAPACITY) + 1;
   // Cycles from the count of pairs that enter to their results behind the last slot.
+  // From the feeder's decision to what leaves the chain: the feeder's rank, the chain, and the slot's around its SCPU.
+`ifdef EVERY_OTHER
   localparam RANKS = `LATENCY + `SCPUS + 2;
+`else
+  localparam RANKS = `LATENCY + `SCPUS + 3;
+`endif
 
   `include "dut.svh"
   (* hierconn *) wire                       \dut.control.begin_job ;
@@ -87,6 +92,7 @@ module credits (
   (* hierconn *) wire [1:0]                 \dut.sieve.dropped_pairs ;
   (* hierconn *) wire [31:0]                \dut.sieve.emerged ;
   (* hierconn *) wire [31:0]                \dut.sieve.contact_count ;
+  (* hierconn *) wire                       \dut.sieve.clears_counts ;
   // Counted one cycle later.
   (* hierconn *) wire [1:0]                 \dut.sieve.contacts_now ;
   (* hierconn *) wire [ROOM_BITS-1:0]       \dut.backlog.stored ;
@@ -250,6 +256,8 @@ module credits (
   // The sieve's pairs of the previous cycle, each a hit or dropped, and the number of hits that have left the backlog.
   reg [1:0]  were_here;
   reg [31:0] left;
+  // The count is cleared a cycle after the beginning.
+  wire [31:0] hits_counted = \dut.sieve.clears_counts ? 32'd0 : \dut.sieve.contact_count ;
   wire [2:0] sifted = {1'b0, \dut.sieve.hits_rank_0 } + {1'b0, \dut.sieve.dropped_pairs };
   // Of the backlog's hits, those in the bank of the oldest, and those in the other bank.
   wire [ROOM_BITS-1:0] in_oldest_bank = (\dut.backlog.stored + 1'b1) / 2;
@@ -264,7 +272,7 @@ module credits (
     each_is_sifted: assert (sifted == {1'b0, were_here});
     hits_add_up: assert ({3'd0, next_room} + inside + uncounted + sifted + \dut.backlog.stored + \dut.backlog.group_out
       == CAPACITY);
-    no_hit_is_lost: assert (\dut.sieve.contact_count + \dut.sieve.contacts_now == left + \dut.sieve.hits_rank_0
+    no_hit_is_lost: assert (hits_counted + \dut.sieve.contacts_now == left + \dut.sieve.hits_rank_0
       + \dut.backlog.stored + \dut.backlog.group_out );
     backlog_fits: assert (\dut.backlog.stored <= CAPACITY);
     banks_in_turn: assert ((\dut.backlog.head_bank ^ \dut.backlog.tail_bank ) == \dut.backlog.stored [0]);

@@ -84,20 +84,20 @@ impl fmt::Display for Proof {
 
 use Method::{Bounded, Inductive, Reached};
 
-/// The proofs that are run for each latency of an SCPU. Their depths grow with the latency. A job begins once the delay
-/// lines are filled, and passes as many slots as there are.
+/// The proofs that are run for each latency of an SCPU. Their depths grow with the latency of slots, around an SCPU. A
+/// job begins once the delay lines are filled, and passes as many slots as there are.
 fn around(latency: u32) -> [Proof; 6] {
     let of = |name, harness, method| Proof::new(name, harness, latency, method);
     let one_job = &["PAIRS=3", "ONE_JOB"];
     [
-        of("credits", "credits", Inductive(8 + latency)),
-        of("any link, any host", "line_port", Bounded(21 + 2 * latency)).with(&["PAIRS=3"]),
-        of("a job of one pair", "line_port", Bounded(42 + 2 * latency)).with(&["PAIRS=1", "ONE_JOB"]),
-        of("one job", "line_port", Bounded(43 + 2 * latency)).with(one_job),
-        of("a job ends", "line_port", Bounded(55 + 2 * latency))
+        of("credits", "credits", Inductive(9 + latency)),
+        of("any link, any host", "line_port", Bounded(23 + 2 * latency)).with(&["PAIRS=3"]),
+        of("a job of one pair", "line_port", Bounded(44 + 2 * latency)).with(&["PAIRS=1", "ONE_JOB"]),
+        of("one job", "line_port", Bounded(45 + 2 * latency)).with(one_job),
+        of("a job ends", "line_port", Bounded(57 + 2 * latency))
             .with(&["PAIRS=2", "ONE_JOB", "PROMPT=1"])
-            .ends(50 + 2 * latency),
-        of("jobs are whole", "line_port", Reached(43 + 2 * latency)).with(one_job),
+            .ends(52 + 2 * latency),
+        of("jobs are whole", "line_port", Reached(45 + 2 * latency)).with(one_job),
     ]
 }
 
@@ -118,12 +118,12 @@ fn every_other(latency: u32) -> [Proof; 4] {
 fn of_hits(latency: u32) -> [Proof; 6] {
     let of = |name, design, harness, method| Proof::new(name, harness, latency, method).of(design);
     [
-        of("credits of hits", Design::Hits, "credits", Inductive(9 + latency)),
-        of("credits of records", Design::Records, "credits", Inductive(9 + latency)),
-        of("one job of hits", Design::Hits, "hits_job", Bounded(45 + 2 * latency)),
-        of("one job of records", Design::Records, "hits_job", Bounded(45 + 2 * latency)),
-        of("jobs of hits are whole", Design::Hits, "hits_job", Reached(45 + 2 * latency)),
-        of("jobs of records are whole", Design::Records, "hits_job", Reached(45 + 2 * latency)),
+        of("credits of hits", Design::Hits, "credits", Inductive(10 + latency)),
+        of("credits of records", Design::Records, "credits", Inductive(10 + latency)),
+        of("one job of hits", Design::Hits, "hits_job", Bounded(47 + 2 * latency)),
+        of("one job of records", Design::Records, "hits_job", Bounded(47 + 2 * latency)),
+        of("jobs of hits are whole", Design::Hits, "hits_job", Reached(47 + 2 * latency)),
+        of("jobs of records are whole", Design::Records, "hits_job", Reached(47 + 2 * latency)),
     ]
 }
 

@@ -37,55 +37,55 @@ const SIEVE: Rows = &[
         "hits are dropped too",
         "dropped_pairs <= start ? 2'd0 : (group_here - hits_to_1);",
         "dropped_pairs <= start ? 2'd0 : group_here;",
-        27,
+        29,
         "each_is_sifted",
     ),
     (
         "a hit is counted and lost",
         "hits_rank_0 <= start ? 2'd0 : hits_to_1;",
         "hits_rank_0 <= start ? 2'd0 : hits_to_0;",
-        27,
+        29,
         "no_hit_is_lost",
     ),
 ];
 
 const HITS_CREDITS: Rows =
-    &[("room is never used up", "({3'd0, places_freed} - {4'd0, entered})", "{3'd0, places_freed}", 21, "hits_add_up")];
+    &[("room is never used up", "({3'd0, places_freed} - {4'd0, entered})", "{3'd0, places_freed}", 22, "hits_add_up")];
 
 const BACKLOG: Rows = &[
-    ("a hit counts as nine", "(left + {4'd0, put})", "(left + (|put ? 6'd17 : 6'd0))", 29, "backlog_fits"),
-    ("a hit takes two rows", "(tail_row_0 + 4'd1)", "(tail_row_0 + 4'd2)", 28, "backlog_counts"),
-    ("the next hit in the same bank", "(tail_bank + put[0])", "tail_bank", 28, "banks_in_turn"),
-    ("a row too far", "(row_after_head_0 + 4'd1)", "(row_after_head_0 + 4'd2)", 30, "rows_in_turn"),
+    ("a hit counts as nine", "(left + {4'd0, put})", "(left + (|put ? 6'd17 : 6'd0))", 31, "backlog_fits"),
+    ("a hit takes two rows", "(tail_row_0 + 4'd1)", "(tail_row_0 + 4'd2)", 30, "backlog_counts"),
+    ("the next hit in the same bank", "(tail_bank + put[0])", "tail_bank", 30, "banks_in_turn"),
+    ("a row too far", "(row_after_head_0 + 4'd1)", "(row_after_head_0 + 4'd2)", 32, "rows_in_turn"),
     (
         "what has left is read again",
         "readable <= start ? 6'd0 : left;",
         "readable <= start ? 6'd0 : stored;",
-        30,
+        32,
         "reads_what_is_there",
     ),
 ];
 
-const STORE: Rows = &[("a line counts as nine", "comes ? (stored + 5'd1)", "comes ? (stored + 5'd9)", 36, "lines_fit")];
+const STORE: Rows = &[("a line counts as nine", "comes ? (stored + 5'd1)", "comes ? (stored + 5'd9)", 37, "lines_fit")];
 
 const JOB_DISPATCHER: Rows = &[
-    ("every other line is written", "(wr_req_address + 58'd1)", "(wr_req_address + 58'd2)", 39, "in_order"),
+    ("every other line is written", "(wr_req_address + 58'd1)", "(wr_req_address + 58'd2)", 40, "in_order"),
     (
         "lines without room are written",
         "wire comes = line_valid & any_lines_of_room;",
         "wire comes = line_valid;",
-        37,
+        38,
         "has_room",
     ),
 ];
 
 const JOB_PACKER: Rows = &[
-    ("a last line without hits", "wire flushes = all_out & place & ", "wire flushes = all_out & ", 38, "only_hits"),
+    ("a last line without hits", "wire flushes = all_out & place & ", "wire flushes = all_out & ", 39, "only_hits"),
     (
         "the last line keeps the one before",
         "entering_1 : enters_0_place_1 ? entering_0 : 32'd0,",
         "entering_1 : enters_0_place_1 ? entering_0 : filling_0,",
-        38,
+        39,
         "rest_is_zero",
     ),
 ];
@@ -95,7 +95,7 @@ const JOB_SIEVE: Rows = &[
         "a hit has its neighbour's number",
         "wire [31:0] number_1 = emerged + 32'd1;",
         "wire [31:0] number_1 = emerged;",
-        37,
+        38,
         "is_its_record",
     ),
     (
@@ -109,14 +109,14 @@ const JOB_SIEVE: Rows = &[
         "invalid pairs in one lane only are counted",
         "invalid_now <= {1'b0, invalid_here_0} + {1'b0, invalid_here_1};",
         "invalid_now <= {1'b0, invalid_here_1};",
-        31,
+        33,
         "invalid_counted",
     ),
     (
         "the wrong invalid pair",
         "(emerged_before + {31'd0, first_invalid_lane})",
         "emerged_before",
-        31,
+        33,
         "first_is_right",
     ),
 ];
@@ -126,14 +126,14 @@ const JOB_CONTROL: Rows = &[
         "done with a write on its way",
         "completes <= run & packer_done & dispatched & link_idle & goes_on;",
         "completes <= run & packer_done & dispatched & goes_on;",
-        39,
+        41,
         "done_acknowledged",
     ),
     (
         "done at once",
         "completes <= run & packer_done & dispatched & link_idle & goes_on;",
         "completes <= run & goes_on;",
-        13,
+        14,
         "all_written",
     ),
     ("hits beyond the room are no error", "(completes & overflowed) ? 4'd6", "1'b0 ? 4'd6", 39, "overflow_is_told"),

@@ -21,8 +21,8 @@ const COLLECTOR: Rows = &[
     ),
     (
         "a waiting tag is overwritten",
-        "if (~rd_req_spare_valid_copy_1) rd_req_spare_tag",
-        "if (may_ask) rd_req_spare_tag",
+        "if (~rd_req_spare_valid_copy_2) rd_req_spare_tag",
+        "if (may_ask_copy_0) rd_req_spare_tag",
         6,
         "tags_in_order",
     ),
@@ -96,7 +96,7 @@ const COLLECTOR: Rows = &[
     ("every other line is read", "(next_address + 58'd1)", "(next_address + 58'd2)", 4, "in_order"),
     (
         "an address that is too new",
-        "if (rd_req_moves) rd_req_address <= rd_req_spare_valid_copy_1 ? rd_req_spare_address : next_address;",
+        "if (rd_req_moves) rd_req_address <= rd_req_spare_valid_copy_2 ? rd_req_spare_address : next_address;",
         "if (rd_req_moves) rd_req_address <= next_address;",
         6,
         "address",
@@ -111,10 +111,17 @@ const COLLECTOR: Rows = &[
     ),
     (
         "a copy of a flag is none",
-        "rd_req_spare_valid_copy_1 <= rd_req_waits;",
-        "rd_req_spare_valid_copy_1 <= 1'b0;",
+        "rd_req_spare_valid_copy_2 <= rd_req_waits;",
+        "rd_req_spare_valid_copy_2 <= 1'b0;",
         5,
-        "copy_is_right",
+        "copies_are_right",
+    ),
+    (
+        "a copy of what may be asked is none",
+        "may_ask_copy_0 <= asks_next;",
+        "may_ask_copy_0 <= 1'b0;",
+        5,
+        "copies_are_right",
     ),
     (
         "a request follows one that was given up",

@@ -7,7 +7,7 @@ const CONTROL: Rows = &[
         "gives up as it completes",
         "busy_copy_0 & expired & ~completes;",
         "busy_copy_0 & expired;",
-        24,
+        25,
         "complete_is_good",
     ),
     (
@@ -21,7 +21,7 @@ const CONTROL: Rows = &[
         "begins while it runs",
         "wire accept = start & ~busy_copy_0;",
         "wire accept = start & ~draining;",
-        10,
+        11,
         "begins_rested",
     ),
     ("runs before it begins", "run <= (run | begin_job)", "run <= (run | accept | waits_to_begin)", 3, "begins_first"),
@@ -29,7 +29,7 @@ const CONTROL: Rows = &[
         "a job begins again",
         "wire begins = (accept | ",
         "wire begins = ((start & running) | accept | ",
-        13,
+        14,
         "begins_empty",
     ),
     (
@@ -43,7 +43,7 @@ const CONTROL: Rows = &[
         "waits for the delay lines after it began",
         "(accept | keeps_waiting) & ~filled_heard;",
         "accept | keeps_waiting;",
-        9,
+        10,
         "waits_or_runs",
     ),
     (
@@ -68,7 +68,7 @@ const CONTROL: Rows = &[
         17,
         "drops_in_time",
     ),
-    ("ends with pairs inside", "draining & stopped & none_inside_heard & ", "draining & ", 20, "idle_is_empty"),
+    ("ends with pairs inside", "draining & stopped & none_inside_heard & ", "draining & ", 21, "idle_is_empty"),
     (
         "runs on when the watchdog expires",
         "fails <= (running & (abort_job | read_failed | write_failed)) | expires;",
@@ -94,7 +94,7 @@ const CONTROL: Rows = &[
 ];
 
 const FEEDER: Rows = &[
-    ("pairs enter after an abort", "wire go_0 = may_go_on & ", "wire go_0 = ", 20, "only_in_a_job"),
+    ("pairs enter after an abort", "wire go_0 = may_go_on & ", "wire go_0 = ", 21, "only_in_a_job"),
     (
         "a line is ready that is not there",
         "= any_lines_waiting_without_step & any_lines_left",
@@ -103,9 +103,9 @@ const FEEDER: Rows = &[
         "takes_a_line",
     ),
     ("takes a line that is not ready", "wire take = line_ready & ", "wire take = ", 16, "enters_once"),
-    ("a turn too many", "(turn >= turns_before_2)", "(turn > turns_before_2)", 21, "turn_is_an_scpu"),
-    ("two pairs count as one", "entered <= go_1 ? 2'd2 : ", "entered <= go_1 ? 2'd1 : ", 20, "enters_once"),
-    ("a ready line counts as two", "(lines_left - 32'd1)", "(lines_left - 32'd2)", 19, "readies_once"),
+    ("a turn too many", "(turn >= turns_before_2)", "(turn > turns_before_2)", 22, "turn_is_an_scpu"),
+    ("two pairs count as one", "entered <= go_1 ? 2'd2 : ", "entered <= go_1 ? 2'd1 : ", 21, "enters_once"),
+    ("a ready line counts as two", "(lines_left - 32'd1)", "(lines_left - 32'd2)", 20, "readies_once"),
     (
         "counts no line that it takes",
         "if (start | lines_left_step) lines_left",
@@ -113,12 +113,12 @@ const FEEDER: Rows = &[
         20,
         "flags_are_right",
     ),
-    ("every line is short", "last_is_next ? last_place : 1'b1", "last_place", 19, "only_last_is_short"),
+    ("every line is short", "last_is_next ? last_place : 1'b1", "last_place", 20, "only_last_is_short"),
     (
         "the last line is known late",
         "last_line_ready & ~two_lines_ready",
         "last_line_ready & two_lines_ready",
-        19,
+        20,
         "enters_once",
     ),
     (
@@ -128,8 +128,8 @@ const FEEDER: Rows = &[
         19,
         "knows_the_last",
     ),
-    ("a short line holds two", "next_last >= 1'b1", "1'b1", 19, "knows_what_it_holds"),
-    ("a job with lines has no pairs", "all_given <= start ? ~|lines : ", "all_given <= start | ", 10, "all_come_out"),
+    ("a short line holds two", "next_last >= 1'b1", "1'b1", 20, "knows_what_it_holds"),
+    ("a job with lines has no pairs", "all_given <= start ? ~|lines : ", "all_given <= start | ", 11, "all_come_out"),
 ];
 
 const CREDITS: Rows = &[
@@ -144,35 +144,35 @@ const CREDITS: Rows = &[
         "pairs that came out are still inside",
         "((pairs_inside + {4'd0, entered}) - {4'd0, emerged_now})",
         "(pairs_inside + {4'd0, entered})",
-        27,
+        29,
         "inside_is_right",
     ),
     (
         "room is never used up",
         "(line_left ? 6'd2 : 6'd0) - {4'd0, entered}",
         "line_left ? 6'd2 : 6'd0",
-        21,
+        22,
         "places_add_up",
     ),
     (
         "room is forgotten when a pair enters",
         "room <= start ? 6'd32 : room_now;",
         "room <= start ? 6'd32 : |entered ? 6'd0 : room_now;",
-        21,
+        22,
         "room_is_seen",
     ),
     (
         "a pair takes eight places",
         "(line_left ? 6'd2 : 6'd0) - {4'd0, entered}",
         "(line_left ? 6'd2 : 6'd0) - {1'b0, entered, 3'd0}",
-        22,
+        23,
         "never_negative",
     ),
     (
         "a job is complete with pairs inside",
         "all_emerged <= ~start & all_given & is_empty;",
         "all_emerged <= ~start & all_given;",
-        22,
+        23,
         "all_come_out",
     ),
 ];
@@ -182,14 +182,14 @@ const PACKER: Rows = &[
         "the last line goes out twice",
         "wire start_or_flushes = start | flushes;",
         "wire start_or_flushes = start;",
-        29,
+        31,
         "last_line_once",
     ),
     (
         "two pairs come out as one",
         "emerged + {30'd0, group_before}",
         "emerged + {31'd0, |group_before}",
-        29,
+        30,
         "comes_out_once",
     ),
 ];
@@ -199,15 +199,15 @@ const STORE: Rows = &[
         "a line counts as nine",
         "line_valid ? (stored + 5'd1) : (stored - 5'd1)",
         "line_valid ? (stored + 5'd17) : (stored - 5'd1)",
-        29,
+        31,
         "fits",
     ),
-    ("sends a line that has left", "take ? any_stored_after_step", "1'b0 ? any_stored_after_step", 30, "sends_a_line"),
+    ("sends a line that has left", "take ? any_stored_after_step", "1'b0 ? any_stored_after_step", 32, "sends_a_line"),
     (
         "a line that comes last is not known",
         "take ? any_stored_after_step : any_stored_without_step",
         "take ? any_stored_after_step : any_stored",
-        30,
+        31,
         "knows_what_is_stored",
     ),
 ];
@@ -216,7 +216,7 @@ const SLOT: Rows = &[(
     "results are early",
     "leaves <= leaves_in | answers_soon;",
     "leaves <= leaves_in | {takes_lane_1, takes_lane_0};",
-    24,
+    25,
     "comes_out",
 )];
 
@@ -225,48 +225,48 @@ const PORT_CONTROL: Rows = &[
         "ends with a request on the port",
         "none_inside_heard & (link_idle_heard | given_up);",
         "none_inside_heard;",
-        18,
+        19,
         "rd_in_job",
     ),
-    ("done with a write on the port", "dispatched & link_idle & goes_on;", "dispatched & goes_on;", 34, "wr_in_job"),
-    ("done and still busy", "(busy_copy_0 & ~completes & ~drained)", "(busy_copy_0 & ~drained)", 13, "done_known"),
+    ("done with a write on the port", "dispatched & link_idle & goes_on;", "dispatched & goes_on;", 36, "wr_in_job"),
+    ("done and still busy", "(busy_copy_0 & ~completes & ~drained)", "(busy_copy_0 & ~drained)", 14, "done_known"),
     (
         "a response that nobody waits for is no error",
         "unexpected_heard <= unexpected & ~begins;",
         "unexpected_heard <= 1'b0;",
-        40,
+        41,
         "surprise_is_told",
     ),
     (
         "done at once",
         "completes <= run & packer_done & dispatched & link_idle & goes_on;",
         "completes <= run & goes_on;",
-        11,
+        12,
         "done_all",
     ),
 ];
 
 const PORT_COLLECTOR: Rows = &[
-    ("every other line is read", "(next_address + 58'd1)", "(next_address + 58'd2)", 12, "rd_in_order"),
-    ("the first line is asked for again", "= {epoch, next_slot};", "= {epoch, 2'd0};", 12, "rd_tag_free"),
-    ("ends while a read is out", "~|outstanding & ", "", 18, "done_acknowledged"),
+    ("every other line is read", "(next_address + 58'd1)", "(next_address + 58'd2)", 13, "rd_in_order"),
+    ("the first line is asked for again", "= {epoch, next_slot};", "= {epoch, 2'd0};", 13, "rd_tag_free"),
+    ("ends while a read is out", "~|outstanding & ", "", 19, "done_acknowledged"),
     (
         "read requests do not wait",
         "rd_req_valid <= rd_req_next_valid | ~rd_req_moves;",
         "rd_req_valid <= rd_req_next_valid;",
-        12,
+        13,
         "rd_stable",
     ),
 ];
 
 const PORT_DISPATCHER: Rows = &[
-    ("every other line is written", "(wr_req_address + 58'd1)", "(wr_req_address + 58'd2)", 35, "wr_in_order"),
-    ("all writes have one tag", "= {wr_req_epoch, wr_req_slot};", "= {wr_req_epoch, 2'd0};", 35, "wr_tag_free"),
+    ("every other line is written", "(wr_req_address + 58'd1)", "(wr_req_address + 58'd2)", 37, "wr_in_order"),
+    ("all writes have one tag", "= {wr_req_epoch, wr_req_slot};", "= {wr_req_epoch, 2'd0};", 37, "wr_tag_free"),
     (
         "write requests do not wait",
         "wr_req_valid <= (goes & ~drops_requests) | ~wr_req_moves;",
         "wr_req_valid <= goes & ~drops_requests;",
-        33,
+        34,
         "wr_stable",
     ),
 ];
@@ -275,7 +275,7 @@ const PORT_SLOT: Rows = &[(
     "every result is the complement",
     "record_0 <= answers_lane_0 ? unit_record : record_0_in;",
     "record_0 <= answers_lane_0 ? ~unit_record : record_0_in;",
-    32,
+    33,
     "wr_data",
 )];
 
@@ -284,17 +284,17 @@ const PORT_PACKER: Rows = &[
         "contacts in one lane only",
         "contacts_now <= {1'b0, contact_here_0} + {1'b0, contact_here_1};",
         "contacts_now <= {1'b0, contact_here_1};",
-        40,
+        41,
         "done_counts",
     ),
     (
         "invalid pairs in one lane only",
         "invalid_now <= {1'b0, invalid_here_0} + {1'b0, invalid_here_1};",
         "invalid_now <= {1'b0, invalid_here_1};",
-        40,
+        41,
         "done_invalid",
     ),
-    ("the wrong invalid pair", "(emerged + {31'd0, first_invalid_lane})", "emerged", 40, "done_first"),
+    ("the wrong invalid pair", "(emerged + {31'd0, first_invalid_lane})", "emerged", 41, "done_first"),
 ];
 
 const ANY_COLLECTOR: Rows = &[(
@@ -305,7 +305,7 @@ const ANY_COLLECTOR: Rows = &[(
     "rd_in_order",
 )];
 
-const ENDS: Rows = &[("acknowledgements are not counted", "(free_step ^ answered)", "free_step", 55, "ends")];
+const ENDS: Rows = &[("acknowledgements are not counted", "(free_step ^ answered)", "free_step", 57, "ends")];
 
 pub const TABLES: &[(&str, &str, Rows)] = &[
     ("credits", "contact_afu_control.v", CONTROL),

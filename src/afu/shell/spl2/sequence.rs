@@ -122,7 +122,8 @@ pub(super) fn sequence(spec: &Spec) -> Result<Arc<Module>, BuildErrors> {
     let mode_bits = JobInputs::of(spec).mode.bits;
     let job_mode = graph.data_register("job_mode", mode_bits);
     // A mode with a higher bit is an unknown one. Pairs have only mode 0.
-    let higher = mode.drop_low(mode_bits).any();
+    let higher = control::MODE.of(arrives).drop_low(mode_bits).extend(32);
+    let higher = differs(higher, constant(32, 0), "higher_mode");
     let takes_spheres = spec.config.input == Input::Spheres;
     let unknown = if takes_spheres { higher.repeat(mode_bits) } else { higher.extend(mode_bits) };
     let folded = mode.low(mode_bits) | unknown;
