@@ -29,8 +29,8 @@ pub(super) fn slice<'g>(
     ready: Signal<'g>,
 ) -> Slice<'g> {
     let at_port = graph.register(&format!("{port}_valid"), 1, 0);
-    // A copy says whether there is room, one stands at the port, one steers the wide fields. A reset clears them because
-    // it `drops`.
+    // A copy says whether there is room, one stands at the port, one steers the wide fields. A reset clears them,
+    // because it `drops`.
     let waits = graph.wire(&format!("{port}_waits"), 1);
     let copies = waits.data_copies(&format!("{port}_spare_valid"), 3);
     let (room, spare, steers) = (copies[0], copies[1], copies[2]);
