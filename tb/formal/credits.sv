@@ -26,8 +26,8 @@ module credits (
   localparam CAPACITY = 2 * `LINES;
 `endif
   localparam ROOM_BITS = $clog2(CAPACITY) + 1;
-  // Cycles from the count of pairs that enter to their results behind the last slot.
-  // From the feeder's decision to what leaves the chain: the feeder's rank, the chain, and the slot's around its SCPU.
+  // Cycles from the count of pairs that enter to their results behind the last slot. An SCPU that takes a pair in every
+  // cycle has one register more before it.
 `ifdef EVERY_OTHER
   localparam RANKS = `LATENCY + `SCPUS + 2;
 `else

@@ -22,7 +22,7 @@ pub(super) fn protocol(afu: &Afu) -> String {
 ## Sampling
 
 Everything is sampled at the rising edge of `clk`, at the end of its cycle. Reset is {reset}; it {kind}. The table \
-has the levels from the second cycle in reset on.
+has the levels in reset; `contacts`, `invalid` and `first_invalid` have theirs from its second cycle on.
 
 - `start` is taken in a cycle in which `busy` is low, and with it `source`, {inputs}, `count`, `mode`, `epoch` and `watchdog`. In \
          other cycles these may have any level.
