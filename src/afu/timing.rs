@@ -49,9 +49,15 @@ impl Afu {
     /// The cycles of each part.
     pub fn timing(&self) -> Timing {
         let chain = self.spec().scpus_in_turn(self.spec().config.interval);
+        // With `--decide`, the slots are those of deciders.
+        let fill = match (self.spec().deciding(), self.decision()) {
+            (Some(of_slots), Some(kernel)) => {
+                credits::cycles_to_fill(slot::latency(&of_slots, kernel.latency), of_slots.config.scpus)
+            }
+            _ => credits::cycles_to_fill(slot::latency(self.spec(), self.kernel().latency), chain),
+        };
         Timing {
-            fill: credits::cycles_to_fill(slot::latency(self.spec(), self.kernel().latency), chain)
-                + control::CYCLES_TO_HEAR,
+            fill: fill + control::CYCLES_TO_HEAR,
             start: control::CYCLES_TO_RUN,
             request: collector::CYCLES_TO_REQUEST,
             collect: collector::CYCLES_TO_LINE,
@@ -72,8 +78,41 @@ impl Afu {
 mod tests {
     use super::super::Spec;
     use super::*;
-    use crate::config::Config;
+    use crate::config::{Config, Profile, Results, Shell};
+    use crate::hdl::Evaluator;
     use crate::record::AROUND_CYCLES;
+
+    /// The cycle of the first read request if a job is started in cycle `start` after a reset.
+    fn first_request(afu: &Afu, start: u32) -> u32 {
+        let mut unit = Evaluator::new(afu.top(), &[]).expect("an evaluator");
+        unit.reset();
+        for (port, value) in [("count", 1), ("rd_req_ready", 1)] {
+            unit.set(port, value);
+        }
+        for cycle in 0..1000 {
+            unit.set("start", (cycle == start).into());
+            if unit.get("rd_req_valid") == 1 {
+                return cycle;
+            }
+            unit.step();
+        }
+        panic!("no request in 1000 cycles");
+    }
+
+    #[test]
+    fn a_job_begins_once_the_delay_lines_are_filled() {
+        let profile: Profile = "e8f3z".parse().expect("a profile");
+        for (scpus, interval, decide) in [(1, 1, 0), (7, 1, 0), (7, 3, 0), (1, 1, 1), (1, 3, 2)] {
+            let results = if decide > 0 { Results::Hits } else { Results::All };
+            let profile = profile.clone();
+            let config = Config { scpus, interval, decide, results, profile, shell: Shell::Line, ..Config::default() };
+            let afu = Afu::generate(Spec::from(config)).expect("an AFU");
+            let t = afu.timing();
+            let soonest = t.start + t.request;
+            let requests = [0, t.fill - 1, t.fill, t.fill + 1].map(|start| first_request(&afu, start) - soonest);
+            assert_eq!(requests, [t.fill, t.fill, t.fill, t.fill + 1], "{scpus} SCPUs, {interval}, {decide} deciders");
+        }
+    }
 
     #[test]
     fn the_word_says_what_a_host_plans_with() {
