@@ -170,8 +170,8 @@ mod tests {
         for (text, why) in [
             ("exact+faithful", "exact has its own arithmetic"),
             ("exact+zero", "exact has its own arithmetic"),
-            ("e11f24+faithful", "up to 23 bits"),
-            ("e11f52r", "up to 23 bits"),
+            ("e11f32+faithful", "up to 31 bits"),
+            ("e11f52r", "up to 31 bits"),
             ("wide+up", "unknown option `up`"),
             ("wide+", "unknown option ``"),
         ] {

@@ -12,6 +12,10 @@ use super::module::{Module, Node, NodeId, Op, Primitive};
 const TABLE_INDEX: RangeInclusive<u32> = 6..=9;
 /// The widest word of a block memory.
 const TABLE_BITS: u32 = 36;
+/// Bits of an index into a block memory of twice as many words.
+pub(crate) const DEEP_TABLE_INDEX_BITS: u32 = 10;
+/// The widest word of that.
+pub(crate) const DEEP_TABLE_BITS: u32 = 18;
 
 /// The delays of a target between two registers.
 ///
@@ -219,8 +223,11 @@ impl DelayModel {
         let fits = |id: &NodeId| module.node(*id).width <= self.multiplier_bits;
         match node.op {
             Op::Mul if node.operands.iter().all(fits) => self.multiplier_registers,
-            Op::Lookup(_) if TABLE_INDEX.contains(&module.node(node.operands[0]).width) && node.width <= TABLE_BITS => {
-                self.table_registers
+            Op::Lookup(_) => {
+                let index_bits = module.node(node.operands[0]).width;
+                let is_shallow = TABLE_INDEX.contains(&index_bits) && node.width <= TABLE_BITS;
+                let is_deep = index_bits == DEEP_TABLE_INDEX_BITS && node.width <= DEEP_TABLE_BITS;
+                if is_shallow || is_deep { self.table_registers } else { 0 }
             }
             _ => 0,
         }

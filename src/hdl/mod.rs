@@ -30,6 +30,7 @@ pub(crate) use block_memory::{Ports, block_memory};
 pub use cut::{Timing, cut};
 pub use delay_block::delay_block;
 pub use delay_model::DelayModel;
+pub(crate) use delay_model::{DEEP_TABLE_BITS, DEEP_TABLE_INDEX_BITS};
 pub use error::{BuildErrors, Error};
 pub use evaluate::{EvaluateError, Evaluator, Pin};
 pub use graph::Graph;

@@ -24,8 +24,8 @@ pub struct Format {
     roots: Roots,
 }
 
-/// The longest fraction, in bits, for which faithful roots were checked with every significand.
-pub const FAITHFUL_FRACTION_BITS: u32 = 23;
+/// The longest fraction, in bits, for which there are faithful roots: all significands were tried.
+pub const FAITHFUL_FRACTION_BITS: u32 = 31;
 
 /// Why a format was refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

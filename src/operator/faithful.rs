@@ -5,7 +5,7 @@
 
 use super::parts::{Operand, Signed, Unrounded, product_of};
 use super::{Domain, recip, sqrt};
-use crate::hdl::Signal;
+use crate::hdl::{DEEP_TABLE_BITS, DEEP_TABLE_INDEX_BITS, Signal};
 use crate::number::{Faithful, Function, Piece};
 
 /// 1 / a.
@@ -67,7 +67,7 @@ pub fn value<'g>(
     let less = if cut == Cut::Half { 0 } else { u128::from(table.half()) };
     let begins = words(|piece| piece.c0).into_iter().map(|word| (word - less) & ((1 << value_bits) - 1));
     let begins: Vec<u128> = begins.collect();
-    let begin = index.lookup(&begins, value_bits).named("piece_begin");
+    let begin = word(index, &begins, value_bits, "piece_begin");
     if t_bits == 0 {
         return begin.drop_low(table.guard_bits());
     }
@@ -75,7 +75,7 @@ pub fn value<'g>(
     let (slopes, curves) = (words(|piece| piece.c1), words(|piece| piece.c2));
     let (slope_bits, curve_bits) = (bits(&slopes), bits(&curves));
     let both: Vec<u128> = slopes.iter().zip(&curves).map(|(slope, curve)| slope << curve_bits | curve).collect();
-    let both = index.lookup(&both, slope_bits + curve_bits).named("piece_slope_and_curve");
+    let both = word(index, &both, slope_bits + curve_bits, "piece_slope_and_curve");
     let slope = both.high(slope_bits).named("piece_slope");
     let curve = both.low(curve_bits).named("piece_curve");
 
@@ -88,4 +88,16 @@ pub fn value<'g>(
         Function::Root => begin + rise,
     };
     sum.named("value").drop_low(table.guard_bits())
+}
+
+/// The word of a table. If it has more words than a block memory of the widest words, it is in two of narrower ones.
+fn word<'g>(index: Signal<'g>, table: &[u128], bits: u32, name: &str) -> Signal<'g> {
+    if index.width() < DEEP_TABLE_INDEX_BITS {
+        return index.lookup(table, bits).named(name);
+    }
+    let part = |from: u32, bits: u32| {
+        let words: Vec<u128> = table.iter().map(|word| word >> from & ((1 << bits) - 1)).collect();
+        index.lookup(&words, bits).named(&format!("{name}_from_{from}"))
+    };
+    part(DEEP_TABLE_BITS, bits - DEEP_TABLE_BITS).concat(part(0, DEEP_TABLE_BITS)).named(name)
 }

@@ -194,7 +194,8 @@ fn a_million_of_other_arithmetic() {
         VALUES.into_iter().for_each(|values| randomly(convert, Domain::new(format(from), values), 100_000));
     }
     for operator in [Operator::Sqrt, Operator::Recip] {
-        for text in ["e10f23zr", "e8f23r", "e8f23tr", "e8f15r", "e5f23r", "e5f23tr"] {
+        for text in ["e10f23zr", "e8f23r", "e8f23tr", "e8f15r", "e5f23r", "e5f23tr", "e10f27zr", "e6f29r", "e10f31ztr"]
+        {
             VALUES.into_iter().for_each(|values| randomly(operator, Domain::new(format(text), values), 100_000));
         }
     }

@@ -40,7 +40,8 @@ fn check(what: &str, module: &Arc<Module>, forms: &[As], latency: u32, inputs: &
 fn operator(operator: Operator, profile: &str, forms: &[As], count: usize) {
     let profile: Profile = profile.parse().expect("a profile");
     let format = profile.format();
-    let unit = Unit::operator(operator, &profile, Values::Any, &DelayModel::default(), 200.0).expect("it can be cut");
+    let model = if forms.contains(&As::Blocks) { Target::Ecp5.delays() } else { DelayModel::default() };
+    let unit = Unit::operator(operator, &profile, Values::Any, &model, 200.0).expect("it can be cut");
     let mut random = Xoshiro256PlusPlus::seed_from_u64(3);
     let corners = [0, 1, format.sign_mask(), format.sign_mask() - 1, format.sign_mask() >> 1, format.sign_mask() >> 2];
     let mut word = |i: usize| match i % 3 {
@@ -92,6 +93,14 @@ fn operators_after_synthesis_give_the_twins_bits() {
     operator(Operator::Add, "e5f6", &[As::Printed, As::Gates], 600);
     operator(Operator::Mul, "e5f6", &[As::Ecp5], 600);
     operator(Operator::RootExceeds, "e5f6", &[As::Ecp5], 600);
+}
+
+/// Fractions of 31 bits have tables that fill block memories, in words of 18 bits.
+#[test]
+fn a_long_root_and_its_tables_in_the_blocks_of_a_target() {
+    for root in [Operator::Sqrt, Operator::Recip] {
+        operator(root, "e10f31zr", &[As::Blocks], 600);
+    }
 }
 
 #[test]

@@ -156,12 +156,15 @@ fn port(
 }
 
 /// Ports `index` and `word`. Both ports of the memory read: one the low 18 bits of the word, from the lower half of the
-/// memory, and the other one the remaining bits, from the upper half.
+/// memory, and the other one the remaining bits, from the upper half. A table of more words fills both halves, and both
+/// ports read the same.
 fn table(module: &Module) -> Block {
     let table = module.nodes.iter().find_map(|node| if let Op::Lookup(table) = &node.op { Some(table) } else { None });
+    let is_deep = table.is_some_and(|table| table.len() > HALF);
     let part = |address: usize| {
-        let word = table.and_then(|table| table.get(address % HALF)).copied().unwrap_or_default();
-        let part = if address < HALF { word } else { word >> WORD };
+        let place = if is_deep { address } else { address % HALF };
+        let word = table.and_then(|table| table.get(place)).copied().unwrap_or_default();
+        let part = if is_deep || address < HALF { word } else { word >> WORD };
         part & ((1 << WORD) - 1)
     };
     let value = |number: usize| {
@@ -173,7 +176,7 @@ fn table(module: &Module) -> Block {
     let connected = |letter: &str, half: u32| {
         let address = std::array::from_fn(|place| match place {
             0..4 => "1'b0".to_owned(),
-            13 => format!("1'b{half}"),
+            13 if !is_deep => format!("1'b{half}"),
             _ => bit(module, "index", place as u32 - 4),
         });
         port(letter, address, |_| "1'b0".to_owned(), ["1'b0", "1'b1", "1'b1"])

@@ -5,21 +5,28 @@ use crate::hdl::Signal;
 /// The widest unsigned factor of one tile: multipliers of 18 × 18 bits are common to FPGA families.
 const TILE: u32 = 18;
 
-/// The full product of two factors of equal width.
+/// The full product of two factors.
 ///
 /// Both are cut into equal digits. Tiles of digits with the same distance lie side by side without overlap, so
 /// they make one row; the rows are summed in a tree.
 #[track_caller]
 pub fn product<'g>(a: Signal<'g>, b: Signal<'g>) -> Signal<'g> {
-    let width = a.width();
-    let (a, b, digit) = (digits(a), digits(b), digit_width(width));
-    let mut rows = vec![Row { offset: 0, bits: row(&a, &b, [0, 0]) }];
-    for distance in 1..a.len() {
-        let offset = distance as u32 * digit;
-        rows.push(Row { offset, bits: row(&a, &b, [distance, 0]) });
-        rows.push(Row { offset, bits: row(&a, &b, [0, distance]) });
+    of_tiles(a, b, "")
+}
+
+/// The product. The names of its tiles begin with `prefix`.
+#[track_caller]
+fn of_tiles<'g>(a: Signal<'g>, b: Signal<'g>, prefix: &str) -> Signal<'g> {
+    let width = a.width() + b.width();
+    let [a_digit, b_digit] = [a, b].map(|factor| digit_width(factor.width()));
+    let (a, b) = (digits(a), digits(b));
+    let row = |offset, first| Row { offset, bits: row(&a, &b, first, prefix) };
+    let mut rows = vec![row(0, [0, 0])];
+    for distance in 1..a.len().max(b.len()) {
+        rows.extend((distance < a.len()).then(|| row(distance as u32 * a_digit, [distance, 0])));
+        rows.extend((distance < b.len()).then(|| row(distance as u32 * b_digit, [0, distance])));
     }
-    total(rows, 2 * width)
+    total(rows, width)
 }
 
 /// The full square: as the product, with each pair of mirrored tiles computed once and doubled.
@@ -27,9 +34,9 @@ pub fn product<'g>(a: Signal<'g>, b: Signal<'g>) -> Signal<'g> {
 pub fn square(a: Signal<'_>) -> Signal<'_> {
     let width = a.width();
     let (a, digit) = (digits(a), digit_width(width));
-    let mut rows = vec![Row { offset: 0, bits: row(&a, &a, [0, 0]) }];
+    let mut rows = vec![Row { offset: 0, bits: row(&a, &a, [0, 0], "") }];
     for distance in 1..a.len() {
-        rows.push(Row { offset: distance as u32 * digit + 1, bits: row(&a, &a, [distance, 0]) });
+        rows.push(Row { offset: distance as u32 * digit + 1, bits: row(&a, &a, [distance, 0], "") });
     }
     total(rows, 2 * width)
 }
@@ -40,9 +47,12 @@ pub fn settled_bits(width: u32) -> u32 {
     if width > digit_width(width) { digit_width(width) } else { 0 }
 }
 
-/// The full product of two factors of any width, the second at most as wide as one tile. Tiles are named after `name`.
+/// The full product of two factors of any width. Tiles are named after `name`.
 #[track_caller]
 pub fn product_of<'g>(a: Signal<'g>, b: Signal<'g>, name: &str) -> Signal<'g> {
+    if b.width() > TILE {
+        return of_tiles(a, b, &format!("{name}_")).named(name);
+    }
     let digit = digit_width(a.width());
     let tile = |(place, a): (usize, Signal<'g>)| {
         let bits = (a * b).named(&format!("{name}_tile_{place}"));
@@ -109,13 +119,14 @@ fn digits(value: Signal<'_>) -> Vec<Signal<'_>> {
     (0..width).step_by(digit.max(1) as usize).map(|low| value.slice(low, digit.min(width - low))).collect()
 }
 
-/// The products of digits from the `first` of each factor on, side by side.
-fn row<'g>(a: &[Signal<'g>], b: &[Signal<'g>], first: [usize; 2]) -> Signal<'g> {
+/// The products of digits from the `first` of each factor on, side by side, with names that begin with `prefix`.
+fn row<'g>(a: &[Signal<'g>], b: &[Signal<'g>], first: [usize; 2], prefix: &str) -> Signal<'g> {
     let [i, j] = first;
     let pairs = a[i..].iter().zip(&b[j..]).enumerate();
-    let tiles: Vec<_> = pairs.map(|(k, (&a, &b))| (a * b).named(&format!("tile_{}_{}", i + k, j + k))).collect();
+    let tiles: Vec<_> =
+        pairs.map(|(k, (&a, &b))| (a * b).named(&format!("{prefix}tile_{}_{}", i + k, j + k))).collect();
     let row: Vec<_> = tiles.into_iter().rev().collect();
-    Signal::join(&row).named(&format!("tiles_{i}_{j}"))
+    Signal::join(&row).named(&format!("{prefix}tiles_{i}_{j}"))
 }
 
 /// Sum of the rows in a tree: neighbours first, and the highest ones, which leave most bits unchanged.
