@@ -115,14 +115,18 @@ impl Faithful {
     }
 
     #[inline]
-    fn unrounded(&self, Piece { c0, c1, c2 }: Piece, t: u64) -> u64 {
-        let high = t >> (self.t_bits() - self.high_bits);
-        let slope = c1 - ((c2 * high) >> self.inner_shift);
-        let term = (slope * t) >> self.outer_shift;
+    fn unrounded(&self, piece: Piece, t: u64) -> u64 {
+        let term = (self.slope(piece, t) * t) >> self.outer_shift;
         match self.function {
-            Function::Reciprocal => c0 - term,
-            Function::Root => c0 + term,
+            Function::Reciprocal => piece.c0 - term,
+            Function::Root => piece.c0 + term,
         }
+    }
+
+    #[inline]
+    fn slope(&self, Piece { c1, c2, .. }: Piece, t: u64) -> u64 {
+        let high = t >> (self.t_bits() - self.high_bits);
+        c1 - ((c2 * high) >> self.inner_shift)
     }
 
     /// Bits of the fraction below those that select a piece; 0 if the table holds every result.
@@ -266,13 +270,11 @@ mod tests {
         let (stretch, slack) = (1_u64 << (t_bits - table.high_bits), power(-13));
         let (mut low, mut high, mut leads) = (f64::MAX, f64::MIN, true);
         for first in (0..1_u64 << bits).step_by(stretch as usize) {
-            let Piece { c0, c1, c2 } = table.pieces[(odd << table.index_bits) as usize + (first >> t_bits) as usize];
+            let piece = table.pieces[(odd << table.index_bits) as usize + (first >> t_bits) as usize];
             for fraction in [first, first + stretch - 1] {
                 let t = fraction & ((1 << t_bits) - 1);
-                let upper = t >> (t_bits - table.high_bits);
-                let slope = c1 - ((c2 * upper) >> table.inner_shift);
-                let term = (slope * t) as f64 * power(-(table.outer_shift as i32));
-                let line = (c0 - HALF) as f64 + if function == Function::Reciprocal { -term } else { term };
+                let term = (table.slope(piece, t) * t) as f64 * power(-(table.outer_shift as i32));
+                let line = (piece.c0 - HALF) as f64 + if function == Function::Reciprocal { -term } else { term };
                 let m = 1.0 + fraction as f64 * power(-(bits as i32));
                 let away = line - table.exact(odd.into(), m) * power((bits + GUARD_BITS) as i32);
                 (low, high) = (low.min(away), high.max(away));

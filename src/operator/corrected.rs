@@ -10,7 +10,7 @@ use super::{Domain, Operator, recip, sqrt};
 use crate::hdl::Signal;
 use crate::number::{Function, Roots};
 
-/// The longest fraction with this architecture. There are tables for longer ones.
+/// The longest fraction with this architecture. Tables exist for longer ones, but what they cost here was not routed.
 const FRACTION_BITS: u32 = 23;
 
 /// True if this architecture exists: for rounding to nearest, and fractions up to a length. Subnormals may not occur,
