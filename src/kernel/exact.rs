@@ -19,7 +19,7 @@ pub struct Filtered<T: Window> {
 /// The contact of two spheres that are `valid`. Words are given by their index in the record; words and results are in
 /// the format `record`. Fields that are not asked for are zero.
 ///
-/// With T = (r1+r2)² − |p1−p2|² the spheres touch if T ≥ 0, and their depth is T / ((r1+r2) + |p1−p2|), in which
+/// With T = (r1+r2)² − |p1−p2|² the spheres touch if T ≥ 0, and their depth is T · 1/((r1+r2) + |p1−p2|), in which
 /// nothing cancels. Differences are in [`Format::DIFFERENCE`], T is in a window of exact squares ([`Window`]), and the
 /// rest is in [`Format::TAIL`]. `docs/exact.md` proves that every number is within one unit in the last place.
 pub fn exact<T: Window>(word: impl Fn(usize) -> T, valid: T::Bool, record: Format, fields: Fields) -> Filtered<T> {
@@ -48,10 +48,12 @@ pub fn exact<T: Window>(word: impl Fn(usize) -> T, valid: T::Bool, record: Forma
     let inverse = d.recip().named("inverse_distance");
     let [nx, ny, nz] = [(x, "nx"), (y, "ny"), (z, "nz")].map(|(v, name)| (v * inverse).named(name));
     let s = sum.to(tail).named("tail_radius_sum");
-    // Coincident centres: the depth is the sum of the radii itself, and nothing is divided by zero.
-    let depth = T::select(coincident, s, excess / (s + d)).named("overlap");
+    let over = (s + d).recip().named("inverse_of_sum");
+    let overlap = (excess * over).named("overlap");
     let r1 = pair.r1.to(tail);
-    let k = (depth * depth.constant(0.5) - r1).named("offset");
+    let k = (overlap * overlap.constant(0.5) - r1).named("offset");
+    // Coincident centres: the depth is the sum of the radii itself, and nothing that was divided by zero is used.
+    let depth = T::select(coincident, s, overlap);
 
     let deliver = Delivery { hit, zero, unasked, record, fields };
     let n = Vector3::new(nx, ny, nz);

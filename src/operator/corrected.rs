@@ -8,19 +8,16 @@ use super::faithful::{Cut, value};
 use super::parts::{Operand, Rounding, Signed, Unrounded, product_low, square_low};
 use super::{Domain, Operator, recip, sqrt};
 use crate::hdl::Signal;
-use crate::number::{Function, Roots};
+use crate::number::{FAITHFUL_FRACTION_BITS, Function, Roots};
 
-/// The longest fraction with this architecture. Tables exist for longer ones, but what they cost here was not routed.
-const FRACTION_BITS: u32 = 23;
-
-/// True if this architecture exists: for rounding to nearest, and fractions up to a length. Subnormals may not occur,
-/// because they are not rounded at the last place.
+/// True if this architecture exists: for rounding to nearest, and fractions that have a table. Subnormals may not
+/// occur, because they are not rounded at the last place.
 pub fn is_possible(operator: Operator, domain: Domain) -> bool {
     matches!(operator, Operator::Recip | Operator::Sqrt)
         && domain.format().roots() == Roots::Correct
         && domain.rounding() == Rounding::NearestEven
         && !domain.keeps_subnormals()
-        && domain.fraction_bits() <= FRACTION_BITS
+        && domain.fraction_bits() <= FAITHFUL_FRACTION_BITS
 }
 
 /// 1 / a.

@@ -1,7 +1,9 @@
 //! The fronts: points that no other point beats in both error and time.
 
+use super::axes::name;
 use super::table::BASE;
 use super::{Point, Study};
+use crate::config::Config;
 use crate::report::table::{counted, grouped};
 use std::collections::BTreeSet;
 
@@ -65,7 +67,7 @@ const SCATTER: f64 = 0.01;
 /// The points that would be on a front of any time if they were routed. For this, the model's clock is multiplied by
 /// the median ratio of routed to modelled clocks. (Over a link, the link's own time counts, which no clock changes.)
 /// Points that are no faster than an equally accurate routed point are left out. The point that times are compared with
-/// is included.
+/// and the one that a user gets without asking are included.
 pub(super) fn worth_routing(results: &Study) -> Vec<usize> {
     let mut left: Vec<f64> =
         results.points.iter().filter_map(|point| Some(point.routed_mhz()? / point.modelled_mhz)).collect();
@@ -82,8 +84,10 @@ pub(super) fn worth_routing(results: &Study) -> Vec<usize> {
         !routed.any(|point| placed(time, point).is_some_and(is_as_good))
     };
     let better = |time| front(by(time), time, |_| true).into_iter().filter(move |&index| is_better(time, index));
-    let base = results.points.iter().position(|point| point.name == BASE && point.routed_mhz().is_none());
-    let all: BTreeSet<usize> = Time::ALL.into_iter().flat_map(better).chain(base).collect();
+    let always = [BASE.to_owned(), name(&Config::default())];
+    let is_due = |point: &Point| always.contains(&point.name) && point.routed_mhz().is_none();
+    let always = (0..results.points.len()).filter(|&index| is_due(&results.points[index]));
+    let all: BTreeSet<usize> = Time::ALL.into_iter().flat_map(better).chain(always).collect();
     all.into_iter().collect()
 }
 
@@ -148,7 +152,9 @@ mod tests {
         let first = worth_routing(&results);
         let fronts = on_fronts(&results);
         assert!(fronts.len() > 5 && fronts.iter().all(|index| first.contains(index)), "{fronts:?}, {first:?}");
-        assert!(first.iter().any(|&index| results.points[index].name == BASE), "times are compared with it: {first:?}");
+        for always in [BASE, "wide"] {
+            assert!(first.iter().any(|&index| results.points[index].name == always), "{always}: {first:?}");
+        }
         for &index in &first {
             let point = &mut results.points[index];
             let routed_mhz = Some(0.8 * point.modelled_mhz);

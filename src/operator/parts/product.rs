@@ -3,7 +3,7 @@
 use crate::hdl::Signal;
 
 /// The widest unsigned factor of one tile: multipliers of 18 × 18 bits are common to FPGA families.
-const TILE: u32 = 18;
+pub const TILE: u32 = 18;
 
 /// The full product of two factors.
 ///
@@ -11,13 +11,37 @@ const TILE: u32 = 18;
 /// they make one row; the rows are summed in a tree.
 #[track_caller]
 pub fn product<'g>(a: Signal<'g>, b: Signal<'g>) -> Signal<'g> {
-    of_tiles(a, b, "")
+    total(rows(a, b, ""), a.width() + b.width())
 }
 
-/// The product. The names of its tiles begin with `prefix`.
+/// `begin` + (a · b >> `shift`), or less that, as wide as `begin`. The row of the tiles on the diagonal is added to
+/// `begin` while the others are summed. Tiles are named after `name`.
 #[track_caller]
-fn of_tiles<'g>(a: Signal<'g>, b: Signal<'g>, prefix: &str) -> Signal<'g> {
-    let width = a.width() + b.width();
+pub fn with_product<'g>(
+    begin: Signal<'g>,
+    subtracts: bool,
+    [a, b]: [Signal<'g>; 2],
+    shift: u32,
+    name: &str,
+) -> Signal<'g> {
+    let width = begin.width() + shift;
+    let combine = |x: Signal<'g>, y: Signal<'g>| {
+        let y = y.extend(y.width().max(x.width())).low(x.width());
+        if subtracts { x - y } else { x + y }
+    };
+    let mut rows = rows(a, b, &format!("{name}_"));
+    let diagonal = rows.remove(0).bits;
+    let low = diagonal.low(shift);
+    // What is subtracted is cut first: so ones stand below `begin`, and nothing is borrowed from it.
+    let low = if subtracts { !low } else { low };
+    let near = combine(begin, diagonal.drop_low(shift)).named(&format!("{name}_near")).concat(low);
+    let Row { offset, bits } = sum_of(rows, width);
+    combine(near.drop_low(offset), bits).drop_low(shift - offset)
+}
+
+/// The rows of a product, that of the diagonal first. The names of its tiles begin with `prefix`.
+#[track_caller]
+fn rows<'g>(a: Signal<'g>, b: Signal<'g>, prefix: &str) -> Vec<Row<'g>> {
     let [a_digit, b_digit] = [a, b].map(|factor| digit_width(factor.width()));
     let (a, b) = (digits(a), digits(b));
     let row = |offset, first| Row { offset, bits: row(&a, &b, first, prefix) };
@@ -26,7 +50,7 @@ fn of_tiles<'g>(a: Signal<'g>, b: Signal<'g>, prefix: &str) -> Signal<'g> {
         rows.extend((distance < a.len()).then(|| row(distance as u32 * a_digit, [distance, 0])));
         rows.extend((distance < b.len()).then(|| row(distance as u32 * b_digit, [0, distance])));
     }
-    total(rows, width)
+    rows
 }
 
 /// The full square: as the product, with each pair of mirrored tiles computed once and doubled.
@@ -47,12 +71,9 @@ pub fn settled_bits(width: u32) -> u32 {
     if width > digit_width(width) { digit_width(width) } else { 0 }
 }
 
-/// The full product of two factors of any width. Tiles are named after `name`.
+/// The full product of two factors of any width, the second at most as wide as one tile. Tiles are named after `name`.
 #[track_caller]
 pub fn product_of<'g>(a: Signal<'g>, b: Signal<'g>, name: &str) -> Signal<'g> {
-    if b.width() > TILE {
-        return of_tiles(a, b, &format!("{name}_")).named(name);
-    }
     let digit = digit_width(a.width());
     let tile = |(place, a): (usize, Signal<'g>)| {
         let bits = (a * b).named(&format!("{name}_tile_{place}"));
@@ -129,15 +150,20 @@ fn row<'g>(a: &[Signal<'g>], b: &[Signal<'g>], first: [usize; 2], prefix: &str) 
     Signal::join(&row).named(&format!("{prefix}tiles_{i}_{j}"))
 }
 
+/// Sum of the rows as a word of this width.
+fn total<'g>(rows: Vec<Row<'g>>, width: u32) -> Signal<'g> {
+    let Row { offset, bits } = sum_of(rows, width);
+    bits.append_zeros(offset).extend(width)
+}
+
 /// Sum of the rows in a tree: neighbours first, and the highest ones, which leave most bits unchanged.
-fn total<'g>(mut rows: Vec<Row<'g>>, width: u32) -> Signal<'g> {
+fn sum_of<'g>(mut rows: Vec<Row<'g>>, width: u32) -> Row<'g> {
     rows.sort_by_key(|row| row.offset);
     while rows.len() > 1 {
         let pairs = rows.rchunks(2).rev();
         rows = pairs.map(|pair| if let [a, b] = *pair { sum(a, b, width) } else { pair[0] }).collect();
     }
-    let Row { offset, bits } = rows[0];
-    bits.append_zeros(offset).extend(width)
+    rows[0]
 }
 
 /// a + b, where b's offset is not smaller than a's. The bits of `a` below `b` bypass the adder.
