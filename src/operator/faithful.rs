@@ -3,7 +3,7 @@
 //! [`Faithful`] has the table and the integers that the hardware computes. A result that is a number of the format is
 //! exact.
 
-use super::parts::{Operand, Signed, TILE, Unrounded, product_of, with_product};
+use super::parts::{Operand, Signed, Unrounded, product_of, with_product};
 use super::{Domain, recip, sqrt};
 use crate::hdl::{DEEP_TABLE_BITS, DEEP_TABLE_INDEX_BITS, Signal};
 use crate::number::{Faithful, Function, Piece};
@@ -82,13 +82,8 @@ pub fn value<'g>(
     let t = fraction.low(t_bits).named("t");
     let bend = product_of(curve, t.high(table.high_bits()), "bend").drop_low(table.inner_shift());
     let bent = (slope - bend.extend(slope.width())).named("bent_slope");
-    let (shift, subtracts) = (table.outer_shift(), function == Function::Reciprocal);
-    let sum = if t_bits > TILE {
-        with_product(begin, subtracts, [bent, t], shift, "rise")
-    } else {
-        let rise = product_of(bent, t, "rise").drop_low(shift).extend(value_bits);
-        if subtracts { begin - rise } else { begin + rise }
-    };
+    let subtracts = function == Function::Reciprocal;
+    let sum = with_product(begin, subtracts, [bent, t], table.outer_shift(), "rise");
     sum.named("value").drop_low(table.guard_bits())
 }
 

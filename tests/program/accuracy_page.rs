@@ -4,6 +4,7 @@ use assert_cmd::Command;
 use contact_afu::accuracy::trade::{Bounds, Study, Time, choose, committed, front, page, steps, write};
 use contact_afu::afu::{Afu, Spec};
 use contact_afu::config;
+use contact_afu::synth::Unit;
 use std::fs;
 
 fn results() -> Study {
@@ -91,6 +92,15 @@ fn the_picture_in_the_docs_is_that_of_the_committed_study() {
     write(&results(), room.path()).expect("written");
     let drawn = fs::read_to_string(room.path().join("front.svg")).expect("written");
     expect_test::expect_file!["../../docs/img/accuracy.svg"].assert_eq(&drawn);
+}
+
+/// The study is that of today's hardware: every SCPU in it takes as many cycles as the one that is generated now.
+#[test]
+fn every_point_has_the_cycles_of_today_s_hardware() {
+    for point in &results().points {
+        let latency = Unit::scpu(&point.config).expect("an SCPU").latency;
+        assert_eq!(latency, Some(point.scpu_cycles), "{}: make the study again (docs/accuracy.md)", point.name);
+    }
 }
 
 #[test]

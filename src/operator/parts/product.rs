@@ -3,7 +3,7 @@
 use crate::hdl::Signal;
 
 /// The widest unsigned factor of one tile: multipliers of 18 × 18 bits are common to FPGA families.
-pub const TILE: u32 = 18;
+const TILE: u32 = 18;
 
 /// The full product of two factors.
 ///
@@ -14,8 +14,8 @@ pub fn product<'g>(a: Signal<'g>, b: Signal<'g>) -> Signal<'g> {
     total(rows(a, b, ""), a.width() + b.width())
 }
 
-/// `begin` + (a · b >> `shift`), or less that, as wide as `begin`. The row of the tiles on the diagonal is added to
-/// `begin` while the others are summed. Tiles are named after `name`.
+/// `begin` + (a · b >> `shift`), or less that, as wide as `begin`. If `b` is wider than one tile, the row of the tiles
+/// on the diagonal is added to `begin` while the others are summed. Tiles are named after `name`.
 #[track_caller]
 pub fn with_product<'g>(
     begin: Signal<'g>,
@@ -24,19 +24,22 @@ pub fn with_product<'g>(
     shift: u32,
     name: &str,
 ) -> Signal<'g> {
-    let width = begin.width() + shift;
     let combine = |x: Signal<'g>, y: Signal<'g>| {
         let y = y.extend(y.width().max(x.width())).low(x.width());
         if subtracts { x - y } else { x + y }
     };
+    if b.width() <= TILE {
+        return combine(begin, product_of(a, b, name).drop_low(shift));
+    }
     let mut rows = rows(a, b, &format!("{name}_"));
     let diagonal = rows.remove(0).bits;
     let low = diagonal.low(shift);
     // What is subtracted is cut first: so ones stand below `begin`, and nothing is borrowed from it.
     let low = if subtracts { !low } else { low };
-    let near = combine(begin, diagonal.drop_low(shift)).named(&format!("{name}_near")).concat(low);
-    let Row { offset, bits } = sum_of(rows, width);
-    combine(near.drop_low(offset), bits).drop_low(shift - offset)
+    let near = combine(begin, diagonal.drop_low(shift)).named(&format!("{name}_near"));
+    let near = near.concat(low).named(&format!("{name}_near_long"));
+    let Row { offset, bits } = sum_of(rows, begin.width() + shift);
+    combine(near.drop_low(offset), bits).named(&format!("{name}_far")).drop_low(shift - offset)
 }
 
 /// The rows of a product, that of the diagonal first. The names of its tiles begin with `prefix`.
