@@ -20,7 +20,7 @@ pub(super) fn loader(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, BuildErr
     let run = graph.input("run", 1);
     let spheres = graph.input("count", COUNT_BITS);
     let others = graph.input("others", COUNT_BITS);
-    let has_others = graph.input("has_others", 1);
+    let one_set = graph.input("one_set", 1);
     let keeps_table = graph.input("keeps_table", 1);
     let comes = graph.input("line_comes", 1);
     let line = graph.input("line", spec.line_bits);
@@ -38,7 +38,7 @@ pub(super) fn loader(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, BuildErr
     let left = graph.register("spheres_left", COUNT_BITS, 0);
     let row = graph.register("row_now", ROW_NUMBER_BITS, 0);
     let column = graph.register("column_now", sizes.loaded_bits(), 0);
-    let searched = (!has_others | *second).named("is_searched");
+    let searched = (one_set | *second).named("is_searched");
     // A row that is searched needs a place among the rows that are kept.
     let inside_bits = sizes.kept_bits + 1;
     let inside = graph.register("rows_inside", inside_bits, 0);
@@ -57,7 +57,7 @@ pub(super) fn loader(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, BuildErr
     let more = left.drop_low(ROW_BITS).any().named("has_whole_row");
     let fewer = left.drop_low(ROW_BITS).minus(1).concat(left.low(ROW_BITS));
     let behind_row = more.select(fewer, left.same(0)).named("left_behind_row");
-    let turns = (!any_left & has_others & !*second).named("turns_to_second_set");
+    let turns = (!any_left & !searched).named("turns_to_second_set");
     let first_left = keeps_table.select(others, spheres);
     let row_changes = (start | row_loaded | turns).named("row_changes");
     left.next_if(row_changes, start.select(first_left, turns.select(others, behind_row)));
@@ -68,7 +68,7 @@ pub(super) fn loader(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, BuildErr
     some_left.next(start | turns.select(others.any(), any_then));
     // A row that begins is inside from the next cycle on, in which it is no longer at its first sphere.
     let is_inside_row = goes.select(!column.all(), column.any()).named("goes_on_in_row");
-    let is_searched = !has_others | *second | turns;
+    let is_searched = searched | turns;
     may_go.next(start | is_inside_row | !is_searched | !inside.msb() | row_ends);
     row.next_if(row_changes, (start | turns).select(row.same(0), row.plus(1)));
     let present: Vec<_> = (0..sizes.loaded)
@@ -136,7 +136,7 @@ pub(super) fn loader(spec: &Spec, sizes: &Sizes) -> Result<Arc<Module>, BuildErr
     none_yet.next(start | (*none_yet & !invalid));
     graph.output("invalid", count.value());
     graph.output("first_invalid", first.value());
-    let set_ended = (!any_left & (!has_others | *second)).named("set_ended");
+    let set_ended = (!any_left & searched).named("set_ended");
     // The last sphere is still on its way to its box, and then to its row, for a few cycles.
     let passing = later(start, goes, cycles + 5, "passing");
     let on_the_way = graph.register("spheres_on_the_way", COUNT_BITS.ilog2() + 1, 0);

@@ -77,6 +77,8 @@ pub(in crate::afu) fn spheres_top(
         ("place", head),
     ]);
     let collector = graph.instance("collector", &collector::collector(spec)?, &collector_inputs);
+    // It stays for a job, and the parts stand far from one another and from the control: each has a register of it.
+    let one_set = (!has_others).copies("one_set", 4);
     let start = begin("loader");
     let loader = graph.instance(
         "loader",
@@ -86,7 +88,7 @@ pub(in crate::afu) fn spheres_top(
             ("run", run),
             ("count", control.output("job_count")),
             ("others", control.output("job_others")),
-            ("has_others", has_others),
+            ("one_set", one_set[0]),
             ("keeps_table", keeps_table),
             ("line_comes", collector.output("line_comes")),
             ("line", collector.output("line")),
@@ -110,9 +112,6 @@ pub(in crate::afu) fn spheres_top(
     inputs.extend(of_sphere);
     inputs.extend(named(&boxes));
     let rows = graph.instance("rows", &rows::rows(&sizes)?, &inputs);
-
-    // It stays for a job, and the parts stand far from one another and from the control: each has a register of it.
-    let one_set = (!has_others).copies("one_set", 3);
 
     // Groups of rows: one item a row.
     let (_, groups_takes) = wire("groups_take", 1);
@@ -146,7 +145,7 @@ pub(in crate::afu) fn spheres_top(
     if sizes.top_bits > 0 {
         inputs.push(("write_word", rows.output("group_box_group").drop_low(ROW_BITS)));
     }
-    inputs.push(("one_set", one_set[0]));
+    inputs.push(("one_set", one_set[1]));
     inputs.extend(queries);
     let groups = graph.instance("groups", &level(spec, &sizes, Level::Groups)?, &inputs);
     groups_takes.drive(groups.output("takes"));
@@ -176,7 +175,7 @@ pub(in crate::afu) fn spheres_top(
         ("write_word", rows.output("row_box_row").slice(ROW_BITS, sizes.group_bits)),
         ("write_box", rows.output("row_box")),
     ];
-    inputs.push(("one_set", one_set[1]));
+    inputs.push(("one_set", one_set[2]));
     inputs.extend(queries);
     inputs.extend(item.place.map(|place| ("item_place", place)));
     let group_rows = graph.instance("group_rows", &level(spec, &sizes, Level::Rows)?, &inputs);
@@ -239,7 +238,7 @@ pub(in crate::afu) fn spheres_top(
         ("write_own", write_own),
         ("write_column", column),
         ("write_row", row),
-        ("one_set", one_set[2]),
+        ("one_set", one_set[3]),
     ];
     let table_boxes = each("box", "write_box");
     inputs.extend(named(&table_boxes));
