@@ -173,7 +173,8 @@ fn elaborates_for_any_number_of_scpus_and_no_other() {
         let mut icarus = Command::new("iverilog");
         icarus.args(["-g2005", "-Wall", "-Wno-timescale", "-t", "null", "-s", "afu_top"]);
         check("Icarus", &icarus.arg(format!("-Pafu_top.SCPUS={scpus}")).args(&verilog).output().unwrap());
-        let parameter = format!("chparam -set SCPUS {scpus} afu_top; hierarchy -check -top afu_top");
+        let parameter =
+            format!("chparam -set SCPUS {scpus} afu_top; hierarchy -check -top afu_top; proc; check -assert");
         check("Yosys", &run_yosys(folder.path(), &format!("read_verilog {}; {parameter}", names(&verilog))));
     }
 }
