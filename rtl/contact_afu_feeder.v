@@ -78,9 +78,12 @@ module contact_afu_feeder (
   // ---- logic ----
   wire may_go = phase == turn_phase;
   wire go_0 = may_go_on & may_go & in_hand;
+  wire uses_lane_1 = 7'd5 < scpus;
   wire [1:0] turn_within_plus_1 = {1'b0, turn_within} + 2'd1;
-  wire [1:0] block_size = (block_is_last & scpus[0]) ? {1'b0, scpus[0]} : 2'd2;
-  wire unit_1 = turn_within_plus_1 < block_size;
+  wire [1:0] behind_full_blocks = uses_lane_1 ? {1'b0, scpus[0]} : 2'd0;
+  wire [1:0] full_block = uses_lane_1 ? 2'd2 : 2'd1;
+  wire [1:0] block_size = (block_is_last & |behind_full_blocks) ? behind_full_blocks : full_block;
+  wire unit_1 = uses_lane_1 & (turn_within_plus_1 < block_size);
   wire [2:0] place_after_0 = {2'd0, place};
   wire [2:0] place_after_1 = place_after_0 + 3'd1;
   wire last_is_next = last_line_ready & ~two_lines_ready;
@@ -123,7 +126,7 @@ module contact_afu_feeder (
   wire round_ends = ends_block & block_is_last;
   wire round_begins = start | round_ends;
   wire [7:0] scpus_plus_1 = {1'b0, scpus} + 8'd1;
-  wire [7:0] blocks = {1'b0, scpus_plus_1[7:1]};
+  wire [7:0] blocks = uses_lane_1 ? {1'b0, scpus_plus_1[7:1]} : {1'b0, scpus};
   wire one_block = blocks == 8'd1;
   wire before_last_block = ({1'b0, turn_block} + 8'd2) == blocks;
   wire next_within = go_1 ? turn_within_plus_2[0] : go_0 ? turn_within_plus_1[0] : turn_within;

@@ -81,7 +81,7 @@ module scpu_slot (
   wire [6:0] next_index = index + 7'd1;
   wire [1:0] takes_lanes = {takes_lane_1, takes_lane_0};
   wire takes_lane_0_next = carries_in[0] & names_in[0];
-  wire uses_lane_1 = 7'd1 < scpus;
+  wire uses_lane_1 = 7'd5 < scpus;
   wire takes_lane_1_next = carries_in[1] & names_in[1] & uses_lane_1;
   wire chooses_lane_1_next = names_in[1] & uses_lane_1;
   wire answers_lane_1_next = answers_soon[1] & uses_lane_1;

@@ -1,22 +1,25 @@
 //! Turns at an interval above 1. The pairs of an SCPU are always a multiple of the interval apart, even after the
 //! feeder waited.
 //!
-//! A phase counter runs freely through the interval. If a line has L pairs, SCPUs 0 to L − 1 take theirs in phase 0
-//! only, the next L in phase 1, and so on. A group stays within such a block. With N SCPUs, an interval of II cycles
-//! takes N pairs. If N is above L·II, the number of SCPUs is the largest multiple of L·II that is not above N, because
-//! at most one line arrives per cycle ([`Spec::scpus_in_turn`]).
+//! A phase counter runs freely through the interval. SCPUs 0 to B − 1 take their pairs in phase 0 only, the next B in
+//! phase 1, and so on. A group stays within such a block. With N SCPUs, an interval of II cycles takes N pairs, and B
+//! is the lowest power of two that is not below N / II. So up to II SCPUs need one lane of the chain, and synthesis
+//! leaves out the others. If a line has L pairs, B is at most L: if N is above L·II, the number of SCPUs is the largest
+//! multiple of L·II that is not above N, because at most one line arrives per cycle ([`Spec::scpus_in_turn`]).
 //!
 //! The decision which pairs go needs only the place in the block, the block's size, and whether it is the last of the
 //! round. The SCPU's number is counted where pairs are already on their way.
 
 use crate::hdl::{Graph, Register, Signal};
 
-use super::{SCPU_BITS, Spec};
+use super::{MAX_SCPUS, SCPU_BITS, Spec};
 
 /// The feeder's turns.
 pub(super) struct Rounds<'g> {
     lanes: u32,
     interval: u32,
+    /// For each power of two below the number of lanes: blocks are larger.
+    above: Vec<Signal<'g>>,
     /// The block in turn, and the phase in which it takes pairs.
     block: Register<'g>,
     phase: Register<'g>,
@@ -45,20 +48,27 @@ impl<'g> Rounds<'g> {
         let phase = graph.register("turn_phase", bits, 0);
         let may_go = free.equals(phase.value()).named("may_go");
         let shift = lanes.ilog2();
-        let round_up = scpus.extend(SCPU_BITS + 1).plus(u128::from(lanes - 1)).drop_low(shift);
-        let blocks = round_up.extend(SCPU_BITS + 1).named("blocks");
         let size_bits = shift + 1;
-        let all = graph.constant(size_bits, lanes.into());
-        let is_last = graph.register("block_is_last", 1, 0);
-        let size = if shift == 0 {
-            all
-        } else {
-            let rest = scpus.low(shift).extend(size_bits);
-            (*is_last & rest.any()).select(rest, all)
+        let above: Vec<_> = (0..shift).map(|power| uses_lane(spec, scpus, 1 << power)).collect();
+        let by_block = |name: &str, of: &dyn Fn(u32) -> Signal<'g>| {
+            let above = above.iter().zip(1..);
+            above.fold(of(0), |smaller, (above, power)| above.select(of(power), smaller)).named(name)
         };
+        let count_bits = SCPU_BITS + 1;
+        let blocks = by_block("blocks", &|power| {
+            scpus.extend(count_bits).plus((1 << power) - 1).drop_low(power).extend(count_bits)
+        });
+        let full = by_block("full_block", &|power| graph.constant(size_bits, 1 << power));
+        let rest = by_block("behind_full_blocks", &|power| match power {
+            0 => graph.constant(size_bits, 0),
+            _ => scpus.low(power).extend(size_bits),
+        });
+        let is_last = graph.register("block_is_last", 1, 0);
+        let size = (*is_last & rest.any()).select(rest, full);
         Some(Self {
             lanes,
             interval,
+            above,
             block: graph.register("turn_block", SCPU_BITS, 0),
             phase,
             within: graph.register("turn_within", shift.max(1), 0),
@@ -77,7 +87,11 @@ impl<'g> Rounds<'g> {
 
     /// True if a group that begins with the present turn may have a pair on this lane.
     pub fn admits(&self, lane: u32) -> Signal<'g> {
-        if lane == 0 { self.size.same(1).low(1) } else { self.behind(lane).less_than(self.size) }
+        match lane.checked_ilog2() {
+            None => self.size.same(1).low(1),
+            // Synthesis leaves out a lane that no block reaches.
+            Some(power) => self.above[power as usize] & self.behind(lane).less_than(self.size),
+        }
     }
 
     /// True if a group of this number of pairs is the last of its block.
@@ -111,4 +125,15 @@ impl<'g> Rounds<'g> {
 fn following(phase: Signal<'_>, interval: u32) -> Signal<'_> {
     let last = phase.is(u128::from(interval - 1));
     last.select(phase.same(0), phase.plus(1))
+}
+
+/// One bit: any of so many SCPUs is ever given a pair on this lane. The number is a parameter, so synthesis leaves out
+/// a lane that is not used.
+pub(super) fn uses_lane<'g>(spec: &Spec, scpus: Signal<'g>, lane: u32) -> Signal<'g> {
+    let most_without = match lane.checked_ilog2() {
+        None => return scpus.any(),
+        Some(power) if spec.config.interval > 1 => (spec.config.interval << power).min(MAX_SCPUS),
+        Some(_) => lane,
+    };
+    scpus.greater_than(scpus.same(most_without.into())).named(&format!("uses_lane_{lane}"))
 }

@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use crate::hdl::{BuildErrors, Graph, Module, Signal};
 
+use super::rounds::uses_lane;
 use super::{SCPU_BITS, Spec, wide};
 
 /// Register ranks before the SCPU: the chosen pair is registered. At interval 1 a second rank stands at the SCPU, whose
@@ -38,12 +39,7 @@ pub(super) fn slot(spec: &Spec, name: &str, scpu: &Arc<Module>) -> Result<Arc<Mo
     let names = graph.input("names_in", lanes);
     let pairs = graph.input("pairs_in", lanes * pair_bits);
 
-    // No lane is as many as there are SCPUs or above, and the parameter says so, so that synthesis leaves out the lanes
-    // that few SCPUs never use.
-    let is_used = |lane: u32| match lane {
-        0 => graph.constant(1, 1),
-        _ => scpus.greater_than(scpus.same(lane.into())).named(&format!("uses_lane_{lane}")),
-    };
+    let is_used = |lane: u32| if lane == 0 { graph.constant(1, 1) } else { uses_lane(spec, scpus, lane) };
     let mine: Vec<_> = (0..lanes).map(|lane| carries.bit(lane) & names.bit(lane) & is_used(lane)).collect();
     let taken: Vec<_> =
         mine.iter().zip(0..).map(|(mine, lane)| mine.registered(&format!("takes_lane_{lane}"))).collect();

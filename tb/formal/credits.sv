@@ -296,15 +296,18 @@ module credits (
   end
 `endif
 
-  // At an interval of 2 an SCPU never takes pairs in two consecutive cycles. SCPUs 0 and 1 take theirs in phase 0 and
-  // SCPU 2 in phase 1; a turn's phase is that of its SCPU.
+  // At an interval of 2 an SCPU takes pairs in every other cycle only, even if the feeder waits in between: a turn's phase
+  // is that of its SCPU. Two SCPUs take theirs on one lane, each in a phase of its own. Of three, SCPUs 0 and 1 take
+  // theirs in phase 0 and SCPU 2 in phase 1. Each hop of the chain is one cycle more.
 `ifdef EVERY_OTHER
   (* hierconn *) wire \dut.slots[0].unit.takes ;
   (* hierconn *) wire \dut.slots[1].unit.takes ;
 `ifdef THREE
   (* hierconn *) wire \dut.slots[2].unit.takes ;
   wire [2:0] takes = { \dut.slots[2].unit.takes , \dut.slots[1].unit.takes , \dut.slots[0].unit.takes };
+  localparam BLOCK = 2;
 `else
+  localparam BLOCK = 1;
   wire [2:0] takes = {1'b0, \dut.slots[1].unit.takes , \dut.slots[0].unit.takes };
 `endif
   (* hierconn *) wire \dut.feeder.turn_phase ;
@@ -314,13 +317,16 @@ module credits (
   // The SCPU's number is counted one cycle after the block's.
   wire [7:0] turn_then = {1'b0, \dut.feeder.turn } + {6'd0, \dut.feeder.entered };
   wire [7:0] next_turn = turn_then >= `SCPUS ? turn_then - `SCPUS : turn_then;
-  reg [2:0] took = 3'd0;
-  always @(posedge clk) took <= rst ? 3'd0 : takes;
+  (* hierconn *) wire \dut.feeder.phase ;
+  (* hierconn *) wire [1:0] \dut.feeder.carries ;
+  localparam [2:0] ODD = BLOCK == 1 ? 3'b111 : 3'b001;
   always @* if (begun & ~\dut.control.begin_job & ~rst) begin
     phase_is_the_block_s: assert (\dut.feeder.turn_phase == \dut.feeder.turn_block [0]
-      & \dut.feeder.block_is_last == (\dut.feeder.turn_block == (`SCPUS - 32'd1) / 32'd2));
-    turn_is_the_block_s: assert ({\dut.feeder.turn_block , \dut.feeder.turn_within } == next_turn);
-    every_other_cycle: assert ((takes & took) == 3'd0);
+      & \dut.feeder.block_is_last == (\dut.feeder.turn_block == (`SCPUS - 32'd1) / BLOCK));
+    turn_is_the_block_s: assert (\dut.feeder.turn_block * BLOCK + \dut.feeder.turn_within == next_turn);
+    within_its_block: assert (\dut.feeder.turn_within < BLOCK);
+    every_other_cycle: assert ((takes & (ODD ^ {3{\dut.feeder.phase }})) == 3'd0);
+    one_lane_serves_two: assert (BLOCK == 2 | ~\dut.feeder.carries [1]);
   end
 `endif
 endmodule

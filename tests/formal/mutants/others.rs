@@ -22,15 +22,23 @@ const ROUNDS: Rows = &[
     ),
     (
         "a group crosses its block",
-        "wire unit_1 = turn_within_plus_1 < block_size;",
-        "wire unit_1 = 1'b1;",
+        "wire unit_1 = uses_lane_1 & (turn_within_plus_1 < block_size);",
+        "wire unit_1 = uses_lane_1;",
         25,
         "every_other_cycle",
     ),
 ];
 
-const PHASE: Rows =
-    &[("any phase will do", "wire may_go = phase == turn_phase;", "wire may_go = 1'b1;", 23, "every_other_cycle")];
+const PHASE: Rows = &[
+    ("any phase will do", "wire may_go = phase == turn_phase;", "wire may_go = 1'b1;", 23, "every_other_cycle"),
+    (
+        "two pairs where one lane serves",
+        "uses_lane_1 = 7'd2 < scpus;",
+        "uses_lane_1 = 1'b1;",
+        23,
+        "phase_is_the_block_s",
+    ),
+];
 
 const SIEVE: Rows = &[
     (
