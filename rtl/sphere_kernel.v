@@ -3,7 +3,7 @@
 // contact of two spheres: hit,depth,normal,position
 // computed in e10f23z, words in e8f23
 // 113 cycles from inputs to outputs, new inputs every 5 cycles
-// take comes a cycle before new inputs, which stay for as long
+// take comes a cycle before new inputs, which stay for as long, and always in the same phase
 //
 // A unit takes its operands in this cycle of a pair, which is in this phase, cycle mod 5:
 // phase  cycle  unit                      computes
@@ -186,20 +186,20 @@ module sphere_kernel (
   // ---- logic ----
   assign invalid_pair = invalid_pair_early_kept[22];
   wire invalid_pair_early = ~valid;
-  wire [4:0] phase_next = take ? 5'd1 : {phase[3:0], phase[4]};
+  wire [4:0] phase_next = {phase[3:0], phase[4] | take};
   assign hit = hit_early_kept[10];
   wire hit_early = valid_kept[10] & ~distance_above_radius_sum;
   wire [4:0] place_of_20_in_phase_1_next = (place_of_20_in_phase_1 == 5'd19) ? 5'd0 : (place_of_20_in_phase_1 + 5'd1);
   wire [3:0] place_of_10_in_phase_0_next = (place_of_10_in_phase_0 == 4'd9) ? 4'd0 : (place_of_10_in_phase_0 + 4'd1);
   wire [4:0] place_of_19_in_phase_4_next = (place_of_19_in_phase_4 == 5'd18) ? 5'd0 : (place_of_19_in_phase_4 + 5'd1);
   wire [3:0] place_of_10_in_phase_2_next = (place_of_10_in_phase_2 == 4'd9) ? 4'd0 : (place_of_10_in_phase_2 + 4'd1);
-  wire phase_next_3_or_4 = phase_next[3] | phase_next[4];
-  wire [1:0] operand_x0123_next = {phase_next_3_or_4, phase_next[2] | phase_next[4]};
+  wire phase_2_or_3 = phase[2] | phase[3];
+  wire [1:0] operand_x0123_next = {phase_2_or_3, phase[1] | phase[3]};
   wire [33:0] minus_convert_unit_3_result = {~convert_unit_3_result[33], convert_unit_3_result[32:0]};
   wire [33:0] minus_convert_unit_2_result = {~convert_unit_2_result[33], convert_unit_2_result[32:0]};
   wire [33:0] minus_distance = {~distance[33], distance[32:0]};
-  wire phase_next_2_or_3 = phase_next[2] | phase_next[3];
-  wire phase_next_1_or_3 = phase_next[1] | phase_next[3];
+  wire phase_1_or_2 = phase[1] | phase[2];
+  wire phase_0_or_2 = phase[0] | phase[2];
   wire [3:0] place_of_16_in_phase_4_next = (place_of_16_in_phase_4 == 4'd15) ? 4'd0 : (place_of_16_in_phase_4 + 4'd1);
   wire [3:0] place_of_16_in_phase_3_next = (place_of_16_in_phase_3 == 4'd15) ? 4'd0 : (place_of_16_in_phase_3 + 4'd1);
   assign grazing = grazing_early_kept[10];
@@ -442,19 +442,19 @@ module sphere_kernel (
       place_of_10_in_phase_1 <= 4'd0;
     end else begin
       phase <= phase_next;
-      operand_0x1x2 <= {phase_next[4], phase_next[2]};
-      operand_01122 <= {phase_next_3_or_4, phase_next[1] | phase_next[2]};
-      operand_01234 <= {phase_next[4], phase_next_2_or_3, phase_next_1_or_3};
+      operand_0x1x2 <= {phase[3], phase[1]};
+      operand_01122 <= {phase_2_or_3, phase[0] | phase[1]};
+      operand_01234 <= {phase[3], phase_1_or_2, phase_0_or_2};
       if (phase[1]) place_of_20_in_phase_1 <= place_of_20_in_phase_1_next;
       if (phase[0]) place_of_10_in_phase_0 <= place_of_10_in_phase_0_next;
       operand_0x123 <= operand_x0123_next;
       if (phase[4]) place_of_19_in_phase_4 <= place_of_19_in_phase_4_next;
       if (phase[2]) place_of_10_in_phase_2 <= place_of_10_in_phase_2_next;
-      operand_0123x <= {phase_next_2_or_3, phase_next_1_or_3};
+      operand_0123x <= {phase_1_or_2, phase_0_or_2};
       if (phase[4]) place_of_16_in_phase_4 <= place_of_16_in_phase_4_next;
       if (phase[3]) place_of_16_in_phase_3 <= place_of_16_in_phase_3_next;
       operand_x0123 <= operand_x0123_next;
-      operand_xx012 <= {phase_next[4], phase_next[3]};
+      operand_xx012 <= {phase[3], phase[2]};
       if (phase[1]) place_of_10_in_phase_1 <= place_of_10_in_phase_1_next;
     end
   end

@@ -323,8 +323,8 @@ module credits (
   always @* if (begun & ~\dut.control.begin_job & ~rst) begin
     phase_is_the_block_s: assert (\dut.feeder.turn_phase == \dut.feeder.turn_block [0]
       & \dut.feeder.block_is_last == (\dut.feeder.turn_block == (`SCPUS - 32'd1) / BLOCK));
-    turn_is_the_block_s: assert (\dut.feeder.turn_block * BLOCK + \dut.feeder.turn_within == next_turn);
-    within_its_block: assert (\dut.feeder.turn_within < BLOCK);
+    turn_is_the_block_s: assert (\dut.feeder.turn_within < BLOCK
+      & \dut.feeder.turn_block * BLOCK + \dut.feeder.turn_within == next_turn);
     every_other_cycle: assert ((takes & (ODD ^ {3{\dut.feeder.phase }})) == 3'd0);
     one_lane_serves_two: assert (BLOCK == 2 | ~\dut.feeder.carries [1]);
   end

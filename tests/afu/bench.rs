@@ -81,11 +81,19 @@ fn status(outcome: &Outcome) -> Status {
 }
 
 impl Case {
-    pub fn new(config: &Config, pairs: Vec<PairRecord>) -> Self {
+    /// These pairs; where all spheres have one radius, with it, which memory does not hold.
+    pub fn new(config: &Config, mut pairs: Vec<PairRecord>) -> Self {
+        let mut words: Vec<u32> = pairs.iter().flat_map(|pair| pair.0).collect();
+        if let Some(radius) = config.radius {
+            for (PairRecord(pair), words) in pairs.iter_mut().zip(words.chunks_mut(8)) {
+                let [x1, y1, z1, _, x2, y2, z2, _] = *pair;
+                *pair = [x1, y1, z1, radius.to_bits(), x2, y2, z2, radius.to_bits()];
+                words.copy_from_slice(&[x1, y1, z1, x2, y2, z2, 0, 0]);
+            }
+        }
         let records = Reference::new(config.profile.format(), config.contact).run_all(&pairs);
         let count = |test: fn(&ContactRecord) -> bool| records.iter().filter(|record| test(record)).count() as u32;
         let is_invalid: fn(&ContactRecord) -> bool = |record| record.flow() == Some(Flow::Invalid);
-        let words: Vec<u32> = pairs.iter().flat_map(|pair| pair.0).collect();
         let size = hit_words(config.contact, 0, &ContactRecord::default()).len();
         let (lines_of, hits) = match config.results {
             Results::All => (destination(config.contact, &records), None),

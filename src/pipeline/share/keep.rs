@@ -21,11 +21,12 @@ pub(super) struct Phases<'g> {
 }
 
 impl<'g> Phases<'g> {
-    /// A ring of `interval` phases that restarts one cycle after `take`.
+    /// A ring of `interval` phases that begins one cycle after the first `take`. Later ones come a whole number of
+    /// intervals after it, when the ring is there by itself. So `take` decides nothing but the first phase, and what
+    /// selects operands in the others does not wait for it.
     pub fn new(graph: &'g Graph, interval: u32, take: Signal<'g>) -> Self {
         let phase = graph.register("phase", interval, 0);
-        let rotated = phase.low(interval - 1).concat(phase.msb());
-        let next = take.select(phase.same(1), rotated).named("phase_next");
+        let next = phase.low(interval - 1).concat(phase.msb() | take).named("phase_next");
         phase.next(next);
         let bits = |of: Signal<'g>| (0..interval).map(|index| of.bit(index)).collect();
         Self { graph, now: bits(phase.value()), next: bits(next), places: HashMap::new() }

@@ -32,6 +32,13 @@ const ROUNDS: Rows = &[
 const PHASE: Rows = &[
     ("any phase will do", "wire may_go = phase == turn_phase;", "wire may_go = 1'b1;", 23, "every_other_cycle"),
     (
+        "a pair on both lanes",
+        "carries_rank_0 <= {go_1, go_0};",
+        "carries_rank_0 <= {2{go_0}};",
+        23,
+        "one_lane_serves_two",
+    ),
+    (
         "two pairs where one lane serves",
         "uses_lane_1 = 7'd2 < scpus;",
         "uses_lane_1 = 1'b1;",
