@@ -3,7 +3,8 @@
 // contact of two spheres: hit,depth,normal,position
 // computed in e10f23z, words in e8f23
 // 113 cycles from inputs to outputs, new inputs every 5 cycles
-// take comes a cycle before new inputs, which stay for as long, and always in the same phase
+// take comes a cycle before new inputs, which stay for 5 cycles
+// every later take is a multiple of 5 cycles after the first
 //
 // A unit takes its operands in this cycle of a pair, which is in this phase, cycle mod 5:
 // phase  cycle  unit                      computes

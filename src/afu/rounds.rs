@@ -131,7 +131,7 @@ fn following(phase: Signal<'_>, interval: u32) -> Signal<'_> {
 /// a lane that is not used.
 pub(super) fn uses_lane<'g>(spec: &Spec, scpus: Signal<'g>, lane: u32) -> Signal<'g> {
     let most_without = match lane.checked_ilog2() {
-        None => return scpus.any(),
+        None => return scpus.graph().constant(1, 1),
         Some(power) if spec.config.interval > 1 => (spec.config.interval << power).min(MAX_SCPUS),
         Some(_) => lane,
     };

@@ -39,7 +39,7 @@ pub(super) fn slot(spec: &Spec, name: &str, scpu: &Arc<Module>) -> Result<Arc<Mo
     let names = graph.input("names_in", lanes);
     let pairs = graph.input("pairs_in", lanes * pair_bits);
 
-    let is_used = |lane: u32| if lane == 0 { graph.constant(1, 1) } else { uses_lane(spec, scpus, lane) };
+    let is_used = |lane: u32| uses_lane(spec, scpus, lane);
     let mine: Vec<_> = (0..lanes).map(|lane| carries.bit(lane) & names.bit(lane) & is_used(lane)).collect();
     let taken: Vec<_> =
         mine.iter().zip(0..).map(|(mine, lane)| mine.registered(&format!("takes_lane_{lane}"))).collect();

@@ -37,7 +37,7 @@ const LINE: [Image; 32] = [
     ("e8f3z", ALL, "f32", "hits", 3, 1, None, "2fcff89dac023616"),
     ("half", "hit", "f16", "all", 2, 1, None, "05cf42abaee7b94c"),
     ("half", "depth", "f16", "all", 2, 1, None, "cb134bbfe493f2e5"),
-    ("half", "normal", "f16", "all", 2, 2, None, "175276aef57aca47"),
+    ("half", "normal", "f16", "all", 3, 2, None, "175276aef57aca47"),
     ("half", ALL, "f16", "all", 4, 1, None, "357b22340740247e"),
     ("half", "hit", "f16", "hits", 2, 1, None, "10c1ba70e910b1ec"),
     ("half", "depth", "f16", "hits", 5, 2, None, "f02041d7cdcf25fc"),

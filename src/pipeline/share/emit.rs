@@ -21,7 +21,8 @@ pub(super) fn emit(kernel: &Kernel, kinds: &Kinds, plan: &Plan) -> Result<Arc<Mo
     kernel.about.iter().for_each(|line| graph.about(line.as_str()));
     let Plan { interval, latency, .. } = *plan;
     graph.about(format!("{latency} cycles from inputs to outputs, new inputs every {interval} cycles"));
-    graph.about("take comes a cycle before new inputs, which stay for as long, and always in the same phase");
+    graph.about(format!("take comes a cycle before new inputs, which stay for {interval} cycles"));
+    graph.about(format!("every later take is a multiple of {interval} cycles after the first"));
     let take = graph.input("take", 1);
     let mut emitter = Emitter {
         kernel,
