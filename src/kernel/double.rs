@@ -79,9 +79,9 @@ fn avx512(pairs: &[Block], contacts: &mut [Block]) {
 fn blocks(pairs: &[Block], contacts: &mut [Block]) {
     for (pairs, contacts) in pairs.iter().zip(contacts) {
         for lane in 0..LANES {
-            let contact = contact(pairs.0.each_ref().map(|column| column[lane]));
-            for (column, value) in contacts.0.iter_mut().zip(contact) {
-                column[lane] = value;
+            let contact = contact(std::array::from_fn(|word| pairs.0[word][lane]));
+            for (word, column) in contacts.0.iter_mut().enumerate() {
+                column[lane] = contact[word];
             }
         }
     }

@@ -125,6 +125,6 @@ fn write<T: Number<Bool = bool>>(contact: Contact<T>, valid: bool, bits: impl Fn
     let touching = if contact.coincident { Flow::Coincident.flags() } else { Flow::Real.flags() };
     let apart = if valid { Flow::Fake.flags() } else { Flow::Invalid.flags() };
     let flags = if contact.hit { touching } else { apart };
-    let [a, b, c, d, e, f, g] = contact.numbers().map(bits);
-    ContactRecord([a, b, c, d, e, f, g, flags])
+    let [a, b, c, d, e, f, g] = contact.numbers();
+    ContactRecord([bits(a), bits(b), bits(c), bits(d), bits(e), bits(f), bits(g), flags])
 }

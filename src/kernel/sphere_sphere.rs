@@ -24,7 +24,8 @@ impl<T: Number> Spheres<T> {
 
     #[inline(always)]
     fn to(self, format: Format) -> Self {
-        let [p1, p2] = [self.p1, self.p2].map(|p| Vector3::new(p.x.to(format), p.y.to(format), p.z.to(format)));
+        let centre = |p: Vector3<T>| Vector3::new(p.x.to(format), p.y.to(format), p.z.to(format));
+        let (p1, p2) = (centre(self.p1), centre(self.p2));
         Self { p1, r1: self.r1.to(format), p2, r2: self.r2.to(format) }
     }
 }
