@@ -1,5 +1,7 @@
 //! The same formula in binary64 over many pairs at once: what software would do for more accuracy than binary32.
 //!
+//! Written like [`batch`](super::batch), without `zip` and `map` once per pair, for the same reason.
+//!
 //! For comparison only: it decides by the rounded root, its input and output are `f64`, and no hardware is compared
 //! with it.
 
