@@ -9,7 +9,7 @@ use super::abi::{Api, raw};
 use super::error::CosimError;
 use super::instance::Instance;
 use super::source::Source;
-use super::verilate::{self, Design, Harness, Trace};
+use super::verilate::{self, Cache, Design, Harness, Trace};
 use crate::store::user_folder;
 
 const HARNESS: Harness<'static> = Harness {
@@ -52,6 +52,17 @@ impl Model {
     /// # Errors
     /// Returns the errors of `build`.
     pub fn build_in(source: &Source, trace: Trace, cache: &Path) -> Result<Self, CosimError> {
+        Self::kept_in(source, trace, cache.into())
+    }
+
+    /// As [`Model::build_in`], but Verilator's runtime stays in the user's folder, so that it is not compiled for each
+    /// `cache`.
+    pub(crate) fn build_alone_in(source: &Source, trace: Trace, cache: &Path) -> Result<Self, CosimError> {
+        let user = user_folder();
+        Self::kept_in(source, trace, Cache { models: cache, runtime: user.as_deref().unwrap_or(cache) })
+    }
+
+    fn kept_in(source: &Source, trace: Trace, cache: Cache) -> Result<Self, CosimError> {
         source.check()?;
         let design = Design {
             files: source.files(),

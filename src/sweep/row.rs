@@ -29,7 +29,7 @@ pub(super) struct HostSeconds {
     scpus: Option<u32>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     interval: Option<u32>,
-    /// Seconds to build the model from nothing, Verilator's runtime included.
+    /// Seconds to build the model anew. Verilator's runtime is included if this machine had not compiled it before.
     build_seconds: f64,
     /// Seconds of the simulation.
     simulation_seconds: f64,

@@ -65,12 +65,12 @@ impl Bench {
     }
 
     /// As [`Bench::new`], with a model from the folder `cache` even if the built-in one would serve, so that the time
-    /// of a build can be measured.
+    /// of a build can be measured. Verilator's runtime is the user's.
     ///
     /// # Errors
     /// Returns the errors of `new`.
     pub(crate) fn cached_in(config: &Config, cache: &Path) -> Result<Self, VerifyError> {
-        Self::of(config, generated(config)?, |source| Model::build_in(source, Trace::Off, cache), false)
+        Self::of(config, generated(config)?, |source| Model::build_alone_in(source, Trace::Off, cache), false)
     }
 
     /// The Verilog in `folder`, which `afu rtl` wrote and which may have been edited. `scpus` overrides the manifest's

@@ -10,16 +10,22 @@ fn afu(folder: &Path, arguments: &[&str]) -> assert_cmd::assert::Assert {
     Command::cargo_bin("afu").expect("the program is built").current_dir(folder).args(arguments).assert()
 }
 
-/// A sweep behind AXI4: the narrow bus is what limits two SCPUs.
+/// A sweep behind AXI4: the narrow bus is what limits two SCPUs. Verilator's runtime is compiled once, and is all that
+/// the user's folder keeps.
 #[test]
 fn a_sweep_behind_axi_is_limited_by_its_bus() {
     let room = tempfile::tempdir().expect("a temporary folder");
     let sweep = ["sweep", "--scpus", "1,4", "--pairs", "diamond:5", "--profile", "e8f3z", "--contact", "hit,depth"];
     let shell = ["--shell", "axi", "--bus", "128", "--out", "out", "--json", "-"];
-    let done = afu(room.path(), &[&sweep[..], &shell].concat()).success();
+    let cache = room.path().join("cache");
+    let mut command = Command::cargo_bin("afu").expect("the program is built");
+    let command = command.current_dir(room.path()).env("AFU_CACHE", &cache).args([&sweep[..], &shell].concat());
+    let done = command.assert().success();
     let json: Value = serde_json::from_slice(&done.get_output().stdout).expect("JSON alone");
     let rows = json["rows"].as_array().expect("rows");
     assert!(rows.iter().all(|row| row["mismatches"] == 0), "{json}");
+    let kept: Vec<_> = fs::read_dir(&cache).expect("a folder").map(|entry| entry.expect("an entry").path()).collect();
+    assert!(kept.len() == 1 && kept[0].join("verilated.o").is_file(), "{kept:?}");
     let cycles: Vec<f64> = rows.iter().filter_map(|row| row["cycles_per_pair"].as_f64()).collect();
     // Two pairs are a line, and a line is four beats of 128 bits.
     assert!(cycles.len() == 2 && cycles.iter().all(|cycles| (2.0..2.3).contains(cycles)), "{cycles:?}");

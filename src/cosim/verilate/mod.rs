@@ -162,15 +162,30 @@ fn verilator_arguments(design: &Design, files: &[File]) -> Vec<String> {
     arguments
 }
 
-/// Builds `design` as a shared library, or finds it in the folder `cache`. Any number of processes may do this at once.
-/// `target` is the Rust target triple of this process.
+/// Folders that keep what was built.
+#[derive(Clone, Copy, Debug)]
+pub struct Cache<'a> {
+    /// Models and their blocks.
+    pub models: &'a Path,
+    /// Verilator's runtime, which takes longer to compile than a small model and is the same for all of them.
+    pub runtime: &'a Path,
+}
+
+impl<'a> From<&'a Path> for Cache<'a> {
+    fn from(folder: &'a Path) -> Self {
+        Self { models: folder, runtime: folder }
+    }
+}
+
+/// Builds `design` as a shared library, or finds it in `cache`. Any number of processes may do this at once. `target`
+/// is the Rust target triple of this process.
 ///
 /// # Errors
 /// See [`Error`].
-pub fn shared(design: &Design, cache: &Path, target: &str) -> Result<PathBuf, Error> {
+pub fn shared(design: &Design, cache: Cache, target: &str) -> Result<PathBuf, Error> {
     let (tool, compiler) = (Tool::find()?, Compiler::find(target, target)?);
     let key = key(design, &tool, &compiler, "shared");
-    let folder = cache::once(cache, &key, |aside| {
+    let folder = cache::once(cache.models, &key, |aside| {
         let objects = objects(design, &tool, &compiler, cache, aside)?;
         compiler.link_shared(&objects, &tool, design.trace, &aside.join(MODEL))?;
         cache::keep_only(aside, MODEL)
@@ -195,7 +210,7 @@ pub fn objects_for_static(
     let folder = cache::once(cache, &key, |aside| {
         let kept = aside.join("objects");
         fs::create_dir(&kept).map_err(|e| Error::io("create", &kept, e))?;
-        for (index, object) in objects(design, tool, compiler, cache, aside)?.iter().enumerate() {
+        for (index, object) in objects(design, tool, compiler, cache.into(), aside)?.iter().enumerate() {
             let to = kept.join(format!("model_{index}.o"));
             fs::copy(object, &to).map_err(|e| Error::io("write", &to, e))?;
         }
@@ -209,10 +224,10 @@ fn objects(
     design: &Design,
     tool: &Tool,
     compiler: &Compiler,
-    cache: &Path,
+    cache: Cache,
     aside: &Path,
 ) -> Result<Vec<PathBuf>, Error> {
-    let block = block::build(design, tool, compiler, cache)?;
+    let block = block::build(design, tool, compiler, cache.models)?;
     let files = block.as_ref().map(|block| block::rest(design, block));
     let design_files = files.as_deref().unwrap_or(design.files);
     let generated = aside.join("cpp");
@@ -230,7 +245,7 @@ fn objects(
     write(&generated.join("harness.h"), design.harness.header)?;
     write(&generated.join("harness.cpp"), design.harness.source)?;
 
-    let mut objects = runtime(&classes.runtime, design, tool, compiler, cache)?;
+    let mut objects = runtime(&classes.runtime, design, tool, compiler, cache.runtime)?;
     let mut flags = compile::model_flags(tool, design.trace);
     flags.push(format!("-DAFU_TRACE={}", design.trace.number()));
     flags.push(format!("-DAFU_RTL_SHA256=\"{}\"", rtl_sha256(design.files)));
