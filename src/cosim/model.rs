@@ -55,8 +55,8 @@ impl Model {
         Self::kept_in(source, trace, cache.into())
     }
 
-    /// As [`Model::build_in`], but Verilator's runtime stays in the user's folder, so that it is not compiled for each
-    /// `cache`.
+    /// As [`Model::build_in`], but Verilator's runtime is kept in the user's folder, so that it is not compiled again
+    /// for each `cache`.
     pub(crate) fn build_alone_in(source: &Source, trace: Trace, cache: &Path) -> Result<Self, CosimError> {
         let user = user_folder();
         Self::kept_in(source, trace, Cache { models: cache, runtime: user.as_deref().unwrap_or(cache) })

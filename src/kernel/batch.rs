@@ -4,9 +4,9 @@
 //! SIMD code. The loop is compiled for several instruction sets, and the program selects one when it runs. None of them
 //! fuses or reorders operations, so all give the same bits.
 //!
-//! What runs once per pair has no `zip` and no `map` of an array. Not all that these call is marked for inlining in the
-//! standard library, and a call keeps the compiler from SIMD code where parts of a crate are optimised apart, as in the
-//! profile of tests.
+//! What runs once per pair uses neither `zip` nor `map` on arrays. Both call functions that the standard library does
+//! not mark for inlining. Where parts of a crate are optimised separately, as in the profile of tests, such a call
+//! prevents SIMD code.
 
 use super::reference::native;
 use crate::query::{CONTACT_WORDS, ContactRecord, Fields, PAIR_WORDS, PairRecord, Query};

@@ -54,7 +54,8 @@ fn area(config: &Config, task: &Task) -> Result<Area, SweepError> {
     Ok(synthesise(&unit, &Options { target, seeds: Vec::new(), placer: Placer::default() }, |_| ())?.area)
 }
 
-/// Builds the AFU of `config` anew, so that build times can be compared, and runs the task on it.
+/// Builds the AFU of `config`, even if the user has a model of it, so that build times can be compared, and runs the
+/// task on it.
 fn simulate(config: &Config, task: &Task) -> Result<Simulated, SweepError> {
     let cache = tempfile::Builder::new().prefix("afu-sweep-").tempdir().map_err(SweepError::Cache)?;
     let begun = Instant::now();

@@ -29,7 +29,7 @@ pub(super) struct HostSeconds {
     scpus: Option<u32>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     interval: Option<u32>,
-    /// Seconds to build the model anew. Verilator's runtime is included if this machine had not compiled it before.
+    /// Seconds to build the model. They include Verilator's runtime only if the user's folder did not have it yet.
     build_seconds: f64,
     /// Seconds of the simulation.
     simulation_seconds: f64,

@@ -65,7 +65,7 @@ impl Bench {
     }
 
     /// As [`Bench::new`], with a model from the folder `cache` even if the built-in one would serve, so that the time
-    /// of a build can be measured. Verilator's runtime is the user's.
+    /// of a build can be measured. Verilator's runtime comes from the user's folder.
     ///
     /// # Errors
     /// Returns the errors of `new`.

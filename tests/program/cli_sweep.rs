@@ -6,8 +6,14 @@ use std::path::Path;
 use assert_cmd::Command;
 use serde_json::Value;
 
+fn command(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::cargo_bin("afu").expect("the program is built");
+    command.current_dir(folder).args(arguments);
+    command
+}
+
 fn afu(folder: &Path, arguments: &[&str]) -> assert_cmd::assert::Assert {
-    Command::cargo_bin("afu").expect("the program is built").current_dir(folder).args(arguments).assert()
+    command(folder, arguments).assert()
 }
 
 /// A sweep behind AXI4: the narrow bus is what limits two SCPUs. Verilator's runtime is compiled once, and is all that
@@ -18,9 +24,7 @@ fn a_sweep_behind_axi_is_limited_by_its_bus() {
     let sweep = ["sweep", "--scpus", "1,4", "--pairs", "diamond:5", "--profile", "e8f3z", "--contact", "hit,depth"];
     let shell = ["--shell", "axi", "--bus", "128", "--out", "out", "--json", "-"];
     let cache = room.path().join("cache");
-    let mut command = Command::cargo_bin("afu").expect("the program is built");
-    let command = command.current_dir(room.path()).env("AFU_CACHE", &cache).args([&sweep[..], &shell].concat());
-    let done = command.assert().success();
+    let done = command(room.path(), &[&sweep[..], &shell].concat()).env("AFU_CACHE", &cache).assert().success();
     let json: Value = serde_json::from_slice(&done.get_output().stdout).expect("JSON alone");
     let rows = json["rows"].as_array().expect("rows");
     assert!(rows.iter().all(|row| row["mismatches"] == 0), "{json}");
