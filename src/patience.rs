@@ -7,6 +7,9 @@
 //! **The SCPUs.** The AFU says its number of SCPUs and their interval. In each interval each SCPU takes a pair, and all
 //! together no more than one line per cycle ([`Capability::computing_cycles`]).
 //!
+//! **A search.** Its comparisons and its contacts are bounded by their numbers ([`SearchWork`]). The SCPUs compute the
+//! contacts.
+//!
 //! **Requests.** A line that is read or written takes 1 ÷ rate cycles of its direction's bandwidth and of the bandwidth
 //! that both share. An AFU keeps `WINDOW` requests of a direction in flight, or as many as the link takes. All of
 //! them are answered within the link's longest latency (tail and stragglers included) and the time of so many lines.
@@ -58,8 +61,25 @@ pub struct Work {
     pub writes: u64,
     /// Cycles without a response after which the AFU itself gives up, if it does.
     pub watchdog: u32,
-    /// Cycles that a search among spheres takes at most, without a sign.
-    pub search: u64,
+    /// A search among spheres, if there is one.
+    pub search: SearchWork,
+}
+
+/// A search among spheres, as far as it takes time. It may take all of that without a sign.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SearchWork {
+    /// Cycles until all contacts are found, at most.
+    pub cycles: u64,
+    /// Contacts that it finds, at most.
+    pub contacts: u64,
+}
+
+impl SearchWork {
+    /// Cycles that it takes on this AFU at most, as if the SCPUs began when all contacts are found.
+    fn bound(self, afu: &Capability) -> u64 {
+        let computing = if self.contacts == 0 { 0 } else { afu.computing_cycles(self.contacts) };
+        self.cycles.saturating_add(computing)
+    }
 }
 
 /// When a host gives up.
@@ -109,8 +129,8 @@ fn both(afu: &Capability, work: &Work, cycles: impl Fn(&Work) -> f64) -> Patienc
         writes: work.writes.min(HELD_LINES),
         ..*work
     };
-    let bound =
-        |work: &Work| (cycles(work).ceil() as u64).saturating_add(work.watchdog.into()).saturating_add(work.search);
+    let search = work.search.bound(afu);
+    let bound = |work: &Work| (cycles(work).ceil() as u64).saturating_add(work.watchdog.into()).saturating_add(search);
     Patience { whole: bound(work), quiet: bound(&held) }
 }
 
@@ -154,7 +174,7 @@ mod tests {
     }
 
     fn work(pairs: u64) -> Work {
-        Work { pairs, reads: pairs.div_ceil(2), writes: pairs.div_ceil(2), watchdog: 0, search: 0 }
+        Work { pairs, reads: pairs.div_ceil(2), writes: pairs.div_ceil(2), watchdog: 0, search: SearchWork::default() }
     }
 
     #[test]
@@ -182,6 +202,17 @@ mod tests {
         let short = line(&afu, &link, &work(10));
         assert!(short.whole < 2_000, "{short:?}");
         assert_eq!(short.whole + 77, line(&afu, &link, &Work { watchdog: 77, ..work(10) }).whole);
+    }
+
+    #[test]
+    fn contacts_of_a_search_take_turns_in_the_scpus() {
+        let (link, search) = (LinkModel::ideal(), SearchWork { cycles: 1000, contacts: 50_000 });
+        let work = |search| Work { reads: 80, writes: 50_000, search, ..Work::default() };
+        let bound = |scpus, interval, search| line(&afu(scpus, interval), &link, &work(search)).whole;
+        let by_the_contacts =
+            |scpus, interval| bound(scpus, interval, search) - bound(scpus, interval, SearchWork::default()) - 1000;
+        assert_eq!(by_the_contacts(1, 4), 4 * 50_000 + 4);
+        assert_eq!(by_the_contacts(2, 4), 2 * 50_000 + 4);
     }
 
     /// Against the sum itself, drawn many times.

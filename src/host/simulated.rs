@@ -9,6 +9,7 @@ use crate::cosim::{Driver, Instance, Job, Outcome, axi, spl2};
 use crate::link::axi::Handshake;
 use crate::link::spl2::{Spl2, Spl2Model};
 use crate::link::{Link, LinkError, LinkModel, Traffic};
+use crate::patience::SearchWork;
 use crate::query::PairRecord;
 use crate::record::{pack, pack_spheres};
 use crate::spheres::Spheres;
@@ -18,8 +19,8 @@ use crate::spheres::Spheres;
 pub(crate) enum Given<'a> {
     /// Pairs.
     Pairs(&'a [PairRecord]),
-    /// Spheres, with room for this number of contacts, whose search takes at most this number of cycles.
-    Spheres { sets: &'a Spheres, contacts: u64, search: u64 },
+    /// Spheres, with room for this number of contacts, whose search takes at most this.
+    Spheres { sets: &'a Spheres, contacts: u64, search: SearchWork },
 }
 
 /// A job to be run.

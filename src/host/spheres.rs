@@ -9,6 +9,7 @@ use super::transaction::{Done, Loaded, Pointed, Retrieved, Transaction};
 use super::transport::Transport;
 use crate::config::Input;
 use crate::outcome::Outcome;
+use crate::patience::SearchWork;
 use crate::query::ContactRecord;
 use crate::record::{Contacts, Layout, SetTooLarge, numbers_of, pack_spheres, sphere_lines};
 use crate::spheres::{Counts, ROW, Sphere, Spheres};
@@ -88,14 +89,14 @@ impl<'s, T: Transport> Transaction<'s, T, Pointed> {
     /// Returns an error if the AFU takes pairs, if there are more spheres than its table or the source holds, if no
     /// AFU_ID arrives or another one than expected, or if the device breaks its protocol.
     pub fn send_spheres(self, sets: &Spheres) -> Result<Transaction<'s, T, Loaded<SpheresJob>>, HostError> {
-        self.send_spheres_within(sets, most_steps(sets))
+        self.send_spheres_within(sets, most_search_work(sets))
     }
 
-    /// The same for a search that is known to take no more than this number of cycles.
+    /// The same for a search that is known to take no more than this.
     pub(crate) fn send_spheres_within(
         mut self,
         sets: &Spheres,
-        search: u64,
+        search: SearchWork,
     ) -> Result<Transaction<'s, T, Loaded<SpheresJob>>, HostError> {
         let job = self.open.load_spheres(sets, search)?;
         self.open.set_up()?;
@@ -109,7 +110,7 @@ impl<'s, T: Transport, J> Transaction<'s, T, Done<J>> {
     /// # Errors
     /// Returns an error if the AFU takes pairs, or if there are more spheres than its table or the source holds.
     pub fn send_next_spheres(mut self, sets: &Spheres) -> Result<Transaction<'s, T, Loaded<SpheresJob>>, HostError> {
-        let job = self.open.load_spheres(sets, most_steps(sets))?;
+        let job = self.open.load_spheres(sets, most_search_work(sets))?;
         Ok(self.to(|_| Loaded { job }))
     }
 }
@@ -134,7 +135,7 @@ impl<'s, T: Transport> Transaction<'s, T, Retrieved<SpheresResults>> {
     /// # Errors
     /// Returns an error if there are more spheres than the AFU's table or the source holds.
     pub fn send_next_spheres(mut self, sets: &Spheres) -> Result<Transaction<'s, T, Loaded<SpheresJob>>, HostError> {
-        let job = self.open.load_spheres(sets, most_steps(sets))?;
+        let job = self.open.load_spheres(sets, most_search_work(sets))?;
         Ok(self.to(|_| Loaded { job }))
     }
 
@@ -168,8 +169,8 @@ impl<T: Transport> Session<T> {
 }
 
 impl<T: Transport> Open<'_, T> {
-    /// Replaces what is in the source by these sets, whose search takes at most this number of cycles.
-    fn load_spheres(&mut self, sets: &Spheres, search: u64) -> Result<SpheresJob, HostError> {
+    /// Replaces what is in the source by these sets, whose search takes at most this.
+    fn load_spheres(&mut self, sets: &Spheres, search: SearchWork) -> Result<SpheresJob, HostError> {
         let table = self.session.table()?;
         let others = sets.second.as_deref();
         let (first, second) = (sets.first.len(), others.map(<[_]>::len));
@@ -193,7 +194,7 @@ impl<T: Transport> Open<'_, T> {
     fn load_against(&mut self, others: &[Sphere]) -> Result<SpheresJob, HostError> {
         SetTooLarge::check(0, others.len(), self.session.table()?)?;
         let job = SpheresJob { first: self.table, second: Some(others.len() as u32) };
-        let search = most_steps_of(job.first.into(), others.len() as u64);
+        let search = most_search_work_of(job.first.into(), others.len() as u64);
         let task = Task { others: others.len() as u32, mode: 2, search, ..Task::default() };
         self.load_sets(&pack_spheres(others), task, others.len())?;
         Ok(job)
@@ -249,19 +250,20 @@ fn hits(job: &SpheresJob, layout: &Layout, outcome: &Outcome) -> Result<(Vec<[u3
     Ok((hits, contacts))
 }
 
-/// More cycles than a search takes: every comparison and every hit by itself, and what a row takes besides.
-pub(crate) fn steps(counts: &Counts, hits: u64, lines: u64) -> u64 {
+/// More than a search takes: every comparison and every hit by itself, and what a row takes besides.
+pub(crate) fn search_work(counts: &Counts, hits: u64, lines: u64) -> SearchWork {
     let Counts { group_tests, row_tests, sphere_tests, column_tests, candidates, invalid: _ } = *counts;
-    group_tests + row_tests + sphere_tests + column_tests + candidates + hits + CYCLES_OF_A_ROW * (lines + 1)
+    let tests = group_tests + row_tests + sphere_tests + column_tests;
+    SearchWork { cycles: tests + candidates + hits + CYCLES_OF_A_ROW * (lines + 1), contacts: hits }
 }
 
 /// The same if all that is not known yet is as slow as it can be: every sphere touches every other one.
-fn most_steps(sets: &Spheres) -> u64 {
+fn most_search_work(sets: &Spheres) -> SearchWork {
     let first = sets.first.len() as u64;
-    most_steps_of(first, sets.second.as_ref().map_or(first, |second| second.len() as u64))
+    most_search_work_of(first, sets.second.as_ref().map_or(first, |second| second.len() as u64))
 }
 
-fn most_steps_of(first: u64, second: u64) -> u64 {
+fn most_search_work_of(first: u64, second: u64) -> SearchWork {
     let row = ROW as u64;
     let tests = first.div_ceil(row) * second.div_ceil(row);
     let counts = Counts {
@@ -272,7 +274,7 @@ fn most_steps_of(first: u64, second: u64) -> u64 {
         candidates: row * row * tests,
         invalid: 0,
     };
-    steps(&counts, counts.candidates, sphere_lines(first) + sphere_lines(second))
+    search_work(&counts, counts.candidates, sphere_lines(first) + sphere_lines(second))
 }
 
 #[cfg(test)]
@@ -353,7 +355,8 @@ mod tests {
             let mut reference = Profile::WIDE.reference(Fields::HIT);
             let found = search.find(&mut reference, &sets.first, sets.second.as_deref()).expect("found");
             let lines = sphere_lines(sets.first.len() as u64);
-            assert!(steps(&found.counts, found.hits.len() as u64, lines) <= most_steps(&sets));
+            let (work, most) = (search_work(&found.counts, found.hits.len() as u64, lines), most_search_work(&sets));
+            assert!(work.cycles <= most.cycles && work.contacts <= most.contacts);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! A job as the AFU is told of it, whatever its lines hold.
 
 use crate::config::Input;
-use crate::patience::Work;
+use crate::patience::{SearchWork, Work};
 use crate::record::Layout;
 
 /// A job, with the lines that it may use.
@@ -17,8 +17,8 @@ pub(super) struct Task {
     pub(super) source_lines: u64,
     /// Lines that there is room for at the destination.
     pub(super) destination_lines: u64,
-    /// Cycles that a search takes at most, without a sign.
-    pub(super) search: u64,
+    /// What a search takes at most.
+    pub(super) search: SearchWork,
 }
 
 impl Task {

@@ -106,12 +106,13 @@ pub fn picture(all: &[Figures]) -> Plot {
         rows.iter().filter_map(|(interval, row)| Some((f64::from(*interval), share(row)?))).collect()
     };
     let even = rows.keys().map(|interval| (f64::from(*interval), 1.0 / f64::from(*interval)));
+    let longest = rows.keys().last().map_or(1.0, |interval| f64::from(*interval));
     let series = |name, colour, points: Vec<(f64, f64)>| {
         Series::new(name, colour, points).line(Line::Solid).marker(Marker::Circle)
     };
     Plot::new(
         "An SCPU's area by interval",
-        Axis::new("interval, cycles", Scale::Log),
+        Axis::new("interval, cycles", Scale::Log).with_range(1.0, longest),
         Axis::new("share of interval 1", Scale::Linear).with_range(0.0, 1.0),
     )
     .with(series("LUTs", 0, points(|area| area.luts)))

@@ -7,7 +7,7 @@ use super::Bench;
 use super::error::VerifyError;
 use crate::cosim::{CosimError, Outcome};
 use crate::host::simulated::{Given, Run};
-use crate::host::spheres::steps;
+use crate::host::spheres::search_work;
 use crate::link::LinkModel;
 use crate::query::ContactRecord;
 use crate::record::{Contacts, SetTooLarge, numbers_of, sphere_lines};
@@ -106,7 +106,7 @@ impl Bench {
 
         let contacts = expected.len() as u64;
         let lines = sphere_lines(first.len() as u64) + sphere_lines(others.len() as u64);
-        let given = Given::Spheres { sets, contacts, search: steps(&found.counts, contacts, lines) };
+        let given = Given::Spheres { sets, contacts, search: search_work(&found.counts, contacts, lines) };
         let run = Run { config, expected: self.expected, given, seed, progress: &mut |_| {} };
         let begun = Instant::now();
         let instance = self.model().instance(seed)?;

@@ -16,8 +16,6 @@ mod ports;
 mod primitives;
 mod records;
 mod recovery;
-#[path = "../support/side_by_side.rs"]
-mod side_by_side;
 mod speed;
 mod spheres;
 mod traces;

@@ -13,7 +13,6 @@ use contact_afu::synth::Target;
 use contact_afu::verify::{Bench, SpheresVerdict, VerifyError};
 
 use crate::primitives::primitives;
-use crate::side_by_side::side_by_side;
 
 fn config(search: Search) -> Config {
     Config {
@@ -141,70 +140,79 @@ fn contacts_come_with_all_their_fields() {
     }
 }
 
-/// Faults planted in the Verilog: what it is, the file, a text in it, and what stands there instead.
-const FAULTS: [(&str, &str, &str, &str); 9] = [
-    ("a box is one unit too small", "sphere_box.v", "{1'b0, r[30:0]} + 32'd2", "{1'b0, r[30:0]} + 32'd1"),
-    ("a lane is not wired", "contact_afu_near.v", "meets_3 <= &meets_3_by_side;", "meets_3 <= 1'b0;"),
-    ("a comparison too few", "contact_afu_candidates.v", "meets_0_7 <= &meets_0_7_by_side;", "meets_0_7 <= 1'b0;"),
+/// A fault: what it is, the file, the text before an expression, the expression, and the one that takes its place.
+type Fault = (&'static str, &'static str, &'static str, &'static str, &'static str);
+
+const FAULTS: [Fault; 9] = [
     (
-        "a place by the wrong rank",
-        "bit_of_rank.v",
-        "6'd16: part_and_rank_word = 2'd2;",
-        "6'd16: part_and_rank_word = 2'd1;",
+        "a box is one unit too small",
+        "sphere_box.v",
+        "r_increased = ",
+        "{1'b0, r[30:0]} + 32'd2",
+        "{1'b0, r[30:0]} + 32'd1",
     ),
-    ("the last row is left out", "contact_afu_rows.v", "table_rows - 13'd1;", "table_rows - 13'd2;"),
+    ("a lane is not wired", "contact_afu_near.v", "meets_3 <= ", "&meets_3_by_side", "1'b0"),
+    ("a comparison too few", "contact_afu_candidates.v", "meets_0_7 <= ", "&meets_0_7_by_side", "1'b0"),
+    ("a place by the wrong rank", "bit_of_rank.v", "6'd16: part_and_rank_word = ", "2'd2", "2'd1"),
     (
-        "answers of another decider",
-        "contact_afu.v",
-        ".answer_0       (decider_0_answer)",
-        ".answer_0       (decider_1_answer)",
+        "the last row is left out",
+        "contact_afu_rows.v",
+        "table_rows_minus_1 = ",
+        "table_rows - 13'd1",
+        "table_rows - 13'd2",
     ),
+    ("answers of another decider", "contact_afu.v", ".answer_0       (", "decider_0_answer", "decider_1_answer"),
     (
         "numbers of another row",
         "contact_afu_decider.v",
-        "about <= shares_oldest[20:8];",
-        "about <= shares_oldest[20:8] ^ 13'd1;",
+        "about <= ",
+        "shares_oldest[20:8]",
+        "shares_oldest[20:8] ^ 13'd1",
     ),
-    ("rows are kept too short", "contact_afu_loader.v", "~rows_inside[4] | row_ends", "1'b1"),
-    ("a queue has room that it has not", "queue_32x50_slack_8.v", "words_inside < 6'd23", "words_inside < 6'd63"),
+    (
+        "rows are kept too short",
+        "contact_afu_loader.v",
+        "turns_to_second_set) | ",
+        "~rows_inside[4] | row_ends",
+        "1'b1",
+    ),
+    ("a queue has room that it has not", "queue_32x50_slack_8.v", "has_room <= ", "(words_inside < 6'd23)", "1'b1"),
 ];
 
 /// The same where contacts come back.
-const FAULTS_OF_CONTACTS: [(&str, &str, &str, &str); 2] = [
+const FAULTS_OF_CONTACTS: [Fault; 2] = [
     (
         "the two spheres are exchanged",
         "contact_afu_resolver.v",
+        "",
         "{kept_spheres_word, table_spheres_word}",
         "{table_spheres_word, kept_spheres_word}",
     ),
     (
         "a contact more than there are SCPUs for",
         "contact_afu.v",
+        "",
         "dispatcher_accepts & resolver_may_come",
         "dispatcher_accepts",
     ),
 ];
 
 /// The same with two SCPUs side by side, and with two rows that are compared at once.
-const FAULTS_OF_TWO: [(&str, &str, &str, &str); 2] = [
-    (
-        "lanes are exchanged",
-        "contact_afu.v",
-        ".numbers         (waiting_hits_record_0)",
-        ".numbers         (waiting_hits_record_1)",
-    ),
+const FAULTS_OF_TWO: [Fault; 2] = [
+    ("lanes are exchanged", "contact_afu.v", ".numbers         (", "waiting_hits_record_0", "waiting_hits_record_1"),
     (
         "rows end before their hits have left",
         "contact_afu_waiting_hits.v",
         "rows_until = ",
-        "rows_until = 1'b1 ? rows_came : ",
+        "readable_any ? oldest_row : rows_came",
+        "rows_came",
     ),
 ];
-const FAULTS_OF_TWO_ROWS: [(&str, &str, &str, &str); 1] =
-    [("the even row instead of the odd one", "contact_afu_candidates.v", "is_odd_row = ", "is_odd_row = 1'b0 & ")];
+const FAULTS_OF_TWO_ROWS: [Fault; 1] =
+    [("the even row instead of the odd one", "contact_afu_candidates.v", "is_odd_row = ", "|walked_bit[3:2]", "1'b0")];
 
 /// Each fault is found in one of four jobs over one of two links, by the hits, by the counts, or because the job does
-/// not end.
+/// not end. Without a fault, none of these jobs fails.
 #[test]
 fn planted_faults_are_found() {
     let search = Search { table: 512, lanes: 16, deciders: 2, box_bits: 32 };
@@ -214,20 +222,35 @@ fn planted_faults_are_found() {
     found(&config(Search { lanes: 128, ..search }), &FAULTS_OF_TWO_ROWS);
 }
 
-fn found(config: &Config, faults: &[(&str, &str, &str, &str)]) {
-    let afu = Afu::generate(Spec::from(config.clone())).unwrap();
-    let crowd = Spheres { first: vec![Sphere::new([1.0, 2.0, 3.0, 0.5]); 300], second: None };
-    let sets = [sorted(set("gas:500:0.4")), tangents(), set("probes:100:300"), crowd];
-    side_by_side(faults, |&(what, file, old, new)| {
-        let folder = tempfile::tempdir().unwrap();
-        write(&afu, folder.path());
-        plant(&folder.path().join(file), old, new);
-        let bench = Bench::of_folder(folder.path(), None, Trace::Off).unwrap();
-        let jobs = ["ideal", "hostile"].into_iter().flat_map(|link| sets.iter().map(move |spheres| (spheres, link)));
-        let is_found =
-            jobs.into_iter().any(|(spheres, link)| run(&bench, spheres, link, 1).map_or(true, |v| !v.is_good()));
-        assert!(is_found, "{what}: {file}");
-    });
+/// One model contains all of these faults, because a separate model for each would take twenty seconds. A job selects
+/// one by the last four bits of its number of spheres, counted from 1; with zero there, none is active.
+fn found(config: &Config, faults: &[Fault]) {
+    let folder = tempfile::tempdir().unwrap();
+    write(&Afu::generate(Spec::from(config.clone())).unwrap(), folder.path());
+    for (number, &(_, file, before, right, wrong)) in (1..).zip(faults) {
+        let chosen = format!("contact_afu.control.job_count[3:0] == 4'd{number}");
+        let planted = format!("{before}(({chosen}) ? ({wrong}) : ({right}))");
+        plant(&folder.path().join(file), &format!("{before}{right}"), &planted);
+    }
+    let bench = Bench::of_folder(folder.path(), None, Trace::Off).unwrap();
+    let crowd = Spheres { first: vec![Sphere::new([1.0, 2.0, 3.0, 0.5]); 320], second: None };
+    let sets = [sorted(set("gas:510:0.4")), tangents(), set("probes:110:300"), crowd];
+    let failure = |selected: usize| {
+        let cut = |spheres: &Spheres| {
+            let mut spheres = spheres.clone();
+            spheres.first.truncate(spheres.first.len() - (spheres.first.len() - selected) % 16);
+            spheres
+        };
+        let mut jobs = ["ideal", "hostile"].into_iter().flat_map(|link| sets.iter().map(move |set| (cut(set), link)));
+        jobs.find_map(|(spheres, link)| match run(&bench, &spheres, link, 1) {
+            Err(error) => Some(error.to_string()),
+            Ok(verdict) => (!verdict.is_good()).then(|| verdict.failed_checks.join(", ")),
+        })
+    };
+    assert_eq!(failure(0), None, "without a fault");
+    for (selected, (what, file, ..)) in (1..).zip(faults) {
+        assert!(failure(selected).is_some(), "{what}: {file}");
+    }
 }
 
 /// As synthesis for an ECP5 reads it: every block memory is a model that gives wrong bits for a word that is read in

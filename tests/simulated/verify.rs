@@ -197,7 +197,7 @@ fn never_given_up(shell: Shell) {
         let afu = Afu::generate(Spec::from(config)).expect("an AFU");
         let (said, layout) = (Capability::from_bits(afu.capability()), afu.layout());
         let (reads, writes) = (layout.source_lines(count), layout.destination_lines(count));
-        let work = Work { pairs: count, reads, writes, watchdog: 0, search: 0 };
+        let work = Work { pairs: count, reads, writes, ..Work::default() };
         let patience = match shell {
             Shell::Spl2 => patience::spl2(&said, &link, &Spl2Model::default(), &work),
             Shell::Axi => {

@@ -6,7 +6,7 @@ use super::error::DriveError;
 use super::ports::Ports;
 use crate::link::{LINE_BYTES, Line, Link, Memory, Replies, Requests, Traffic};
 use crate::outcome::Outcome;
-use crate::patience::{Patience, Work};
+use crate::patience::{Patience, SearchWork, Work};
 
 /// The default line address of sources.
 const SOURCE: u64 = 0x1000;
@@ -35,8 +35,8 @@ pub struct Job<'a> {
     pub mode: u8,
     /// Cycles without a response after which the AFU gives up. With 0 it never does.
     pub watchdog: u32,
-    /// Cycles that a search among spheres takes at most, if the AFU searches.
-    pub search: u64,
+    /// What a search among spheres takes at most, if the AFU searches.
+    pub search: SearchWork,
     /// The number of SCPUs that the AFU must have.
     pub scpus: Option<u32>,
     /// Cycles after which the job has failed even if requests are still answered. `None` leaves it to
@@ -57,7 +57,7 @@ impl<'a> Job<'a> {
             destination_address: DESTINATION,
             mode: 0,
             watchdog: 0,
-            search: 0,
+            search: SearchWork::default(),
             scpus: None,
             max_cycles: None,
         }
